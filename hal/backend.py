@@ -1,0 +1,70 @@
+"""What every robot looks like to the loop: a port full of servos, a twin, or a mock."""
+
+from typing import Protocol
+
+from hal.command import JointCommand
+from hal.joints import Joints, Mask
+from hal.observation import Observation
+
+
+class Clock(Protocol):
+    """Time belongs to the backend: the wall sleeps, the twin steps physics."""
+
+    def now(self) -> float:
+        """Return the time, s."""
+        ...
+
+    def wait_until(self, time: float) -> None:
+        """Return when it is `time` s; at once if that has passed."""
+        ...
+
+
+class Backend(Protocol):
+    """Joints that can be read and commanded.
+
+    The life of a backend: `connect`, `configure`, any number of `read` and `write`, `disconnect`.
+    `read` is `request` (ask, do not wait) followed by `collect` (wait for the answers), so that a
+    bus can carry bytes while the controller computes.
+    """
+
+    @property
+    def joints(self) -> Joints:
+        """The joints, in MJCF order."""
+        ...
+
+    @property
+    def clock(self) -> Clock:
+        """The clock that this backend lives on."""
+        ...
+
+    def connect(self) -> None:
+        """Open what has to be opened. Nothing moves."""
+        ...
+
+    def configure(self) -> None:
+        """Assert the settings that the stack relies on. Nothing moves."""
+        ...
+
+    def request(self) -> None:
+        """Ask every joint for its state."""
+        ...
+
+    def collect(self) -> Observation:
+        """Return the state last asked for."""
+        ...
+
+    def read(self) -> Observation:
+        """Return the present state: `request` and `collect`."""
+        ...
+
+    def write(self, command: JointCommand) -> JointCommand:
+        """Send a command and return what the joints really got."""
+        ...
+
+    def set_torque(self, on: bool) -> Mask:
+        """Switch the torque of all joints and return (n,) bool, read back."""
+        ...
+
+    def disconnect(self) -> None:
+        """Give back what `connect` took."""
+        ...

@@ -1,0 +1,84 @@
+"""What a controller asks of the joints, and the one torque law that says what it means."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hal.joints import Array, Joints
+
+FIELDS = ("position", "velocity", "torque", "stiffness", "damping")
+
+
+@dataclass(frozen=True, slots=True)
+class JointCommand:
+    """A target for every joint, n joints in MJCF order.
+
+    The torque law, within the joint's limits, with q and dq the measured position and velocity::
+
+        tau = stiffness (position - q) + damping (velocity - dq) + torque
+
+    Ideal torque joints do just that, at every physics step. A position servo does what it can:
+    gain registers, a goal shifted by ``(damping velocity + torque) / stiffness``, a voltage limit
+    instead of a torque limit, and never less damping than its motor's own K^2/R. The backend's
+    `write` therefore returns what the joints really got.
+
+    Attributes:
+        block: The five rows below as one (5, n) array; the rows are views of it.
+    """
+
+    block: Array
+
+    @property
+    def position(self) -> Array:
+        """Target position (n,), rad."""
+        return self.block[0]
+
+    @property
+    def velocity(self) -> Array:
+        """Target velocity (n,), rad/s."""
+        return self.block[1]
+
+    @property
+    def torque(self) -> Array:
+        """Feed-forward torque (n,), N m."""
+        return self.block[2]
+
+    @property
+    def stiffness(self) -> Array:
+        """Proportional gain (n,), N m/rad."""
+        return self.block[3]
+
+    @property
+    def damping(self) -> Array:
+        """Derivative gain (n,), N m s/rad."""
+        return self.block[4]
+
+    @classmethod
+    def hold(cls, joints: Joints, position: Array) -> "JointCommand":
+        """Return the command that holds `position` (n,) rad with the robot's default gains."""
+        block = np.zeros((len(FIELDS), len(joints)))
+        block[0] = position
+        block[3] = joints.stiffness
+        block[4] = joints.damping
+        return cls(block)
+
+
+def joint_torque(command: JointCommand, q: Array, dq: Array, limit: Array) -> Array:
+    """Return the torque (n,) N m of ideal joints at `q` rad and `dq` rad/s, within ±`limit` N m."""
+    torque = (
+        command.stiffness * (command.position - q)
+        + command.damping * (command.velocity - dq)
+        + command.torque
+    )
+    return np.clip(torque, -limit, limit)
+
+
+def shifted_goal(command: JointCommand) -> Array:
+    """Return the goal (n,) rad that makes a position servo give the feed-forward terms as well.
+
+    ``position + (damping velocity + torque) / stiffness``; joints without stiffness keep theirs.
+    """
+    push = command.damping * command.velocity + command.torque
+    stiff = command.stiffness > 0.0
+    shift = np.divide(push, command.stiffness, out=np.zeros_like(push), where=stiff)
+    return command.position + shift

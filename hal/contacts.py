@@ -1,0 +1,60 @@
+"""The contact sensors of a robot, grouped by foot."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from hal.errors import UnknownNameError
+from hal.joints import Array, Mask
+
+
+@dataclass(frozen=True)
+class ContactSensors:
+    """Names of the k contact sensors and the feet they belong to.
+
+    A name that a gait may wait for is either one sensor or a whole foot (any of its sensors).
+
+    Attributes:
+        names: The k sensor names, in the order of `Observation.contacts`.
+        feet: Foot name to its sensors' names; left before right by custom.
+        threshold: Normal force above which a sensor counts as pressed, N.
+    """
+
+    names: tuple[str, ...]
+    feet: dict[str, tuple[str, ...]]
+    threshold: float = 1.0
+    members: Mask = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        rows = [self.mask(foot) for foot in self.feet]
+        members = np.array(rows, dtype=bool).reshape(len(self.feet), len(self.names))
+        object.__setattr__(self, "members", members)
+
+    @property
+    def foot_names(self) -> tuple[str, ...]:
+        """Names of the feet."""
+        return tuple(self.feet)
+
+    def mask(self, name: str) -> Mask:
+        """Return (k,) bool: the sensors that a foot or a sensor `name` stands for.
+
+        Raises:
+            UnknownNameError: `name` is neither a foot nor a sensor.
+        """
+        if name in self.feet:
+            chosen: Iterable[str] = self.feet[name]
+        elif name in self.names:
+            chosen = (name,)
+        else:
+            raise UnknownNameError("contact", name, (*self.feet, *self.names))
+        chosen = set(chosen)
+        return np.array([sensor in chosen for sensor in self.names], dtype=bool)
+
+    def pressed(self, contacts: Array) -> Mask:
+        """Return (..., k) bool from forces (..., k) N."""
+        return np.asarray(contacts > self.threshold)
+
+    def feet_down(self, contacts: Array) -> Mask:
+        """Return (..., feet) bool: is any sensor of each foot pressed, from forces (..., k) N."""
+        return np.asarray((self.pressed(contacts)[..., None, :] & self.members).any(axis=-1))

@@ -1,0 +1,74 @@
+"""Every error of the stack, under one root, each with the exit status it means at the command line.
+
+Messages are one line for the person at the robot: what happened, which joint or key, what would
+be right, what to run next.
+"""
+
+import difflib
+from collections.abc import Iterable
+
+
+class WindupError(Exception):
+    """Root of all errors raised by Windup.
+
+    Attributes:
+        exit_status: 1 the run failed, 2 usage or configuration (nothing moved), 3 bus or hardware.
+    """
+
+    exit_status = 1
+
+
+class ConfigError(WindupError):
+    """A file says something that cannot be: unknown key, wrong type, broken cross-reference."""
+
+    exit_status = 2
+
+
+class UsageError(WindupError):
+    """A command or call with values that cannot work; nothing has moved."""
+
+    exit_status = 2
+
+
+class UnknownNameError(UsageError):
+    """A name that is not there, with the known names and the likely one."""
+
+    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+        self.kind, self.name, self.known = kind, name, tuple(known)
+        super().__init__(f"unknown {kind} {name!r}{suggest(name, self.known)}")
+
+
+class StateMissingError(UsageError):
+    """A controller needs a part of the observation that this backend does not measure."""
+
+
+class UnsafeCommandError(WindupError):
+    """A command that the guard refuses outright: not a number, or of the wrong shape."""
+
+
+class StaleStateError(WindupError):
+    """A servo has not answered for longer than the limits allow."""
+
+    exit_status = 3
+
+
+class DivergedError(WindupError):
+    """The twin's physics left the numbers; the simulation cannot go on."""
+
+
+class HardwareError(WindupError):
+    """A port, a bus or a servo failed."""
+
+    exit_status = 3
+
+
+def suggest(name: str, known: Iterable[str]) -> str:
+    """Return "; did you mean ...? known: ..." for an unknown `name`.
+
+    >>> suggest("opp3", ["human", "op3"])
+    "; did you mean 'op3'? known: human, op3"
+    """
+    names = sorted(known)
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    hint = f"; did you mean {close[0]!r}?" if close else ";"
+    return f"{hint} known: {', '.join(names) or 'none'}"

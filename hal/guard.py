@@ -1,0 +1,194 @@
+"""The guard: the only holder of a write handle, between every controller and every backend."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from hal.backend import Backend, Clock
+from hal.command import FIELDS, JointCommand
+from hal.errors import HardwareError, StaleStateError, UnsafeCommandError
+from hal.joints import Array, Joints, Mask
+from hal.observation import Observation
+
+StopPolicy = Literal["hold", "crouch", "limp"]
+
+CROUCH_SECONDS = 1.5
+TICK = 0.008
+
+
+@dataclass(frozen=True)
+class SafetyLimits:
+    """What a command may ask for, and how old a state may be.
+
+    Attributes:
+        lower: (5, n) smallest values of the rows of a `JointCommand`.
+        upper: (5, n) largest values of the same rows.
+        max_age: Age of a joint's state above which the guard refuses to go on, s.
+    """
+
+    lower: Array
+    upper: Array
+    max_age: float = 0.25
+
+    @classmethod
+    def of(cls, joints: Joints, max_age: float = 0.25) -> "SafetyLimits":
+        """Return the limits that the joints themselves state; gains up to four times default."""
+        zero = np.zeros(len(joints))
+        lower = np.stack([joints.lower, -joints.velocity, -joints.torque, zero, zero])
+        upper = np.stack(
+            [
+                joints.upper,
+                joints.velocity,
+                joints.torque,
+                4.0 * joints.stiffness,
+                4.0 * joints.damping,
+            ]
+        )
+        return cls(lower, upper, max_age)
+
+
+@dataclass
+class GuardedBackend:
+    """A backend whose commands are checked, clamped and counted on their way through.
+
+    Attributes:
+        backend: The guarded one. Nobody else should hold it.
+        limits: What may pass.
+        stop_policy: What `stop` does: hold the pose, crouch and go limp, or go limp at once.
+        crouch: (n,) pose of the crouch, rad.
+        clamps: Clamp name to the number of commands it changed.
+        clamped_joints: (n,) number of commands in which each joint was clamped.
+    """
+
+    backend: Backend
+    limits: SafetyLimits
+    stop_policy: StopPolicy = "limp"
+    crouch: Array | None = None
+    clamps: dict[str, int] = field(default_factory=lambda: dict.fromkeys(FIELDS, 0))
+    clamped_joints: Array = field(init=False)
+    _last: Observation | None = field(default=None, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        self.clamped_joints = np.zeros(len(self.backend.joints))
+        self._buffer = np.empty_like(self.limits.lower)
+        # Bound once: these run on every tick.
+        self._write: Callable[[JointCommand], JointCommand] = self.backend.write
+        self._collect: Callable[[], Observation] = self.backend.collect
+
+    @property
+    def joints(self) -> Joints:
+        """The joints, in MJCF order."""
+        return self.backend.joints
+
+    @property
+    def clock(self) -> Clock:
+        """The backend's clock."""
+        return self.backend.clock
+
+    def connect(self) -> None:
+        """Open the backend."""
+        self.backend.connect()
+
+    def configure(self) -> None:
+        """Assert the backend's settings."""
+        self.backend.configure()
+
+    def disconnect(self) -> None:
+        """Close the backend."""
+        self.backend.disconnect()
+
+    def set_torque(self, on: bool) -> Mask:
+        """Switch the torque of all joints; (n,) bool read back."""
+        return self.backend.set_torque(on)
+
+    def request(self) -> None:
+        """Ask every joint for its state."""
+        self.backend.request()
+
+    def read(self) -> Observation:
+        """Return the present state (see `collect`)."""
+        self.backend.request()
+        return self.collect()
+
+    def collect(self) -> Observation:
+        """Return the state last asked for.
+
+        Raises:
+            StaleStateError: A joint has not answered for longer than `limits.max_age`.
+        """
+        observation = self._collect()
+        self._last = observation
+        age = observation.joints.age
+        if age.max() > self.limits.max_age:
+            worst = int(np.argmax(age))
+            raise StaleStateError(
+                f"joint {self.joints.names[worst]!r} has not answered for {age[worst]:.2f} s "
+                f"(limit {self.limits.max_age:.2f} s); check its cable and power, "
+                "then run `windup health`"
+            )
+        return observation
+
+    def write(self, command: JointCommand) -> JointCommand:
+        """Clamp `command` into the limits, send it, and return what the joints really got.
+
+        Raises:
+            UnsafeCommandError: A value is not a number, or the shape is wrong.
+        """
+        block = command.block
+        if block.shape != self._buffer.shape:
+            raise UnsafeCommandError(
+                f"a command of shape {block.shape} for {len(self.joints)} joints; "
+                f"it has to be {self._buffer.shape}"
+            )
+        np.maximum(block, self.limits.lower, out=self._buffer)
+        np.minimum(self._buffer, self.limits.upper, out=self._buffer)
+        if (self._buffer == block).all():
+            return self._write(command)
+        self._count(block)
+        return self._write(JointCommand(self._buffer.copy()))
+
+    def stop(self) -> Mask:
+        """Carry out the stop policy and return (n,) bool: joints whose torque is still on.
+
+        Raises:
+            HardwareError: Torque was told to go off and a joint read back on.
+        """
+        if self.stop_policy == "hold":
+            pose = self._pose()
+            self._write(JointCommand.hold(self.joints, pose))
+            return np.ones(len(self.joints), dtype=bool)
+        if self.stop_policy == "crouch" and self.crouch is not None:
+            self._glide(self._pose(), self.crouch, CROUCH_SECONDS)
+        on = self.backend.set_torque(False)
+        if on.any():
+            stuck = ", ".join(np.array(self.joints.names)[on])
+            raise HardwareError(f"torque is still on at {stuck}; cut the servo power")
+        return on
+
+    def _pose(self) -> Array:
+        last = self._last or self.read()
+        return np.clip(last.joints.position, self.limits.lower[0], self.limits.upper[0])
+
+    def _glide(self, start: Array, end: Array, seconds: float) -> None:
+        """Move the targets from `start` to `end` (n,) rad along a smooth step."""
+        began = self.clock.now()
+        while (now := self.clock.now()) < began + seconds:
+            s = (now - began) / seconds
+            pose = start + (end - start) * s * s * (3.0 - 2.0 * s)
+            self._write(JointCommand.hold(self.joints, pose))
+            self.clock.wait_until(now + TICK)
+
+    def _count(self, block: Array) -> None:
+        """Count the clamps of `block`; refuse what is not a number."""
+        if not np.isfinite(block).all():
+            row, joint = np.argwhere(~np.isfinite(block))[0]
+            raise UnsafeCommandError(
+                f"the controller asked joint {self.joints.names[joint]!r} for "
+                f"{FIELDS[row]} {block[row, joint]}; refused"
+            )
+        changed = self._buffer != block
+        for row in np.flatnonzero(changed.any(axis=1)):
+            self.clamps[FIELDS[row]] += 1
+        self.clamped_joints += changed.any(axis=0)

@@ -1,0 +1,85 @@
+"""The joints of one robot: names in MJCF order, limits and default gains as arrays."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from hal.errors import UnknownNameError
+
+Array = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """One actuated hinge.
+
+    Attributes:
+        name: Name in the MJCF.
+        lower: Smallest allowed target, rad.
+        upper: Largest allowed target, rad.
+        stiffness: Default proportional gain, N m/rad.
+        damping: Default derivative gain, N m s/rad.
+        torque: Largest torque, N m.
+        velocity: Largest velocity, rad/s.
+    """
+
+    name: str
+    lower: float
+    upper: float
+    stiffness: float
+    damping: float
+    torque: float = np.inf
+    velocity: float = np.inf
+
+
+@dataclass(frozen=True)
+class Joints:
+    """All joints of a robot in MJCF order; `n` is their number.
+
+    The arrays have shape (n,) and are read-only. Names are resolved to indices once, with
+    `index`; everything behind that works on arrays.
+    """
+
+    joints: tuple[Joint, ...]
+    names: tuple[str, ...] = field(init=False)
+    lower: Array = field(init=False, repr=False)
+    upper: Array = field(init=False, repr=False)
+    stiffness: Array = field(init=False, repr=False)
+    damping: Array = field(init=False, repr=False)
+    torque: Array = field(init=False, repr=False)
+    velocity: Array = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "names", tuple(joint.name for joint in self.joints))
+        for key in ("lower", "upper", "stiffness", "damping", "torque", "velocity"):
+            values = np.array([getattr(joint, key) for joint in self.joints], dtype=np.float64)
+            values.setflags(write=False)
+            object.__setattr__(self, key, values)
+
+    def __len__(self) -> int:
+        return len(self.joints)
+
+    def index(self, name: str) -> int:
+        """Return the index of the joint `name`.
+
+        Raises:
+            UnknownNameError: There is no such joint; the message names the likely one.
+        """
+        try:
+            return self.names.index(name)
+        except ValueError:
+            raise UnknownNameError("joint", name, self.names) from None
+
+    def indices(self, names: Iterable[str]) -> npt.NDArray[np.intp]:
+        """Return the indices of several joints, in the order given."""
+        return np.array([self.index(name) for name in names], dtype=np.intp)
+
+    def array(self, values: Mapping[str, float], default: float = 0.0) -> Array:
+        """Return an (n,) array with `values` by name and `default` elsewhere."""
+        result = np.full(len(self), default)
+        for name, value in values.items():
+            result[self.index(name)] = value
+        return result
