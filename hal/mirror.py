@@ -1,0 +1,41 @@
+"""Left and right: how names and poses of one side become the same of the other."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from hal.joints import Array
+
+SIDES = (("l_", "r_"), ("left_", "right_"))
+
+
+@dataclass(frozen=True, eq=False)
+class Mirror:
+    """Mirror image across the robot's own plane y = 0.
+
+    Attributes:
+        perm: (n,) index of each joint's partner; midline joints are their own.
+        sign: (n,) +1 or -1, from the directions of the two axes.
+    """
+
+    perm: npt.NDArray[np.intp]
+    sign: Array
+
+    def __call__(self, values: Array) -> Array:
+        """Return the mirror image of joint positions, velocities or torques (..., n)."""
+        return self.sign * values[..., self.perm]
+
+
+def other_side(name: str) -> str:
+    """Return the name of the same part on the other side.
+
+    >>> other_side("l_knee"), other_side("right_foot"), other_side("neck")
+    ('r_knee', 'left_foot', 'neck')
+    """
+    for left, right in SIDES:
+        if name.startswith(left):
+            return right + name.removeprefix(left)
+        if name.startswith(right):
+            return left + name.removeprefix(right)
+    return name

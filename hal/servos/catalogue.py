@@ -1,0 +1,28 @@
+"""All servos that Windup knows, by the name printed on them."""
+
+from hal.errors import UnknownNameError
+from hal.servo_model import ServoModel
+from hal.servos.feetech_sts import FEETECH_STS
+from hal.servos.x_series import X_SERIES
+
+_MODELS = {model.name: model for model in (*X_SERIES, *FEETECH_STS)}
+
+
+def servo_names() -> tuple[str, ...]:
+    """Return the names of all known servos."""
+    return tuple(_MODELS)
+
+
+def servo_model(name: str) -> ServoModel:
+    """Return the servo called `name`.
+
+    >>> servo_model("XL430-W250").model_number
+    1060
+
+    Raises:
+        UnknownNameError: There is no such servo; the message names the likely one.
+    """
+    try:
+        return _MODELS[name]
+    except KeyError:
+        raise UnknownNameError("servo", name, _MODELS) from None

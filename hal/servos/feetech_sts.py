@@ -1,0 +1,27 @@
+"""Feetech STS.
+
+The law is ``duty = P x counts of error / 4000``: 0.16297 of duty per rad and unit of P, which an
+oscilloscope (Rhoban bam: 0.166) and K-Scale's fits (0.16293) confirm. Torque and speed are
+Feetech's data sheets; the sheets of the 7.4 V type disagree with measurement (bam identifies
+3.25 N m at 7.4 V), so weigh a robot's own torque before trusting it. Armature and friction are
+bam's model M1 of the 7.4 V type (Apache-2.0); nobody has published a physical fit of the other
+two, which borrow them.
+"""
+
+from math import pi
+
+from hal.servo_model import Row, ServoModel
+
+GAIN = 4096 / (2.0 * pi) / 4000
+"""Duty per rad and unit of P: 0.16297."""
+
+STS3215_7V4 = (Row.of(6.0, 1.6, 55 * 6.0 / 7.4), Row.of(7.4, 1.91, 55))
+STS3215_12V = (Row.of(12.0, 2.94, 45, 2.7),)
+STS3250_12V = (Row.of(12.0, 4.9, 75),)
+
+# name, model number, rows, duty per rad and P, default P, armature kg m2, friction N m
+FEETECH_STS = (
+    ServoModel("STS3215-7.4V", 777, STS3215_7V4, GAIN, 32, 0.0284, 0.0524, pwm_limit=0.97),
+    ServoModel("STS3215-12V", 777, STS3215_12V, GAIN, 32, 0.0284, 0.0524),
+    ServoModel("STS3250", 2825, STS3250_12V, GAIN, 32, 0.0284, 0.0524, pwm_limit=0.97),
+)

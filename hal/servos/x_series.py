@@ -1,0 +1,52 @@
+"""ROBOTIS Dynamixel X.
+
+Torque, speed and current are the rows of the ROBOTIS e-Manual (each servo's own page). Its page on
+the position controller gives ``pwm = P / 128 x counts of error``, full scale 885; the XL330 was
+measured to divide by 256 (Rhoban bam, Apache-2.0) against the manual's 128.
+
+Armature and friction are identified where somebody published a fit: XM430-W350 from the OP3 of
+mujoco_menagerie (Apache-2.0; its damping of 1.084 N m s/rad already holds the back-EMF, so nothing
+is left for the joint), XL330 from bam's model M1, the XC and 2X servos and XM430-W210 from
+ToddlerBot (MIT). The others borrow from the nearest motor, and their line says so.
+"""
+
+from math import pi
+
+from hal.servo_model import Row, ServoModel
+
+COUNTS_PER_RAD = 4096 / (2.0 * pi)
+FULL_SCALE = 885
+GAIN = COUNTS_PER_RAD / 128 / FULL_SCALE
+"""Duty per rad and unit of P: 0.005755."""
+
+XM430_W350 = (Row.of(11.1, 3.8, 43, 2.1), Row.of(12.0, 4.1, 46, 2.3), Row.of(14.8, 4.8, 57, 2.7))
+XM430_W210 = (Row.of(11.1, 2.7, 70, 2.1), Row.of(12.0, 3.0, 77, 2.3), Row.of(14.8, 3.7, 95, 2.7))
+XL430_W250 = (Row.of(9.0, 1.0, 47, 1.0), Row.of(11.1, 1.4, 57, 1.3), Row.of(12.0, 1.5, 61, 1.4))
+XC430_W240 = (Row.of(9.0, 1.4, 52, 1.1), Row.of(11.1, 1.7, 65, 1.3), Row.of(12.0, 1.9, 70, 1.4))
+TWO_XC430 = (Row.of(9.0, 1.3, 48, 1.1), Row.of(11.1, 1.6, 59, 1.3), Row.of(12.0, 1.8, 64, 1.4))
+XC330_T288 = (
+    Row.of(9.0, 0.76, 52, 0.61),
+    Row.of(11.1, 0.92, 65, 0.80),
+    Row.of(12.0, 1.0, 71, 0.88),
+)
+XC330_M288 = (Row.of(3.7, 0.69, 59, 1.34), Row.of(5, 0.93, 81, 1.8), Row.of(6, 1.1, 97, 2.15))
+XL330_M288 = (
+    Row.of(3.7, 0.42, 76, 1.11),
+    Row.of(5.0, 0.52, 103, 1.47),
+    Row.of(6.0, 0.6, 123, 1.74),
+)
+XH540_W270 = (Row.of(11.1, 9.2, 36, 4.5), Row.of(12.0, 9.9, 39, 4.9), Row.of(14.8, 11.7, 46, 5.9))
+
+# name, model number, rows, duty per rad and P, default P, armature kg m2, friction N m
+X_SERIES = (
+    ServoModel("XM430-W350", 1020, XM430_W350, GAIN, 800, 0.045, 0.03),
+    ServoModel("XM430-W210", 1030, XM430_W210, GAIN, 800, 0.0012, 0.134),
+    ServoModel("XL430-W250", 1060, XL430_W250, GAIN, 640, 0.0042, 0.292),  # as 2XL430
+    ServoModel("2XL430-W250", 1090, XL430_W250, GAIN, 640, 0.0042, 0.292),  # P as XL430
+    ServoModel("XC430-W240", 1080, XC430_W240, GAIN, 700, 0.004, 0.069),
+    ServoModel("2XC430-W250", 1160, TWO_XC430, GAIN, 700, 0.0044, 0.252),  # P as XC430
+    ServoModel("XC330-T288", 1220, XC330_T288, GAIN, 900, 0.0035, 0.014),  # 128: not measured
+    ServoModel("XC330-M288", 1240, XC330_M288, GAIN, 900, 0.0035, 0.014),  # as XC330-T288
+    ServoModel("XL330-M288", 1200, XL330_M288, GAIN / 2, 400, 0.0018, 0.0128),
+    ServoModel("XH540-W270", 1100, XH540_W270, GAIN, 800, 0.045, 0.03),  # no fit: as XM430-W350
+)

@@ -1,0 +1,192 @@
+"""Cross-checks of a robot.toml: within itself, and against its MJCF.
+
+Every error is one line with the file, the key and, where a name is wrong, the likely word.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import mujoco
+
+from hal.errors import ConfigError, suggest
+from hal.servos import servo_names
+from robots import mjcf
+from robots.records import JointEntry, RobotFile
+
+SLACK = 1e-6
+"""Rounding that a limit may carry, rad."""
+
+TOUCH = mujoco.mjtSensor.mjSENS_TOUCH
+IMU_SENSORS = {
+    "gyro": mujoco.mjtSensor.mjSENS_GYRO,
+    "accelerometer": mujoco.mjtSensor.mjSENS_ACCELEROMETER,
+    "orientation": mujoco.mjtSensor.mjSENS_FRAMEQUAT,
+}
+
+
+def whole_steps(rate_hz: float, timestep: float) -> int | None:
+    """Return the physics steps of `timestep` s in a period of `rate_hz`; None if not whole.
+
+    >>> whole_steps(250.0, 0.002), whole_steps(300.0, 0.002)
+    (2, None)
+    """
+    steps = 1.0 / (rate_hz * timestep)
+    whole = round(steps)
+    return whole if whole > 0 and abs(steps - whole) < 1e-6 else None
+
+
+@dataclass(frozen=True)
+class Checks:
+    """The checks of one robot.
+
+    Attributes:
+        path: Its robot.toml, for messages.
+        robot: What the file says.
+        model: Its MJCF, compiled.
+    """
+
+    path: Path
+    robot: RobotFile
+    model: mujoco.MjModel
+
+    def run(self) -> None:
+        """Check everything.
+
+        Raises:
+            ConfigError: The first thing that cannot be.
+        """
+        self._rate()
+        self._structure()
+        self._joint_names()
+        for joint in self.robot.joint:
+            self._limits(joint)
+            self._servo(joint)
+        self._servo_ids()
+        self._feet()
+        self._imu()
+        self._poses()
+        self._stop()
+
+    def _rate(self) -> None:
+        rate, timestep = self.robot.rate_hz, self.model.opt.timestep
+        if whole_steps(rate, timestep) is None:
+            self._fail("rate_hz", f"a period of 1/{rate:g} s is no whole number of physics steps")
+
+    def _structure(self) -> None:
+        bodies = mjcf.names(self.model, "body")
+        self._known("base", "body", self.robot.base, bodies)
+        self._known("torso", "body", self.robot.torso, bodies)
+        base = self.model.body(self.robot.base)
+        if base.jntnum[0] != 1 or self.model.jnt_type[base.jntadr[0]] != mjcf.FREE:
+            self._fail("base", f"body {self.robot.base!r} has no free joint in the MJCF")
+        if self.model.nu:
+            self._fail("model", "the MJCF has actuators; the drive table says what moves a joint")
+
+    def _joint_names(self) -> None:
+        entries = [joint.name for joint in self.robot.joint]
+        self._unique("joint", "joint", entries)
+        hinges = mjcf.hinge_names(self.model)
+        for name in entries:
+            self._known("joint", "MJCF hinge", name, hinges)
+        for name in hinges:
+            if name not in entries:
+                self._fail("joint", f"the MJCF hinge {name!r} has no [[joint]]")
+
+    def _limits(self, joint: JointEntry) -> None:
+        key = f"joint {joint.name!r}"
+        for gain in ("stiffness", "damping"):
+            if getattr(joint, gain) is None:
+                self._fail(key, f"needs {gain}, here or in [drive]")
+        if joint.lower >= joint.upper:
+            self._fail(key, f"lower {joint.lower:g} is not below upper {joint.upper:g}")
+        hinge = self.model.joint(joint.name)
+        if not self.model.jnt_limited[hinge.id]:
+            self._fail(key, "the MJCF gives this hinge no range")
+        low, high = hinge.range
+        if joint.lower < low - SLACK or joint.upper > high + SLACK:
+            given = f"{joint.lower:g} to {joint.upper:g} rad"
+            self._fail(key, f"{given} is wider than the MJCF's {low:g} to {high:g} rad")
+
+    def _servo(self, joint: JointEntry) -> None:
+        key = f"joint {joint.name!r}"
+        if self.robot.drive.kind == "torque":
+            if joint.servo or joint.bus or joint.id is not None:
+                self._fail(key, 'has a servo, but drive.kind is "torque"')
+            return
+        if joint.servo is None or joint.bus is None or joint.id is None:
+            self._fail(key, 'needs servo, bus and id: drive.kind is "servo"')
+        self._known(f"{key}: servo", "servo", str(joint.servo), servo_names())
+        self._known(f"{key}: bus", "bus", str(joint.bus), [bus.name for bus in self.robot.bus])
+
+    def _servo_ids(self) -> None:
+        self._unique("bus", "bus", [bus.name for bus in self.robot.bus])
+        taken: dict[tuple[str | None, int], str] = {}
+        for joint in self.robot.joint:
+            if joint.id is None:
+                continue
+            other = taken.setdefault((joint.bus, joint.id), joint.name)
+            if other != joint.name:
+                both = f"{other!r} already has on bus {joint.bus!r}"
+                self._fail(f"joint {joint.name!r}", f"has id {joint.id}, which {both}")
+
+    def _feet(self) -> None:
+        self._unique("foot", "foot", [foot.name for foot in self.robot.foot])
+        self._unique("foot", "sensor", [s for foot in self.robot.foot for s in foot.sensors])
+        for foot in self.robot.foot:
+            key = f"foot {foot.name!r}"
+            self._known(f"{key}: body", "body", foot.body, mjcf.names(self.model, "body"))
+            self._known(f"{key}: site", "site", foot.site, mjcf.names(self.model, "site"))
+            for sensor in foot.sensors:
+                self._sensor(f"{key}: sensors", sensor, TOUCH)
+
+    def _imu(self) -> None:
+        imu = self.robot.imu
+        if imu is None:
+            return
+        self._known("imu.site", "site", imu.site, mjcf.names(self.model, "site"))
+        for key, kind in IMU_SENSORS.items():
+            if (name := getattr(imu, key)) is not None:
+                self._sensor(f"imu.{key}", name, kind)
+
+    def _poses(self) -> None:
+        joints = {joint.name: joint for joint in self.robot.joint}
+        for pose, angles in self.robot.poses.items():
+            for name, angle in angles.items():
+                self._known(f"poses.{pose}", "joint", name, joints)
+                low, high = joints[name].lower, joints[name].upper
+                if not low - SLACK <= angle <= high + SLACK:
+                    limits = f"{low:g} to {high:g} rad"
+                    self._fail(f"poses.{pose}.{name}", f"{angle:g} rad is outside {limits}")
+            for name in joints.keys() - angles.keys():
+                if not joints[name].lower <= 0.0 <= joints[name].upper:
+                    self._fail(f"poses.{pose}", f"names no {name!r}, and 0 is outside its limits")
+
+    def _stop(self) -> None:
+        self._known("stance", "pose", self.robot.stance, self.robot.poses)
+        if self.robot.crouch is not None:
+            self._known("crouch", "pose", self.robot.crouch, self.robot.poses)
+        elif self.robot.stop == "crouch":
+            self._fail("stop", '"crouch" needs the key crouch: the name of a pose')
+
+    def _sensor(self, key: str, name: str, kind: mujoco.mjtSensor) -> None:
+        """Fail unless the MJCF has a sensor `name` of the right kind."""
+        wanted = [
+            other
+            for other in mjcf.names(self.model, "sensor")
+            if self.model.sensor(other).type[0] == kind
+        ]
+        self._known(key, f"{kind.name.removeprefix('mjSENS_').lower()} sensor", name, wanted)
+
+    def _known(self, key: str, kind: str, name: str, known: Iterable[str]) -> None:
+        known = tuple(known)
+        if name not in known:
+            self._fail(key, f"unknown {kind} {name!r}{suggest(name, known)}")
+
+    def _unique(self, key: str, kind: str, given: list[str]) -> None:
+        for name in given:
+            if given.count(name) > 1:
+                self._fail(key, f"{kind} {name!r} stands there twice")
+
+    def _fail(self, key: str, message: str) -> None:
+        raise ConfigError(f"{self.path}: {key}: {message}")

@@ -1,0 +1,214 @@
+"""A robot as the rest of the stack sees it: robot.toml and model.xml, read and cross-checked."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import mujoco
+from msgspec.structs import replace
+
+from hal.config import load_toml
+from hal.contacts import ContactSensors
+from hal.errors import UnknownNameError, UsageError
+from hal.guard import StopPolicy
+from hal.joints import Array, Joint, Joints
+from hal.mirror import Mirror
+from hal.servo_model import ServoMount
+from hal.servos import servo_model
+from robots import mjcf
+from robots.checks import Checks, whole_steps
+from robots.mirror import mirror_map
+from robots.records import Bus, Drive, Fall, Foot, Imu, JointEntry, RobotFile, with_defaults
+
+FOLDER = Path(__file__).parent
+FILE = "robot.toml"
+
+
+@dataclass(frozen=True, eq=False)
+class RobotDescription:
+    """Everything about a robot but its state. Arrays are (n,) in MJCF order.
+
+    Attributes:
+        folder: Where its files are.
+        name: Its name.
+        title: Its name for people.
+        sources: Where its numbers come from.
+        model_path: Its MJCF.
+        timestep: Physics step of the MJCF, s.
+        rate_hz: Rate of the control loop, Hz.
+        base: Body with the free joint.
+        torso: Body whose z axis is the robot's "up".
+        joints: The joints.
+        axes: (n, 3) joint axes in the base frame, zero pose.
+        servos: The servo of each joint; None for ideal torque joints.
+        drive: What moves the joints, and how late.
+        buses: The servo buses.
+        feet: The feet, left before right by custom.
+        contacts: The contact sensors, grouped by foot.
+        imu: The IMU, or None.
+        poses: Pose name to (n,) rad.
+        stance: (n,) pose to stand in, rad.
+        crouch: (n,) pose to crouch in, rad, or None.
+        stop: What "stop" means.
+        fall: When the robot counts as fallen.
+    """
+
+    folder: Path
+    name: str
+    title: str
+    sources: tuple[str, ...]
+    model_path: Path
+    timestep: float
+    rate_hz: float
+    base: str
+    torso: str
+    joints: Joints
+    axes: Array
+    servos: tuple[ServoMount | None, ...]
+    drive: Drive
+    buses: tuple[Bus, ...]
+    feet: tuple[Foot, ...]
+    contacts: ContactSensors
+    imu: Imu | None
+    poses: dict[str, Array]
+    stance: Array
+    crouch: Array | None
+    stop: StopPolicy
+    fall: Fall
+
+    @cached_property
+    def mirror(self) -> Mirror:
+        """The map between left and right.
+
+        Raises:
+            ConfigError: The robot is not symmetric.
+        """
+        return mirror_map(self.joints.names, self.axes)
+
+    def spec(self) -> mujoco.MjSpec:
+        """Return the MJCF, parsed afresh and without actuators: change it as you like."""
+        return mjcf.parse_mjcf(self.model_path)
+
+    def gaits(self) -> dict[str, Path]:
+        """Return the robot's gaits: name to file."""
+        return {path.stem: path for path in sorted((self.folder / "gaits").glob("*.toml"))}
+
+    def physics_steps(self, rate_hz: float | None = None) -> int:
+        """Return the physics steps in one tick of `rate_hz` (by default the robot's own).
+
+        Raises:
+            UsageError: The period is not a whole number of physics steps.
+        """
+        rate = self.rate_hz if rate_hz is None else rate_hz
+        steps = whole_steps(rate, self.timestep) if rate > 0.0 else None
+        if steps is None:
+            raise UsageError(
+                f"a rate of {rate:g} Hz is no whole number of physics steps of "
+                f"{1e3 * self.timestep:g} ms; {self.rate_hz:g} Hz is"
+            )
+        return steps
+
+
+def robot_names() -> tuple[str, ...]:
+    """Return the names of the robots that come with Windup.
+
+    >>> {"human", "op3"} <= set(robot_names())
+    True
+    """
+    return tuple(sorted(path.parent.name for path in FOLDER.glob(f"*/{FILE}")))
+
+
+def load_robot(name_or_path: str | Path) -> RobotDescription:
+    """Return a robot by the name of a folder in `robots`, or by the path of your own folder.
+
+    Raises:
+        UnknownNameError: There is neither such a robot nor such a folder.
+        ConfigError: A file of the robot says something that cannot be.
+    """
+    folder = _folder(name_or_path)
+    path = folder / FILE
+    robot = load_toml(path, RobotFile)
+    robot = replace(robot, joint=tuple(with_defaults(joint, robot.drive) for joint in robot.joint))
+    model = mjcf.compile_mjcf(folder / robot.model)
+    Checks(path, robot, model).run()
+    return _describe(folder, robot, model)
+
+
+def _folder(name_or_path: str | Path) -> Path:
+    if str(name_or_path) in robot_names():
+        return FOLDER / name_or_path
+    folder = Path(name_or_path)
+    if folder.is_dir():
+        return folder
+    raise UnknownNameError("robot", str(name_or_path), robot_names())
+
+
+def _describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDescription:
+    entries = {entry.name: entry for entry in robot.joint}
+    ordered = [entries[name] for name in mjcf.hinge_names(model)]
+    servos = tuple(_mount(entry) for entry in ordered)
+    pairs = zip(ordered, servos, strict=True)
+    joints = Joints(tuple(_joint(entry, servo, robot.drive) for entry, servo in pairs))
+    poses = {name: _frozen(joints.array(angles)) for name, angles in robot.poses.items()}
+    return RobotDescription(
+        folder=folder,
+        name=robot.name,
+        title=robot.title,
+        sources=robot.sources,
+        model_path=folder / robot.model,
+        timestep=model.opt.timestep,
+        rate_hz=robot.rate_hz,
+        base=robot.base,
+        torso=robot.torso,
+        joints=joints,
+        axes=_frozen(mjcf.hinge_axes(model)),
+        servos=servos,
+        drive=robot.drive,
+        buses=robot.bus,
+        feet=robot.foot,
+        contacts=_contacts(robot),
+        imu=robot.imu,
+        poses=poses,
+        stance=poses[robot.stance],
+        crouch=poses[robot.crouch] if robot.crouch else None,
+        stop=robot.stop,
+        fall=robot.fall,
+    )
+
+
+def _mount(entry: JointEntry) -> ServoMount | None:
+    """Return the servo of a joint; `Checks` has seen that it is all there."""
+    if entry.servo is None or entry.bus is None or entry.id is None:
+        return None
+    model = servo_model(entry.servo)
+    zero = model.counts_per_rev // 2 if entry.zero is None else entry.zero
+    return ServoMount(model, entry.bus, entry.id, entry.sign, zero, entry.ratio)
+
+
+def _joint(entry: JointEntry, servo: ServoMount | None, drive: Drive) -> Joint:
+    """Return a joint; what its entry leaves open is what its servo can do."""
+    torque = velocity = float("inf")
+    if servo is not None:
+        motor = servo.model.motor(drive.supply)
+        torque = motor.stall_torque * servo.ratio
+        velocity = motor.no_load_speed / servo.ratio
+    return Joint(
+        name=entry.name,
+        lower=entry.lower,
+        upper=entry.upper,
+        stiffness=entry.stiffness or 0.0,
+        damping=entry.damping or 0.0,
+        torque=torque if entry.torque is None else entry.torque,
+        velocity=velocity if entry.velocity is None else entry.velocity,
+    )
+
+
+def _contacts(robot: RobotFile) -> ContactSensors:
+    feet = {foot.name: foot.sensors for foot in robot.foot}
+    names = tuple(name for sensors in feet.values() for name in sensors)
+    return ContactSensors(names, feet, robot.contact_threshold)
+
+
+def _frozen(values: Array) -> Array:
+    values.setflags(write=False)
+    return values

@@ -1,0 +1,72 @@
+"""The MJCF side of a robot: parsed and compiled, with errors of one line, and asked for names."""
+
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from hal.errors import ConfigError
+from hal.joints import Array
+
+OBJECTS = {
+    "body": mujoco.mjtObj.mjOBJ_BODY,
+    "joint": mujoco.mjtObj.mjOBJ_JOINT,
+    "site": mujoco.mjtObj.mjOBJ_SITE,
+    "sensor": mujoco.mjtObj.mjOBJ_SENSOR,
+}
+HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
+FREE = int(mujoco.mjtJoint.mjJNT_FREE)
+
+
+def parse_mjcf(path: Path) -> mujoco.MjSpec:
+    """Return the MJCF at `path`, parsed afresh.
+
+    Raises:
+        ConfigError: The file is missing or not MJCF.
+    """
+    if not path.is_file():
+        raise ConfigError(f"{path}: cannot be read: no such file")
+    try:
+        return mujoco.MjSpec.from_file(str(path))
+    except ValueError as error:
+        raise ConfigError(f"{path}: {_one_line(error)}") from None
+
+
+def compile_mjcf(path: Path) -> mujoco.MjModel:
+    """Return the MJCF at `path` as a model.
+
+    Raises:
+        ConfigError: The file is missing, or MuJoCo refuses it.
+    """
+    try:
+        return parse_mjcf(path).compile()
+    except ValueError as error:
+        raise ConfigError(f"{path}: {_one_line(error)}") from None
+
+
+def names(model: mujoco.MjModel, kind: str) -> tuple[str, ...]:
+    """Return the names of all objects of a `kind` of `OBJECTS`, in MJCF order."""
+    count = {
+        "body": model.nbody,
+        "joint": model.njnt,
+        "site": model.nsite,
+        "sensor": model.nsensor,
+    }
+    found = (mujoco.mj_id2name(model, OBJECTS[kind], index) for index in range(count[kind]))
+    return tuple(name for name in found if name)
+
+
+def hinge_names(model: mujoco.MjModel) -> tuple[str, ...]:
+    """Return the names of all hinges, in MJCF order; '' where one has none."""
+    return tuple(model.joint(j).name for j in np.flatnonzero(model.jnt_type == HINGE))
+
+
+def hinge_axes(model: mujoco.MjModel) -> Array:
+    """Return the hinges' unit axes (n, 3) in the world, in the zero pose."""
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    return data.xaxis[model.jnt_type == HINGE].copy()
+
+
+def _one_line(error: Exception) -> str:
+    return "; ".join(line.strip() for line in str(error).splitlines() if line.strip())

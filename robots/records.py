@@ -1,0 +1,144 @@
+"""What `robot.toml` may say: one record a table, strict, SI units."""
+
+from typing import Annotated, Literal
+
+from msgspec import Meta
+from msgspec.structs import replace
+
+from hal.config import Record
+from hal.guard import StopPolicy
+
+Positive = Annotated[float, Meta(gt=0.0)]
+NotNegative = Annotated[float, Meta(ge=0.0)]
+
+
+class Drive(Record, frozen=True):
+    """What moves the joints.
+
+    Attributes:
+        kind: "servo" (position servos on a bus) or "torque" (ideal joints that obey the torque
+            law at every physics step).
+        supply: Voltage of the servos, V.
+        command_delay: From a write to the joint acting on it, s.
+        sensor_delay: From the joint moving to its state being read, s.
+        servo: Servo of the joints that name none.
+        bus: Bus of the joints that name none.
+        stiffness: Of the joints that state none, N m/rad.
+        damping: Of the joints that state none, N m s/rad.
+    """
+
+    kind: Literal["servo", "torque"]
+    supply: Positive = 12.0
+    command_delay: NotNegative = 0.0
+    sensor_delay: NotNegative = 0.0
+    servo: str | None = None
+    bus: str | None = None
+    stiffness: NotNegative | None = None
+    damping: NotNegative | None = None
+
+
+class Bus(Record, frozen=True):
+    """A wire full of servos; its port is named when the robot is opened."""
+
+    name: str
+    protocol: Literal["dynamixel1", "dynamixel2", "feetech"]
+    baud: Annotated[int, Meta(gt=0)]
+
+
+class JointEntry(Record, frozen=True):
+    """One joint: limits rad, gains N m/rad and N m s/rad, and the servo that drives it.
+
+    What `servo`, `bus`, `stiffness` and `damping` leave out, the drive's defaults say.
+
+    Attributes:
+        torque: Largest torque, N m; by default the servo's at stall, or none.
+        velocity: Largest velocity, rad/s; by default the servo's without load, or none.
+        zero: Counts of the servo at joint angle 0; by default half a turn.
+        ratio: Turns of the servo for one of the joint.
+    """
+
+    name: str
+    lower: float
+    upper: float
+    stiffness: NotNegative | None = None
+    damping: NotNegative | None = None
+    torque: Positive | None = None
+    velocity: Positive | None = None
+    servo: str | None = None
+    bus: str | None = None
+    id: Annotated[int, Meta(ge=0, le=253)] | None = None
+    sign: Literal[1, -1] = 1
+    zero: int | None = None
+    ratio: Positive = 1.0
+
+
+class Foot(Record, frozen=True):
+    """One foot: its body, the site at the centre of its sole, its touch sensors in the MJCF."""
+
+    name: str
+    body: str
+    site: str
+    sensors: tuple[str, ...]
+
+
+class Imu(Record, frozen=True):
+    """The IMU: the site it sits at and the names of its sensors in the MJCF."""
+
+    site: str
+    gyro: str
+    accelerometer: str
+    orientation: str | None = None
+
+
+class Fall(Record, frozen=True):
+    """When the robot counts as fallen: base lower than `height` m or torso past `tilt` rad."""
+
+    height: Positive
+    tilt: Positive
+
+
+INHERITED = ("servo", "bus", "stiffness", "damping")
+
+
+def with_defaults(entry: JointEntry, drive: Drive) -> JointEntry:
+    """Return the joint with what it leaves out taken from the drive."""
+    missing = [key for key in INHERITED if getattr(entry, key) is None]
+    return replace(entry, **{key: getattr(drive, key) for key in missing})
+
+
+class RobotFile(Record, frozen=True):
+    """A whole `robot.toml`.
+
+    Attributes:
+        name: The robot's name, as its folder.
+        title: Its name for people.
+        sources: Where the numbers come from.
+        model: The MJCF beside this file.
+        rate_hz: Rate of the control loop, Hz.
+        base: Body with the free joint.
+        torso: Body whose z axis is the robot's "up".
+        stop: What "stop" means: hold, crouch, or limp.
+        stance: Name of the pose to stand in.
+        crouch: Name of the pose to crouch in.
+        contact_threshold: Force above which a contact sensor counts as pressed, N.
+        poses: Pose name to joint name to rad; joints not named are at 0.
+    """
+
+    name: str
+    title: str
+    rate_hz: Positive
+    base: str
+    torso: str
+    stance: str
+    drive: Drive
+    joint: tuple[JointEntry, ...]
+    fall: Fall
+    poses: dict[str, dict[str, float]]
+    stop: StopPolicy = "limp"
+    model: str = "model.xml"
+    crouch: str | None = None
+    sources: tuple[str, ...] = ()
+    bus: tuple[Bus, ...] = ()
+    foot: tuple[Foot, ...] = ()
+    contact_threshold: Positive = 1.0
+    imu: Imu | None = None
