@@ -1,0 +1,1 @@
+"""The MuJoCo twin of a robot, as a backend and as a predictor."""

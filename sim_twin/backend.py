@@ -1,0 +1,105 @@
+"""The twin as a backend: the same records, and a clock that steps physics."""
+
+import time as wall
+
+import numpy as np
+
+from hal.command import JointCommand
+from hal.joints import Joints, Mask
+from hal.observation import Observation
+from sim_twin.sensors import Sensors
+from sim_twin.servo_motor import ServoDrive, TorqueDrive
+from sim_twin.twin import Twin
+
+
+class TwinClock:
+    """Simulated time: waiting steps the physics, as fast as it can or paced by the wall.
+
+    Args:
+        twin: The twin.
+        paced: Let no simulated second pass faster than a real one.
+    """
+
+    def __init__(self, twin: Twin, *, paced: bool = False) -> None:
+        self.twin, self.paced = twin, paced
+        self._data, self._timestep = twin.data, twin.timestep
+        self._started: float | None = None
+
+    def now(self) -> float:
+        """Return the simulated time, s."""
+        return self._data.time
+
+    def wait_until(self, time: float) -> None:
+        """Step the physics until it is `time` s, and the wall too where the clock is paced."""
+        steps = round((time - self._data.time) / self._timestep)
+        if steps > 0:
+            self.twin.step(steps)
+        if self.paced:
+            self._pace()
+
+    def _pace(self) -> None:
+        if self._started is None:
+            self._started = wall.perf_counter() - self._data.time
+        ahead = self._started + self._data.time - wall.perf_counter()
+        if ahead > 0.0:
+            wall.sleep(ahead)
+
+
+class TwinBackend:
+    """A twin behind the joint-command interface.
+
+    Args:
+        twin: The twin.
+        paced: See `TwinClock`.
+        sensor_delay: Age of everything that is read, s; the robot's own by default.
+        true_base: Put the true base state into observations.
+    """
+
+    def __init__(
+        self,
+        twin: Twin,
+        *,
+        paced: bool = False,
+        sensor_delay: float | None = None,
+        true_base: bool = True,
+    ) -> None:
+        self.twin = twin
+        self.clock = TwinClock(twin, paced=paced)
+        self.joints: Joints = twin.robot.joints
+        delay = twin.robot.drive.sensor_delay if sensor_delay is None else sensor_delay
+        self.sensors = Sensors(twin, delay=delay, true_base=true_base)
+        self._drive: ServoDrive | TorqueDrive = (
+            ServoDrive(twin.model, twin.robot, twin.supply)
+            if twin.robot.drive.kind == "servo"
+            else TorqueDrive(twin.model, twin.robot)
+        )
+        self._ctrl = twin.data.ctrl
+
+    def connect(self) -> None:
+        """Nothing to open."""
+
+    def configure(self) -> None:
+        """Nothing to assert: the twin is built from the same file."""
+
+    def disconnect(self) -> None:
+        """Nothing to close."""
+
+    def request(self) -> None:
+        """Nothing to ask for: the twin answers at once."""
+
+    def collect(self) -> Observation:
+        """Return the present state, as the sensors see it."""
+        return self.sensors.read()
+
+    def read(self) -> Observation:
+        """Return the present state, as the sensors see it."""
+        return self.sensors.read()
+
+    def write(self, command: JointCommand) -> JointCommand:
+        """Send a command; it acts after the twin's delay. Returns what the joints really got."""
+        return self._drive.write(command, self._ctrl)
+
+    def set_torque(self, on: bool) -> Mask:
+        """Switch all actuators; (n,) bool read back."""
+        self.twin.powered = on
+        return np.full(len(self.joints), self.twin.powered)

@@ -1,0 +1,44 @@
+"""Pushes: forces on a body for a while."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hal.joints import Array
+
+
+@dataclass(frozen=True)
+class Push:
+    """A horizontal force on one body.
+
+    Attributes:
+        body: Name of the body.
+        force: (3,) N, in the world.
+        start: When it begins, s.
+        duration: How long it lasts, s.
+        height: Height of the point of application above the body's frame, m; None: at its CoM.
+    """
+
+    body: str
+    force: Array
+    start: float
+    duration: float
+    height: float | None = None
+
+    @classmethod
+    def impulse(
+        cls,
+        body: str,
+        impulse: float,
+        direction: float,
+        start: float,
+        duration: float = 0.1,
+        height: float | None = None,
+    ) -> "Push":
+        """Return the push of `impulse` N s toward `direction` rad (0 forward, positive left)."""
+        force = impulse / duration * np.array([np.cos(direction), np.sin(direction), 0.0])
+        return cls(body, force, start, duration, height)
+
+    def active(self, time: float) -> bool:
+        """Return True while the push lasts, at `time` s."""
+        return self.start <= time < self.start + self.duration - 1e-9

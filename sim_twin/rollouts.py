@@ -1,0 +1,213 @@
+"""The predictor: plays a batch policy forward on copies of the twin, on threads.
+
+Rollouts start from an observation, never from the live twin, so the same code runs on a robot. The
+observation is as old as the sensors' delay; the copies therefore carry the whole delay, sensors and
+command, between command and joint, and the policy in them sees no delay at all: both give the same
+commands at the same instants of the observed time.
+"""
+
+import time as wall
+from math import ceil
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+from mujoco.batch import Batch
+
+from hal.controller import BatchPolicy, Outcomes, PolicyInput, RolloutStart, Stopwatch
+from hal.joints import Array, Mask
+from robots.description import RobotDescription
+from sim_twin.world import build_model
+
+STAGE = int(mujoco.mjtStage.mjSTAGE_VEL)
+
+
+class RolloutPredictor:
+    """Plays rollouts of one robot.
+
+    Args:
+        robot: The robot.
+        delay: From a state being sensed to its command acting, s; the robot's own by default.
+        supply: Voltage of the servos, V; the robot's own by default.
+        threads: Threads that share the rollouts.
+    """
+
+    def __init__(
+        self,
+        robot: RobotDescription,
+        *,
+        delay: float | None = None,
+        supply: float | None = None,
+        threads: int = 1,
+    ) -> None:
+        self.robot = robot
+        if delay is None:
+            delay = robot.drive.command_delay + robot.drive.sensor_delay
+        self.model = build_model(robot, delay=delay, supply=supply, bare=True)
+        self.threads = threads
+        self.stopwatch = Stopwatch()
+        self._worlds: dict[int, _Worlds] = {}
+
+    def predict(self, start: RolloutStart, policy: BatchPolicy, horizon: float) -> Outcomes:
+        """Return the outcomes of `policy.size` rollouts of at most `horizon` s."""
+        began = wall.perf_counter()
+        if policy.size not in self._worlds:
+            self._worlds[policy.size] = _Worlds(
+                self.robot, self.model, policy.size, min(self.threads, policy.size)
+            )
+        outcomes = self._worlds[policy.size].play(start, policy, horizon)
+        self.stopwatch.add(policy.size, wall.perf_counter() - began)
+        return outcomes
+
+
+class _Worlds:
+    """A batch of m worlds."""
+
+    def __init__(
+        self, robot: RobotDescription, model: mujoco.MjModel, size: int, threads: int
+    ) -> None:
+        self.robot, self.model, self.size = robot, model, size
+        self.batch = Batch(model, size, nthread=threads, persistent=True)
+        bind = self.batch.bind
+        self.qpos, self.qvel = bind("qpos"), bind("qvel")
+        self.ctrl, self.time, self.history = bind("ctrl"), bind("time"), bind("history")
+        self.sensors, self.com, self.sites = (
+            bind("sensordata"),
+            bind("subtree_com"),
+            bind("site_xpos"),
+        )
+        self.xmat = bind("xmat")
+        self.base = model.body(robot.base).id
+        self.torso = model.body(robot.torso).id
+        self.soles = np.array([model.site(foot.site).id for foot in robot.feet])
+        self.touch = np.array([model.sensor(name).adr[0] for name in robot.contacts.names])
+        velocity = model.sensor("com_velocity").adr[0]
+        self.com_velocity = slice(velocity, velocity + 3)
+        self.width = model.nu // len(robot.joints)
+        self.flight = _Flight(model)
+        self.ids = np.arange(size, dtype=np.int32)
+        scratch = mujoco.MjData(model)
+        spec = mujoco.mjtState.mjSTATE_INTEGRATION
+        self.fresh = np.empty(mujoco.mj_stateSize(model, spec))
+        mujoco.mj_getState(model, scratch, self.fresh, spec)
+
+    def play(self, start: RolloutStart, policy: BatchPolicy, horizon: float) -> Outcomes:
+        """Play `policy` from `start`; see `RolloutPredictor.predict`."""
+        self._place(start)
+        substeps = round(start.dt / self.model.opt.timestep)
+        view = self._first_view(start)
+        result = self._empty()
+        alive = np.ones(self.size, dtype=bool)
+        ids: npt.NDArray[np.int32] | None = None
+        for tick in range(ceil(horizon / start.dt)):
+            goals = policy.step(view, start.dt)
+            if tick:
+                ended = alive & (policy.done | self._fallen())
+                if ended.any():
+                    self._capture(result, ended, tick * start.dt, policy.done)
+                    alive &= ~ended
+                    if not alive.any():
+                        return result
+                    ids = self.ids[alive]
+            self.ctrl[:, :: self.width] = goals
+            self.batch.step(ids, nstep=substeps, stage=STAGE)
+            if not tick:
+                view = self._view()
+            view.contacts = self.sensors[:, self.touch]
+        self._capture(result, alive, horizon, policy.done)
+        return result
+
+    def _place(self, start: RolloutStart) -> None:
+        """Put every world into the observed state, with the commands that are in flight."""
+        observation = start.observation
+        base, joints = observation.base, observation.joints
+        assert base is not None, "the balancer has checked"
+        self.batch.state[:] = self.fresh
+        self.qpos[:, :3] = base.position
+        self.qpos[:, 3:7] = base.orientation
+        self.qpos[:, 7:] = joints.position
+        self.qvel[:, :3] = base.linear_velocity
+        self.qvel[:, 3:6] = base.angular_velocity
+        self.qvel[:, 6:] = joints.velocity
+        if self.model.nhistory:
+            self.history[:] = self.flight.history(start)
+
+    def _first_view(self, start: RolloutStart) -> PolicyInput:
+        """Return what the policy sees before the first step: the observation itself."""
+        view = self._view()
+        view.contacts = np.repeat(start.observation.contacts[None], self.size, axis=0)
+        return view
+
+    def _view(self) -> PolicyInput:
+        return PolicyInput(
+            self.qpos[:, 7:],
+            self.qvel[:, 6:],
+            self.qpos[:, 3:7],
+            self.qvel[:, 3:6],
+            self.sensors[:, self.touch],
+        )
+
+    def _fallen(self) -> Mask:
+        fall = self.robot.fall
+        low = self.qpos[:, 2] < fall.height
+        return low | ~(self.xmat[:, self.torso, 8] > np.cos(fall.tilt))
+
+    def _empty(self) -> Outcomes:
+        m, n = self.size, len(self.robot.joints)
+        return Outcomes(
+            duration=np.zeros(m),
+            base_position=np.zeros((m, 3)),
+            base_orientation=np.zeros((m, 4)),
+            base_velocity=np.zeros((m, 6)),
+            joint_position=np.zeros((m, n)),
+            com=np.zeros((m, 3)),
+            com_velocity=np.zeros((m, 3)),
+            feet=np.zeros((m, len(self.soles), 3)),
+            torso=np.zeros((m, 3)),
+            contacts=np.zeros((m, len(self.touch))),
+            fell=np.zeros(m, dtype=bool),
+        )
+
+    def _capture(self, result: Outcomes, rows: Mask, time: float, done: Mask) -> None:
+        """Copy the state of the worlds `rows` into `result`."""
+        result.duration[rows] = time
+        result.base_position[rows] = self.qpos[rows, :3]
+        result.base_orientation[rows] = self.qpos[rows, 3:7]
+        result.base_velocity[rows] = self.qvel[rows, :6]
+        result.joint_position[rows] = self.qpos[rows, 7:]
+        result.com[rows] = self.com[rows, self.base]
+        result.com_velocity[rows] = self.sensors[rows, self.com_velocity]
+        result.feet[rows] = self.sites[rows][:, self.soles]
+        result.torso[rows] = self.xmat[rows, self.torso, 2::3]
+        result.contacts[rows] = self.sensors[rows][:, self.touch]
+        result.fell[rows] = ~done[rows]
+
+
+class _Flight:
+    """Where the commands in flight stand in MuJoCo's history rows.
+
+    A row is, for each actuator, [user, cursor, n times, n values of each input]; only the values
+    change here, since every rollout begins at time 0.
+    """
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        self.model = model
+        self.row = mujoco.MjData(model).history.copy()
+        samples = model.actuator_history[:, 0] if model.nhistory else np.zeros(model.na)
+        self.samples = int(samples[0]) if len(samples) else 0
+        width = model.nu // len(model.actuator_historyadr)
+        first = model.actuator_historyadr + 2 + self.samples
+        # (samples, n): the place of each sample's position input
+        self.places = first[None, :] + width * np.arange(self.samples)[:, None]
+
+    def history(self, start: RolloutStart) -> Array:
+        """Return a history row that holds the commands of `start`, held between ticks."""
+        row = self.row.copy()
+        sent = start.in_flight
+        if not len(sent):
+            sent = start.observation.joints.position[None]
+        step = self.model.opt.timestep
+        ages = np.arange(self.samples, 0, -1) * step
+        ticks_ago = np.ceil(ages / start.dt - 1e-9).astype(int)
+        row[self.places] = sent[np.maximum(len(sent) - ticks_ago, 0)]
+        return row

@@ -1,0 +1,106 @@
+"""What the twin's sensors say: encoder counts, contact forces, the IMU, and how late they are."""
+
+from collections import deque
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from hal.joints import Array
+from hal.observation import BaseState, ImuState, JointState, Observation
+from sim_twin.twin import Twin
+
+AMBIENT = 25.0
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """The raw state at one instant; see MuJoCo for the layouts."""
+
+    time: float
+    qpos: Array
+    qvel: Array
+    force: Array
+    sensors: Array
+
+
+class Sensors:
+    """Reads a twin as its sensors would.
+
+    Args:
+        twin: The twin.
+        delay: Age of everything that is read, s.
+        true_base: Put the true base state into observations.
+    """
+
+    def __init__(self, twin: Twin, *, delay: float = 0.0, true_base: bool = True) -> None:
+        self.twin, self.delay, self.true_base = twin, delay, true_base
+        robot, model = twin.robot, twin.model
+        n = len(robot.joints)
+        self._counts = np.array(
+            [servo.model.counts_per_rev / (2.0 * pi) if servo else 0.0 for servo in robot.servos]
+        )
+        self._encoders = bool(self._counts.any())
+        self._contacts = _adjacent([model.sensor(name).adr[0] for name in robot.contacts.names])
+        self._imu = robot.imu
+        if robot.imu is not None:
+            self._gyro = _place(model.sensor(robot.imu.gyro).adr[0], 3)
+            self._accelerometer = _place(model.sensor(robot.imu.accelerometer).adr[0], 3)
+            name = robot.imu.orientation
+            self._orientation = None if name is None else _place(model.sensor(name).adr[0], 4)
+        self._voltage = _constant(n, twin.supply)
+        self._temperature = _constant(n, AMBIENT)
+        self._age = _constant(n, delay)
+        data = twin.data
+        self._views = (data.qpos, data.qvel, data.actuator_force, data.sensordata)
+        self._line: deque[Snapshot] = deque()
+        if delay > 0.0:
+            self._line = deque(maxlen=round(delay / twin.timestep) + 1)
+            twin.on_step = self._record
+
+    def read(self) -> Observation:
+        """Return the observation that is available now."""
+        snapshot = self._line[0] if self._line else self._snapshot()
+        qpos, qvel, sensors = snapshot.qpos, snapshot.qvel, snapshot.sensors
+        position = qpos[7:]
+        if self._encoders:
+            position = np.rint(position * self._counts)
+            position /= self._counts
+        joints = JointState(
+            position, qvel[6:], snapshot.force, self._voltage, self._temperature, self._age
+        )
+        base = BaseState(qpos[:3], qpos[3:7], qvel[:3], qvel[3:6]) if self.true_base else None
+        return Observation(
+            snapshot.time, joints, self._read_imu(sensors), sensors[self._contacts], base
+        )
+
+    def _read_imu(self, sensors: Array) -> ImuState | None:
+        if self._imu is None:
+            return None
+        orientation = None if self._orientation is None else sensors[self._orientation]
+        return ImuState(orientation, sensors[self._gyro], sensors[self._accelerometer], self.delay)
+
+    def _snapshot(self) -> Snapshot:
+        qpos, qvel, force, sensors = self._views
+        return Snapshot(self.twin.time, qpos.copy(), qvel.copy(), force.copy(), sensors.copy())
+
+    def _record(self) -> None:
+        self._line.append(self._snapshot())
+
+
+def _place(start: int, size: int) -> slice:
+    return slice(int(start), int(start) + size)
+
+
+def _adjacent(addresses: list[int]) -> slice | Array:
+    """Return a slice where the addresses follow each other (a view), else an index array."""
+    first = int(addresses[0]) if addresses else 0
+    if [int(a) for a in addresses] == list(range(first, first + len(addresses))):
+        return slice(first, first + len(addresses))
+    return np.array(addresses, dtype=np.intp)
+
+
+def _constant(n: int, value: float) -> Array:
+    array = np.full(n, value)
+    array.setflags(write=False)
+    return array

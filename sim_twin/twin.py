@@ -1,0 +1,172 @@
+"""The MuJoCo twin of a robot: a world with one robot on a floor."""
+
+from collections.abc import Callable
+from math import radians
+
+import mujoco
+import numpy as np
+
+from hal.errors import DivergedError, UnknownNameError
+from hal.joints import Array
+from hal.observation import BaseState
+from robots.description import RobotDescription
+from sim_twin.push import Push
+from sim_twin.world import build_model
+
+STATE = mujoco.mjtState.mjSTATE_INTEGRATION
+
+
+class Twin:
+    """A simulated robot: physics, pushes, and its complete state.
+
+    Args:
+        robot: The robot.
+        delay: From a write to the joint acting on it, s; the robot's own by default.
+        supply: Voltage of the servos, V; the robot's own by default.
+
+    Attributes:
+        model: MuJoCo's model, with actuators.
+        data: MuJoCo's state.
+        up: (3,) unit vector along the torso, a live view.
+        on_step: Called after every physics step, where something has to look that closely.
+    """
+
+    def __init__(
+        self, robot: RobotDescription, *, delay: float | None = None, supply: float | None = None
+    ) -> None:
+        self.robot = robot
+        self.supply = robot.drive.supply if supply is None else supply
+        self.delay = robot.drive.command_delay if delay is None else delay
+        self.model = build_model(robot, delay=self.delay, supply=self.supply)
+        self.data = mujoco.MjData(self.model)
+        self.timestep = float(self.model.opt.timestep)
+        self.on_step: Callable[[], None] | None = None
+        self._pushes: list[Push] = []
+        self._torso = self.model.body(robot.torso).id
+        self.up = self.data.xmat[self._torso, 2::3]
+        self._qpos = self.data.qpos
+        self.reset()
+
+    def reset(self, pose: Array | None = None, *, noise: float = 0.0, seed: int = 0) -> None:
+        """Put the robot at rest on the floor in `pose` (n,) rad, its stance by default.
+
+        Args:
+            pose: Joint positions, rad.
+            noise: Standard deviation of noise on every joint position, degrees.
+            seed: Seed of that noise.
+        """
+        pose = self.robot.stance if pose is None else pose
+        jitter = np.random.default_rng(seed).normal(0.0, 1.0, len(pose)) * radians(noise)
+        mujoco.mj_resetData(self.model, self.data)
+        self._pushes.clear()
+        self.data.qpos[7:] = pose + jitter
+        self._drop_to_floor()
+        self.set_goals(pose)
+        mujoco.mj_forward(self.model, self.data)
+
+    def set_goals(self, pose: Array) -> None:
+        """Make `pose` (n,) rad the target now and in everything still in flight."""
+        width = self.model.nu // len(pose)
+        ctrl = np.zeros((len(pose), width))
+        ctrl[:, 0] = pose
+        self.data.ctrl[:] = ctrl.ravel()
+        if self.model.nhistory:
+            for index, row in enumerate(ctrl):
+                samples = int(self.model.actuator_history[index, 0])
+                values = np.repeat(row[None], samples, axis=0)
+                mujoco.mj_initCtrlHistory(self.model, self.data, index, None, values)
+
+    @property
+    def time(self) -> float:
+        """Simulated time, s."""
+        return float(self.data.time)
+
+    @property
+    def base(self) -> BaseState:
+        """The true state of the floating base."""
+        qpos, qvel = self.data.qpos, self.data.qvel
+        return BaseState(qpos[:3].copy(), qpos[3:7].copy(), qvel[:3].copy(), qvel[3:6].copy())
+
+    @property
+    def fallen(self) -> bool:
+        """True when the base is low or the torso is tilted, as the robot's file says."""
+        fall = self.robot.fall
+        return bool(self._qpos[2] < fall.height or self.up[2] < np.cos(fall.tilt))
+
+    @property
+    def powered(self) -> bool:
+        """False when the servos are switched off and the joints are limp."""
+        return not self.model.opt.disableactuator
+
+    @powered.setter
+    def powered(self, on: bool) -> None:
+        self.model.opt.disableactuator = 0 if on else 1
+
+    def push(self, push: Push) -> None:
+        """Apply a push when its time comes.
+
+        Raises:
+            UnknownNameError: The robot has no such body.
+        """
+        names = [self.model.body(i).name for i in range(1, self.model.nbody)]
+        if push.body not in names:
+            raise UnknownNameError("body", push.body, names)
+        self._pushes.append(push)
+
+    def step(self, steps: int) -> None:
+        """Advance the physics by `steps` of its time steps.
+
+        Raises:
+            DivergedError: The physics left the numbers.
+        """
+        if self._pushes or self.on_step is not None:
+            for _ in range(steps):
+                self._apply_pushes()
+                mujoco.mj_step(self.model, self.data)
+                if self.on_step is not None:
+                    self.on_step()
+        else:
+            mujoco.mj_step(self.model, self.data, steps)
+        if not abs(self._qpos.sum()) < 1e6:
+            raise self._diverged()
+
+    def save(self) -> Array:
+        """Return the complete physical state, with everything in flight."""
+        state = np.empty(mujoco.mj_stateSize(self.model, STATE))
+        mujoco.mj_getState(self.model, self.data, state, STATE)
+        return state
+
+    def restore(self, state: Array) -> None:
+        """Go back to a state from `save`."""
+        mujoco.mj_setState(self.model, self.data, state, STATE)
+        mujoco.mj_forward(self.model, self.data)
+
+    def _drop_to_floor(self) -> None:
+        """Set the base height so that the lowest foot geom touches the floor."""
+        self.data.qpos[3:7] = [1.0, 0.0, 0.0, 0.0]
+        self.data.qpos[2] = 1.0
+        mujoco.mj_kinematics(self.model, self.data)
+        soles = [self.data.site(foot.site).xpos[2] for foot in self.robot.feet]
+        self.data.qpos[2] -= min(soles)
+
+    def _apply_pushes(self) -> None:
+        self.data.xfrc_applied[:] = 0.0
+        for push in self._pushes:
+            if push.active(self.time):
+                body = self.model.body(push.body).id
+                self.data.xfrc_applied[body, :3] += push.force
+                if push.height is not None:
+                    point = self.data.xpos[body] + [0.0, 0.0, push.height]
+                    arm = point - self.data.xipos[body]
+                    self.data.xfrc_applied[body, 3:] += np.cross(arm, push.force)
+        if all(self.time >= push.start + push.duration for push in self._pushes):
+            self._pushes.clear()
+            self.data.xfrc_applied[:] = 0.0
+
+    def _diverged(self) -> DivergedError:
+        worst = int(np.argmax(np.nan_to_num(np.abs(self.data.qvel), nan=np.inf)))
+        joint = "the base" if worst < 6 else f"joint {self.robot.joints.names[worst - 6]!r}"
+        return DivergedError(
+            f"the twin diverged at {self.time:.3f} s, first at {joint}; "
+            "lower its stiffness or the physics time step"
+        )
