@@ -1,0 +1,1 @@
+"""Controllers: observations in, joint commands out."""

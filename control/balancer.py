@@ -1,0 +1,171 @@
+"""Discrete limit-cycle balance: once a step, choose the scalings that end it well.
+
+Laszlo 1996, Fig. 3.20: at the start of each step the model of that step is sampled with rollouts,
+inverted for the targets, and its scalings are applied to the pose graph of the whole step. Without
+a planner the same controller is the open loop.
+"""
+
+from collections import deque
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from control.body import Body
+from control.course import Course
+from control.gait import Gait
+from control.planner import Planner, StepRequest
+from control.policy import policy_input
+from control.pose_tracker import PoseTracker
+from control.regulation import RegulationVariable
+from control.speed import SpeedControl
+from control.step_record import StepRecord, StepStart
+from control.torso_servo import TorsoServo
+from hal.command import JointCommand
+from hal.contacts import ContactSensors
+from hal.controller import RolloutStart
+from hal.errors import StateMissingError
+from hal.joints import Array, Joints
+from hal.observation import Observation
+
+IN_FLIGHT = 32  # commands remembered; more than any delay that a robot walks with
+
+
+@dataclass
+class Balancer:
+    """Walks a gait; with a planner it balances, without one it is open loop.
+
+    Attributes:
+        gait: Graph, perturbations and tables.
+        joints: The robot's joints.
+        contacts: Its contact sensors.
+        body: Its kinematics.
+        regulation: The r regulation variables.
+        perturbations: Names of the r perturbations that control them.
+        planner: Chooses their scalings, or None for open loop.
+        targets: Targets by name of the regulation variable.
+        fixed_targets: Targets that win over the speed table, by name.
+        speed: Speed table and feedback.
+        course: Heading hold, or None.
+        torso_servo: The torso servo, or None.
+        records: Finished steps.
+        late: Steps whose answer never came.
+    """
+
+    gait: Gait
+    joints: Joints
+    contacts: ContactSensors
+    body: Body
+    regulation: list[RegulationVariable]
+    perturbations: list[str]
+    planner: Planner | None
+    speed: SpeedControl
+    targets: dict[str, float] = field(default_factory=dict)
+    fixed_targets: dict[str, float] = field(default_factory=dict)
+    course: Course | None = None
+    torso_servo: TorsoServo | None = None
+    records: list[StepRecord] = field(default_factory=list, init=False)
+    late: int = field(default=0, init=False)
+
+    @property
+    def steps(self) -> int:
+        """Number of finished steps."""
+        return len(self.records)
+
+    def reset(self, observation: Observation) -> None:
+        """Begin at the graph's first state.
+
+        Raises:
+            StateMissingError: The observation has no base state.
+        """
+        if observation.base is None:
+            raise StateMissingError(
+                "balance needs the base state and this backend does not measure it; "
+                "run with `--state estimated`"
+            )
+        self._columns = [self.gait.index(name) for name in self.perturbations]
+        self._sent: deque[Array] = deque(maxlen=IN_FLIGHT)
+        self._hold = JointCommand.hold(self.joints, observation.joints.position)
+        scale = np.zeros((1, len(self.gait.perturbations)))
+        self._tracker = PoseTracker(self.gait, self.contacts, scale, None, self.torso_servo)
+        self._start: StepStart | None = None
+        self._asked = False
+        self._turned = 0.0
+        self.speed.reset()
+        self.records.clear()
+        self.late = 0
+        if self.planner is not None:
+            self.planner.reset()
+
+    def step(self, observation: Observation, dt: float) -> JointCommand:
+        """Return the command of this tick; at the start of a step, plan it first."""
+        if self._start is None:
+            self._begin_step(observation, dt)
+        elif self._tracker.advance(observation.contacts[None])[0]:
+            self._end_step(observation, self._start)
+            self._begin_step(observation, dt)
+        if self._asked:
+            self._take_answer(observation.time)
+        goals = self._tracker.step(policy_input(observation), dt)[0]
+        goals = np.minimum(np.maximum(goals, self.joints.lower), self.joints.upper)
+        self._sent.append(goals)
+        block = self._hold.block.copy()
+        block[0] = goals
+        return JointCommand(block)
+
+    def _begin_step(self, observation: Observation, dt: float) -> None:
+        """Measure where the step begins and ask for its scalings."""
+        start = StepStart.of(observation, int(self._tracker.stance()[0]), self.body)
+        self._start = start
+        self.speed.begin_step()
+        scale = self.speed.scale()
+        if self.course is not None:
+            turn = self.gait.index(self.course.perturbation)
+            scale[turn] += self.course.scale(start.heading, start.position)
+        self._target = self._wanted()
+        self._scale = scale
+        if self.planner is None:
+            self._tracker.rescale(scale[None])
+            return
+        self.late += self._asked
+        self._asked = True
+        flight = RolloutStart(observation, np.array(self._sent), dt)
+        before = self._tracker.scale[0]
+        self.planner.ask(
+            StepRequest(flight, self._tracker.now, start.stance, scale, before, self._target)
+        )
+
+    def _take_answer(self, time: float) -> None:
+        """Put the planner's scalings into force, if they have come."""
+        assert self.planner is not None
+        answer = self.planner.answer(time)
+        if answer is None:
+            return
+        self._asked = False
+        scale = self._scale.copy()
+        scale[self._columns] += answer
+        self._tracker.rescale(scale[None])
+
+    def _end_step(self, observation: Observation, start: StepStart) -> None:
+        """Write down how the step went, and tell the speed feedback."""
+        end = self.body.measure(observation)
+        duration = observation.time - start.time
+        self._turned += start.turned(end)
+        speed = start.speed(end, duration)
+        self.speed.measured(speed)
+        self.records.append(
+            StepRecord(
+                time=observation.time,
+                duration=duration,
+                position=end.base_position[0].copy(),
+                heading=self._turned,
+                speed=speed,
+                regulation=start.evaluate(end, self.regulation, self.contacts)[0],
+                target=self._target,
+                scale=self._tracker.scale[0].copy(),
+            )
+        )
+
+    def _wanted(self) -> Array:
+        """Return the targets (r,) of this step."""
+        wanted = {**self.targets, **self.speed.targets(), **self.fixed_targets}
+        return np.array([wanted.get(variable.name, 0.0) for variable in self.regulation])

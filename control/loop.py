@@ -1,0 +1,107 @@
+"""The fixed-rate loop: read, estimate, step, write; the same for a robot and for its twin."""
+
+import time as wall
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from hal.controller import Controller, Stopwatch
+from hal.guard import GuardedBackend
+from hal.observation import Observation
+
+# Called once a tick; a reason ends the run.
+Until = Callable[[Observation], str | None]
+
+
+class Estimator(Protocol):
+    """Fills in what the sensors do not measure."""
+
+    def update(self, observation: Observation, dt: float) -> Observation:
+        """Return `observation` with its base."""
+        ...
+
+
+@dataclass
+class LoopReport:
+    """How a run went.
+
+    Attributes:
+        reason: Why it ended.
+        ticks: Ticks run.
+        missed: Ticks that came too late and were skipped.
+        sim_time: Time on the backend's clock, s.
+        wall_time: Time on the wall, s.
+        tick: Wall time of each tick (read, estimate, step, write; without rollouts), s.
+    """
+
+    reason: str = "done"
+    ticks: int = 0
+    missed: int = 0
+    sim_time: float = 0.0
+    wall_time: float = 0.0
+    tick: list[float] = field(default_factory=list, repr=False)
+
+    def tick_ms(self) -> dict[str, float]:
+        """Return the median and the 99th percentile of the tick, ms."""
+        if not self.tick:
+            return {"p50": 0.0, "p99": 0.0}
+        p50, p99 = np.percentile(self.tick, [50, 99]) * 1e3
+        return {"p50": float(p50), "p99": float(p99)}
+
+
+def run_loop(
+    backend: GuardedBackend,
+    controller: Controller,
+    *,
+    period: float,
+    until: Until,
+    estimator: Estimator | None = None,
+    rollouts: Stopwatch | None = None,
+    report: LoopReport | None = None,
+) -> LoopReport:
+    """Run `controller` on `backend` every `period` s until there is a reason to stop.
+
+    The schedule is absolute; ticks that come too late are skipped and counted.
+
+    Args:
+        backend: The guarded backend, connected and configured.
+        controller: The controller.
+        period: Period of the loop, s.
+        until: Called with each observation; a reason ends the run.
+        estimator: Fills in the base state.
+        rollouts: Time to leave out of the ticks.
+        report: Filled in as the run goes, so that an interrupted run has measured something.
+
+    Raises:
+        WindupError: Whatever the backend, the guard or the controller raise.
+    """
+    report = report or LoopReport()
+    rollouts = rollouts or Stopwatch()
+    clock = backend.clock
+    started, wall_started = clock.now(), wall.perf_counter()
+    tick = 0
+    first = True
+    while True:
+        began, playing = wall.perf_counter(), rollouts.seconds
+        observation = backend.read()
+        if estimator is not None:
+            observation = estimator.update(observation, period)
+        if (reason := until(observation)) is not None:
+            report.reason = reason
+            return report
+        if first:
+            controller.reset(observation)
+            first = False
+        backend.write(controller.step(observation, period))
+        report.tick.append(wall.perf_counter() - began - (rollouts.seconds - playing))
+        report.ticks += 1
+        tick += 1
+        late = int((clock.now() - started) / period - tick + 1e-6)
+        if late > 0:
+            report.missed += late
+            tick += late
+        clock.wait_until(started + tick * period)
+        report.sim_time = clock.now() - started
+        report.wall_time = wall.perf_counter() - wall_started

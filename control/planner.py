@@ -1,0 +1,132 @@
+"""Planning a step: from where it begins to the scalings that end it well.
+
+The planner holds everything that a step model needs, so that it can run in the loop's own tick
+(unpaced), or in another process (paced, where its answer acts `latency` s into the step).
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from control.body import Body
+from control.gait import Gait
+from control.policy import StepPolicy
+from control.pose_tracker import PoseTracker, TrackerState
+from control.regulation import RegulationVariable
+from control.step_model import StepModel
+from control.step_record import StepStart
+from control.torso_servo import TorsoServo
+from hal.contacts import ContactSensors
+from hal.controller import Predictor, RolloutStart
+from hal.joints import Array, Joints, Mask
+
+
+@dataclass(frozen=True)
+class StepRequest:
+    """A step to be planned.
+
+    Attributes:
+        start: State, commands in flight and tick.
+        at: The tracker, a batch of one.
+        stance: Index of the stance foot.
+        scale: (p,) scalings of all perturbations before balance.
+        before: (p,) scalings in force until the answer acts.
+        target: (r,) wanted regulation variables.
+    """
+
+    start: RolloutStart
+    at: TrackerState
+    stance: int
+    scale: Array
+    before: Array
+    target: Array
+
+
+class Planner(Protocol):
+    """Answers requests, at once or later."""
+
+    def reset(self) -> None:
+        """Forget all steps."""
+        ...
+
+    def ask(self, request: StepRequest) -> None:
+        """Ask for the scalings of a step; an older question is forgotten."""
+        ...
+
+    def answer(self, time: float) -> Array | None:
+        """Return the scalings (r,) asked for, once they may act at `time` s; None until then."""
+        ...
+
+
+@dataclass
+class StepPlanner:
+    """Plans steps with rollouts, in the caller's own time.
+
+    Attributes:
+        gait: The gait.
+        joints: The robot's joints.
+        contacts: Its contact sensors.
+        body: Its kinematics.
+        regulation: The r regulation variables.
+        perturbations: Names of the r perturbations that control them.
+        model: The step model.
+        predictor: Plays the rollouts.
+        torso_servo: The torso servo, or None.
+        horizon: Longest step that a rollout may take, s.
+        latency: From the start of a step to its scalings acting, s.
+    """
+
+    gait: Gait
+    joints: Joints
+    contacts: ContactSensors
+    body: Body
+    regulation: list[RegulationVariable]
+    perturbations: list[str]
+    model: StepModel
+    predictor: Predictor
+    torso_servo: TorsoServo | None = None
+    horizon: float = 1.5
+    latency: float = 0.0
+
+    def __post_init__(self) -> None:
+        self._columns = [self.gait.index(name) for name in self.perturbations]
+        self._answer: Array | None = None
+
+    def reset(self) -> None:
+        """Forget all steps."""
+        self.model.reset()
+        self._answer = None
+
+    def ask(self, request: StepRequest) -> None:
+        """Plan the step now."""
+        self._answer = self.plan(request)
+
+    def answer(self, time: float) -> Array | None:
+        """Return what `ask` has found, once."""
+        answer, self._answer = self._answer, None
+        return answer
+
+    def plan(self, request: StepRequest) -> Array:
+        """Return the scalings (r,) for the step."""
+        start = StepStart.of(request.start.observation, request.stance, self.body)
+
+        def sample(scalings: Array) -> tuple[Array, Mask]:
+            scale = np.repeat(request.scale[None], len(scalings), axis=0)
+            scale[:, self._columns] += scalings
+            policy = self.policy(request, scale)
+            outcomes = self.predictor.predict(request.start, policy, self.horizon)
+            values = start.evaluate(outcomes, self.regulation, self.contacts)
+            return values, outcomes.fell | ~policy.done
+
+        return self.model.control(sample, request.target, request.stance)
+
+    def policy(self, request: StepRequest, scale: Array) -> StepPolicy:
+        """Return what plays the requested step with scalings (m, p)."""
+        size = len(scale)
+        first = np.repeat(request.before[None], size, axis=0) if self.latency > 0.0 else scale
+        at = request.at.repeat(size)
+        tracker = PoseTracker(self.gait, self.contacts, first, at, self.torso_servo)
+        policy = StepPolicy(tracker, self.joints.lower, self.joints.upper)
+        policy.rescale_at(self.latency, scale)
+        return policy

@@ -1,0 +1,192 @@
+"""The discrete step model: from samples of one step to the scalings that end it well.
+
+Laszlo 1996, sections 3.2 and 3.7. A step maps scalings K to regulation variables, Q = h(K). The
+model is linear, dQ = J K (Eq. 3.9), J is found by finite differences over rollouts, and its inverse
+gives the scalings that reach a target (Eq. 3.11; its sign of dQ is a slip: the wanted change is
+target minus nominal).
+
+Four ways to sample. "sp" takes each dimension alone (a diagonal J, superposition); "fl" and "lf"
+solve one dimension after the other, each with the scalings found before (section 3.7.2); "full"
+takes the whole J, one-sided, and solves damped least squares.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from hal.joints import Array, Mask
+
+Sampling = Literal["sp", "fl", "lf", "full"]
+# Plays steps with scalings (m, r): regulation variables (m, r) and which of the m fell.
+Sample = Callable[[Array], tuple[Array, Mask]]
+
+SINGULAR = 1e-6
+
+
+@dataclass
+class StepModel:
+    """Finds scalings for r regulation variables with r perturbations.
+
+    Attributes:
+        sampling: How J is sampled.
+        samples: (r,) distance of the samples from the origin, in units of the scalings.
+        limits: (r,) largest scaling.
+        weights: (r,) importance of each variable, one over the error that matters.
+        centred: Sample on both sides of the origin, not on it ("full": two-sided differences).
+        from_last: Sample around `keep` times the same side's last K instead of around zero.
+        keep: See `from_last`.
+        regularisation: Damping of the least squares.
+        counters: What was retried, dropped or kept, by name.
+    """
+
+    sampling: Sampling
+    samples: Array
+    limits: Array
+    weights: Array
+    centred: bool = True
+    from_last: bool = False
+    keep: float = 0.7
+    regularisation: float = 1e-3
+    counters: dict[str, int] = field(
+        default_factory=lambda: dict.fromkeys(("retried", "dropped", "kept_last", "clipped"), 0)
+    )
+    _last: dict[int, Array] = field(default_factory=dict, init=False)
+    _jacobian: dict[int, Array] = field(default_factory=dict, init=False)
+
+    def reset(self) -> None:
+        """Forget all steps."""
+        self._last.clear()
+        self._jacobian.clear()
+
+    def control(self, sample: Sample, target: Array, side: int) -> Array:
+        """Return the scalings K (r,) that should end this step at `target` (r,).
+
+        Args:
+            sample: Plays steps.
+            target: Wanted regulation variables.
+            side: Index of the stance foot; the two sides remember their own K.
+        """
+        last = self._last.get(side, np.zeros(len(self.samples)))
+        origin = self.keep * last if self.from_last else np.zeros_like(last)
+        if self.sampling == "full":
+            wanted = self._full(sample, target, side, origin)
+        else:
+            wanted = self._by_dimension(sample, target, origin, last)
+        scalings = np.clip(wanted, -self.limits, self.limits)
+        self.counters["clipped"] += int((scalings != wanted).any())
+        self._last[side] = scalings
+        return scalings
+
+    # One dimension at a time
+
+    def _by_dimension(self, sample: Sample, target: Array, origin: Array, last: Array) -> Array:
+        r = len(origin)
+        order = [list(range(r))] if self.sampling == "sp" else [[j] for j in range(r)]
+        if self.sampling == "lf":
+            order.reverse()
+        found = origin.copy()
+        for group in order:
+            found[group] = self._lines(sample, target, found, group, last)
+        return found
+
+    def _lines(
+        self, sample: Sample, target: Array, base: Array, group: list[int], last: Array
+    ) -> Array:
+        """Return the scalings of the dimensions in `group`, each from a line of two samples."""
+        low = [-self.samples[j] if self.centred else 0.0 for j in group]
+        high = [self.samples[j] for j in group]
+        tried = np.repeat(base[None], 2 * len(group), axis=0)
+        for i, j in enumerate(group):
+            tried[2 * i, j] += low[i]
+            tried[2 * i + 1, j] += high[i]
+        values, fell = sample(tried)
+        found = []
+        for i, j in enumerate(group):
+            rows = slice(2 * i, 2 * i + 2)
+            k, q = tried[rows, j], values[rows, j]
+            if fell[rows].any():
+                k, q, usable = self._retry(sample, base, j, k, q, fell[rows])
+                if not usable:
+                    found.append(last[j])
+                    continue
+            found.append(self._line(k, q, target[j], last[j]))
+        return np.array(found)
+
+    def _retry(
+        self, sample: Sample, base: Array, j: int, k: Array, q: Array, fell: Mask
+    ) -> tuple[Array, Array, bool]:
+        """Replace one fallen sample by one on the other side of the origin's step."""
+        if fell.all():
+            self.counters["dropped"] += 1
+            return k, q, False
+        self.counters["retried"] += 1
+        tried = base[None].copy()
+        tried[0, j] = 0.5 * (base[j] + k[~fell][0])
+        value, again = sample(tried)
+        k, q = k.copy(), q.copy()
+        k[fell], q[fell] = tried[0, j], value[0, j]
+        return k, q, not again[0]
+
+    def _line(self, k: Array, q: Array, target: float, last: float) -> float:
+        slope = (q[1] - q[0]) / (k[1] - k[0])
+        if abs(slope) < SINGULAR:
+            self.counters["kept_last"] += 1
+            return float(last)
+        return float(k[0] + (target - q[0]) / slope)
+
+    # The whole Jacobian
+
+    def _full(self, sample: Sample, target: Array, side: int, origin: Array) -> Array:
+        r = len(origin)
+        steps = np.diag(self.samples)
+        tried = origin + np.concatenate([np.zeros((1, r)), steps, -steps[: r * self.centred]])
+        values, fell = sample(tried)
+        if fell[0] and origin.any():
+            self.counters["retried"] += 1
+            origin = np.zeros(r)
+            tried = tried - tried[0]
+            values, fell = sample(tried)
+        if fell[0]:
+            self.counters["kept_last"] += 1
+            return self._last.get(side, origin)
+        jacobian = self._differences(sample, origin, tried, values, fell, side)
+        self._jacobian[side] = jacobian
+        return origin + self._solve(jacobian, target - values[0])
+
+    def _differences(
+        self, sample: Sample, origin: Array, tried: Array, values: Array, fell: Mask, side: int
+    ) -> Array:
+        """Return J (r, r); columns whose samples fall come from the last good model."""
+        r = len(origin)
+        good = self._jacobian.get(side)
+        jacobian = np.zeros((r, r))
+        lost = []
+        for j in range(r):
+            rows = [1 + j, 1 + r + j] if self.centred else [1 + j]
+            standing = [row for row in rows if not fell[row]] + [0]
+            if len(standing) == 1:
+                lost.append(j)
+                continue
+            a, b = standing[0], standing[1]
+            jacobian[:, j] = (values[a] - values[b]) / (tried[a, j] - tried[b, j])
+        if lost and not self.centred:
+            self.counters["retried"] += len(lost)
+            other = np.repeat(origin[None], len(lost), axis=0)
+            other[np.arange(len(lost)), lost] -= self.samples[lost]
+            again, fell_again = sample(other)
+            for i, j in enumerate(lost):
+                if not fell_again[i]:
+                    jacobian[:, j] = (values[0] - again[i]) / self.samples[j]
+            lost = [j for i, j in enumerate(lost) if fell_again[i]]
+        for j in lost:
+            self.counters["dropped"] += 1
+            jacobian[:, j] = 0.0 if good is None else good[:, j]
+        return jacobian
+
+    def _solve(self, jacobian: Array, error: Array) -> Array:
+        """Return dK of the damped, weighted least squares, in the scalings' units."""
+        scaled = self.weights[:, None] * jacobian * self.samples
+        normal = scaled.T @ scaled + self.regularisation * np.eye(len(error))
+        return self.samples * np.linalg.solve(normal, scaled.T @ (self.weights * error))

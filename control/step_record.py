@@ -1,0 +1,93 @@
+"""How a step went, and where the next one begins."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from control.body import Body, heading
+from control.regulation import RegulationVariable, StepEnd
+from hal.contacts import ContactSensors
+from hal.controller import Outcomes
+from hal.joints import Array
+from hal.observation import Observation
+
+
+@dataclass(frozen=True)
+class StepRecord:
+    """One finished step.
+
+    Attributes:
+        time: When it ended, s.
+        duration: s.
+        position: (3,) base position at its end, m.
+        heading: Heading at its end, unwrapped from the start of the walk, rad.
+        speed: Mean speed along its middle heading, m/s.
+        regulation: (r,) regulation variables at its end.
+        target: (r,) what they should have been.
+        scale: (p,) scalings of the perturbations.
+    """
+
+    time: float
+    duration: float
+    position: Array
+    heading: float
+    speed: float
+    regulation: Array
+    target: Array
+    scale: Array
+
+
+@dataclass(frozen=True)
+class StepStart:
+    """Where a step begins, and what its end is measured against.
+
+    Attributes:
+        time: s.
+        stance: Index of the stance foot.
+        body: The whole body at that instant, a batch of one.
+    """
+
+    time: float
+    stance: int
+    body: Outcomes
+
+    @classmethod
+    def of(cls, observation: Observation, stance: int, body: Body) -> "StepStart":
+        """Return the start of a step on foot `stance` at `observation`."""
+        return cls(observation.time, stance, body.measure(observation))
+
+    @property
+    def heading(self) -> float:
+        """Heading, rad."""
+        return float(heading(self.body.base_orientation)[0])
+
+    @property
+    def position(self) -> Array:
+        """Base position (3,), m."""
+        return self.body.base_position[0]
+
+    def evaluate(
+        self, outcomes: Outcomes, variables: list[RegulationVariable], contacts: ContactSensors
+    ) -> Array:
+        """Return the regulation variables (m, r) of steps that begin here and end so."""
+        swing = 1 - self.stance
+        end = StepEnd(
+            outcomes,
+            swing=swing,
+            start_com=self.body.com[0],
+            start_heading=self.heading,
+            swing_is_left=contacts.foot_names[swing].startswith("l"),
+        )
+        columns = [variable.evaluate(end) for variable in variables]
+        return np.stack(columns, axis=-1) if columns else np.zeros((len(outcomes.fell), 0))
+
+    def turned(self, end: Outcomes) -> float:
+        """Return the change of heading until `end`, rad."""
+        change = float(heading(end.base_orientation)[0]) - self.heading
+        return (change + np.pi) % (2.0 * np.pi) - np.pi
+
+    def speed(self, end: Outcomes, duration: float) -> float:
+        """Return the mean speed until `end` along the step's middle heading, m/s."""
+        angle = self.heading + 0.5 * self.turned(end)
+        way = end.base_position[0, :2] - self.position[:2]
+        return float(way @ [np.cos(angle), np.sin(angle)]) / max(duration, 1e-6)

@@ -1,0 +1,50 @@
+"""The torso servo: one joint that keeps the torso at an angle to the vertical.
+
+Laszlo 1996, section 3.8: ``tau = kp (phi - phi_d) - kd dphi`` on the waist, with the angle of the
+torso in the world instead of the joint's own. A position joint obeys it by a shifted goal.
+"""
+
+from dataclasses import dataclass
+from math import radians
+
+import numpy as np
+
+from control.gait_file import TorsoServo as TorsoServoRecord
+from hal.controller import PolicyInput
+from hal.joints import Array, Joints
+
+
+@dataclass(frozen=True)
+class TorsoServo:
+    """Shifts the goal of one pitch joint below the torso.
+
+    The torso's pitch is the base's pitch plus the joint's angle, so the joint has to be the only
+    pitch joint between base and torso, with its axis to the left.
+
+    Attributes:
+        joint: Index of the joint.
+        angle: Desired forward lean of the torso, rad.
+        ratio: Damping over stiffness of the joint, s.
+    """
+
+    joint: int
+    angle: float
+    ratio: float
+
+    @classmethod
+    def of(cls, record: TorsoServoRecord, joints: Joints) -> "TorsoServo":
+        """Return the servo that a gait file describes."""
+        j = joints.index(record.joint)
+        return cls(j, radians(record.angle), float(joints.damping[j] / joints.stiffness[j]))
+
+    def apply(self, pose: Array, state: PolicyInput) -> Array:
+        """Return targets (m, n) rad in which the servo's joint follows the world's vertical.
+
+        From ``kp (goal - q) - kd dq = kp (phi_d - phi) - kd dphi``, with phi = pitch + q the
+        torso's lean: ``goal = phi_d - pitch - (kd / kp) dpitch``.
+        """
+        w, x, y, z = state.base_orientation.T
+        pitch = 2.0 * np.arctan2(y * w + x * z, w * w + z * z)
+        goals = pose.copy()
+        goals[:, self.joint] = self.angle - pitch - self.ratio * state.base_angular_velocity[:, 1]
+        return goals
