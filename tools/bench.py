@@ -1,0 +1,42 @@
+"""`windup bench`: what ticks, physics, rollouts and servos cost, as ratios of one run."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import tyro
+
+from tools.bench_balance import measure_balance
+from tools.bench_loop import measure_tick, measure_twin
+from tools.bench_servo import measure_servos
+from tools.output import console, write_json
+
+What = Literal["tick", "twin", "balance", "servo"]
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Measure what the stack costs."""
+
+    what: Annotated[What, tyro.conf.Positional]
+    """tick: one turn of the loop. twin: stepping through the guard against bare physics.
+    balance: the rollouts of one step. servo: the twin's servo against its data sheet."""
+    robot: str = "op3"
+    """Name of the robot, or path of its folder."""
+    json: Path | None = None
+    """Write the result as JSON to a file, or to standard output with '-'."""
+
+    def run(self) -> int:
+        """Measure; returns the exit status."""
+        measures: dict[str, Callable[[str], dict[str, Any]]] = {
+            "tick": measure_tick,
+            "twin": measure_twin,
+            "balance": measure_balance,
+            "servo": measure_servos,
+        }
+        result = measures[self.what](self.robot)
+        for key, value in result.items():
+            console.print(f"{key:28} {value}")
+        write_json(self.json, f"bench {self.what}", {"robot": self.robot, **result})
+        return 0

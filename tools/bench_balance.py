@@ -1,0 +1,85 @@
+"""What the rollouts of a step cost, beside the step's own duration."""
+
+from dataclasses import dataclass, field
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from control.planner import StepPlanner, StepRequest
+from hal.errors import WindupError
+from hal.joints import Array
+from sim_twin.rollouts import RolloutPredictor
+from tools.build import WalkOptions, build_walk
+from tools.robot import Robot
+
+ROUNDS = 20
+ROLLOUTS = 5
+WARM_UP = 5
+
+
+@dataclass
+class Recorder:
+    """A planner that keeps the requests which it hands on.
+
+    Attributes:
+        planner: Who answers.
+        requests: What it was asked.
+    """
+
+    planner: StepPlanner
+    requests: list[StepRequest] = field(default_factory=list)
+
+    def reset(self) -> None:
+        """Forget all steps."""
+        self.planner.reset()
+
+    def ask(self, request: StepRequest) -> None:
+        """Keep the request and hand it on."""
+        self.requests.append(request)
+        self.planner.ask(request)
+
+    def answer(self, time: float) -> Array | None:
+        """Return the planner's answer."""
+        return self.planner.answer(time)
+
+
+def measure_balance(name: str) -> dict[str, Any]:
+    """Return the time of five rollouts of one step, on one thread and on two.
+
+    The steps are those of a real walk; the two predictors take turns on each.
+
+    Raises:
+        WindupError: The robot fell before there were steps to measure.
+    """
+    with Robot.open(name) as robot:
+        walker = build_walk(robot.description, WalkOptions(), robot.predictor)
+        assert isinstance(walker.planner, StepPlanner)
+        recorder = Recorder(walker.planner)
+        walker.planner = recorder
+        robot.start_at(walker.gait.file.start)
+        steps = WARM_UP + ROUNDS
+        robot.run(walker, until=lambda _: "done" if walker.steps >= steps else None)
+        if walker.steps < steps:
+            raise WindupError(f"{name} fell in step {walker.steps + 1} and cannot be measured")
+        one = RolloutPredictor(robot.description, threads=1)
+        two = RolloutPredictor(robot.description, threads=2)
+        durations = [record.duration for record in walker.records]
+        rounds = zip(recorder.requests[:steps], durations, strict=True)
+        laps = [
+            (_time(recorder.planner, one, request), _time(recorder.planner, two, request), duration)
+            for request, duration in rounds
+        ][WARM_UP:]
+    return {
+        "rounds": len(laps),
+        "step_s": round(median(duration for _, _, duration in laps), 4),
+        "one_thread_share_of_step": round(median(a / duration for a, _, duration in laps), 4),
+        "two_threads_over_one": round(median(b / a for a, b, _ in laps), 3),
+    }
+
+
+def _time(planner: StepPlanner, predictor: RolloutPredictor, request: StepRequest) -> float:
+    """Return the wall time of five rollouts of one step, s."""
+    scale = np.repeat(request.scale[None], ROLLOUTS, axis=0)
+    predictor.predict(request.start, planner.policy(request, scale), planner.horizon)
+    return predictor.stopwatch.laps[-1]

@@ -1,0 +1,191 @@
+"""Putting a walking controller together from a robot, a gait and what the user asked for."""
+
+from dataclasses import dataclass, replace
+
+import msgspec
+import numpy as np
+
+from control.balancer import Balancer
+from control.body import Body
+from control.course import Course
+from control.gait import Gait, load_gait
+from control.gait_file import Balance, Sampling
+from control.planner import Planner, StepPlanner
+from control.regulation import RegulationVariable, regulation_variables
+from control.speed import SpeedControl
+from control.step_model import StepModel
+from control.torso_servo import TorsoServo
+from hal.controller import Predictor
+from hal.errors import UnknownNameError, UsageError
+from robots import RobotDescription
+
+
+@dataclass(frozen=True)
+class WalkOptions:
+    """How to walk. What is None is as the gait says."""
+
+    gait: str = "walk"
+    speed: float | None = None
+    rv: tuple[str, ...] | None = None
+    sampling: Sampling | None = None
+    target: tuple[str, ...] = ()
+    torso_servo: bool = True
+    open_loop: bool = False
+
+
+def find_gait(robot: RobotDescription, name: str) -> Gait:
+    """Return a gait or pose graph of `robot` by name.
+
+    Raises:
+        UnknownNameError: The robot has no such gait.
+    """
+    gaits = robot.gaits()
+    if name not in gaits:
+        raise UnknownNameError(f"gait of {robot.name}", name, gaits)
+    return load_gait(gaits[name], robot.joints, robot.contacts, robot.mirror)
+
+
+def body_of(robot: RobotDescription) -> Body:
+    """Return the kinematics of a robot."""
+    soles = [foot.site for foot in robot.feet]
+    return Body(robot.spec().compile(), robot.base, robot.torso, soles)
+
+
+def build_walk(
+    robot: RobotDescription, options: WalkOptions, predictor: Predictor | None
+) -> Balancer:
+    """Return the controller that walks `robot` as `options` say.
+
+    Raises:
+        UsageError: The options do not fit the gait.
+    """
+    gait = find_gait(robot, options.gait)
+    if not gait.graph.ends_step.any() or gait.file.balance is None:
+        raise UsageError(
+            f"gait {gait.name!r} has no steps to balance; "
+            f"play it with `windup play {robot.name} {gait.name}`"
+        )
+    balance = gait.file.balance
+    if options.sampling is not None:
+        balance = _resampled(balance, options.sampling)
+    variables = regulation_variables(list(options.rv or balance.regulation))
+    names = _perturbations(gait, balance, variables, options.rv is not None)
+    torso_servo = _torso_servo(robot, gait, options.torso_servo)
+    if torso_servo is not None:
+        variables = [_on_the_pelvis(variable) for variable in variables]
+    body = body_of(robot)
+    planner: Planner | None = None
+    if predictor is not None and not options.open_loop:
+        planner = StepPlanner(
+            gait=gait,
+            joints=robot.joints,
+            contacts=robot.contacts,
+            body=body,
+            regulation=variables,
+            perturbations=names,
+            model=_step_model(gait, balance, variables, names),
+            predictor=predictor,
+            torso_servo=torso_servo,
+            horizon=balance.horizon,
+        )
+    heading = None if options.open_loop else gait.file.heading
+    return Balancer(
+        gait=gait,
+        joints=robot.joints,
+        contacts=robot.contacts,
+        body=body,
+        regulation=variables,
+        perturbations=names,
+        planner=planner,
+        speed=SpeedControl(gait, options.speed),
+        targets=dict(balance.targets),
+        fixed_targets=_targets(options.target, variables),
+        course=None if heading is None else Course(heading),
+        torso_servo=torso_servo,
+    )
+
+
+def _resampled(balance: Balance, sampling: Sampling) -> Balance:
+    """Return `balance` with another sampling; the thesis' three sample around zero."""
+    centred = sampling != "full"
+    return msgspec.structs.replace(
+        balance, sampling=sampling, centred=centred, from_last=not centred
+    )
+
+
+def _perturbations(
+    gait: Gait, balance: Balance, variables: list[RegulationVariable], chosen: bool
+) -> list[str]:
+    """Return the perturbation that controls each variable.
+
+    The gait names them for its own variables. For variables chosen by the user they are taken in
+    the file's order, the forward ones for forward variables and the lateral ones for lateral.
+    """
+    if not chosen:
+        names = list(balance.perturbations)
+    else:
+        free = {
+            axis: [item.name for item in gait.file.perturbation if item.axis == axis]
+            for axis in ("forward", "lateral")
+        }
+        names = [free[v.axis].pop(0) for v in variables if free[v.axis]]
+    if len(names) != len(variables):
+        raise UsageError(
+            f"gait {gait.name!r} has {len(names)} perturbations for {len(variables)} regulation "
+            f"variables ({', '.join(v.name for v in variables)}); give as many"
+        )
+    return names
+
+
+def _step_model(
+    gait: Gait, balance: Balance, variables: list[RegulationVariable], names: list[str]
+) -> StepModel:
+    items = {item.name: item for item in gait.file.perturbation}
+    for name in names:
+        gait.index(name)
+    return StepModel(
+        sampling=balance.sampling,
+        samples=np.array([items[name].sample for name in names]),
+        limits=np.array([items[name].limit for name in names]),
+        weights=np.array([balance.weights.get(v.name, 1.0) for v in variables]),
+        centred=balance.centred,
+        from_last=balance.from_last,
+        keep=balance.keep,
+        regularisation=balance.regularisation,
+    )
+
+
+def _torso_servo(robot: RobotDescription, gait: Gait, wanted: bool) -> TorsoServo | None:
+    record = gait.file.torso_servo
+    return TorsoServo.of(record, robot.joints) if record is not None and wanted else None
+
+
+def _on_the_pelvis(variable: RegulationVariable) -> RegulationVariable:
+    """A servoed torso no longer shows how the body leans; the pelvis does (section 3.8)."""
+    if not variable.name.startswith("up."):
+        return variable
+    pelvis = regulation_variables([f"pelvis_{variable.name}"])[0]
+    return replace(pelvis, name=variable.name)
+
+
+def _targets(given: tuple[str, ...], variables: list[RegulationVariable]) -> dict[str, float]:
+    """Return targets by name from "NAME=VALUE", or a bare VALUE for the first forward one.
+
+    Raises:
+        UsageError: A value is no number, or a name is none of the regulation variables.
+    """
+    targets = {}
+    names = [variable.name for variable in variables]
+    for text in given:
+        name, _, value = text.rpartition("=")
+        if not name:
+            name = next((v.name for v in variables if v.axis == "forward"), names[0])
+        elif name in {v.partition(".")[0] for v in names} and f"{name}.forward" in names:
+            name = f"{name}.forward"
+        if name not in names:
+            raise UnknownNameError("--target", name, names)
+        try:
+            targets[name] = float(value)
+        except ValueError:
+            raise UsageError(f"--target {text}: {value!r} is no number") from None
+    return targets

@@ -1,0 +1,44 @@
+"""Options that every command takes, and what they mean together."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+import tyro
+
+from hal.errors import UsageError
+
+State = Literal["true", "estimated"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Common:
+    """Options of every command that runs a robot."""
+
+    robot: Annotated[str, tyro.conf.Positional]
+    """A robot's name (`windup robots` lists them), or the path of a folder with your own."""
+    state: State = "true"
+    """Where the base state comes from: the twin's truth, or an estimate from the sensors."""
+    rate: float | None = None
+    """Rate of the control loop, Hz; the robot's own by default."""
+    realtime: bool = False
+    """Let simulated time pass no faster than real time."""
+    seed: int = 0
+    """Seed of everything random."""
+    seeds: int | None = None
+    """Run seeds 0 .. N-1, one row each, with a summary."""
+    json: Path | None = None
+    """Write the result as JSON to a file, or to standard output with '-'."""
+    plot: Path | None = None
+    """Draw the run into an image file."""
+
+    def __post_init__(self) -> None:
+        if self.seeds is not None and self.seeds < 1:
+            raise UsageError(f"--seeds {self.seeds}: give 1 or more")
+        if self.rate is not None and self.rate <= 0.0:
+            raise UsageError(f"--rate {self.rate:g}: give a rate above 0 Hz")
+
+    @property
+    def all_seeds(self) -> list[int]:
+        """The seeds to run."""
+        return [self.seed] if self.seeds is None else list(range(self.seeds))

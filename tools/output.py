@@ -1,0 +1,54 @@
+"""What people read (standard error) and what programs read (JSON)."""
+
+import json
+import sys
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from hal.errors import UsageError, WindupError
+
+SCHEMA = 1
+console = Console(stderr=True, highlight=False)
+
+
+def plain(value: Any) -> Any:
+    """Return `value` in plain JSON types; numbers that are none become null."""
+    if isinstance(value, dict):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float):
+        return round(value, 6) if isfinite(value) else None
+    return value
+
+
+def write_json(target: Path | None, command: str, result: dict[str, Any]) -> None:
+    """Write one JSON object to `target`: a file, standard output for "-", or nowhere for None.
+
+    Raises:
+        UsageError: The file cannot be written.
+    """
+    if target is None:
+        return
+    text = json.dumps(plain({"schema": SCHEMA, "command": command, **result}), indent=2)
+    if str(target) == "-":
+        sys.stdout.write(text + "\n")
+        return
+    try:
+        target.write_text(text + "\n", encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"--json {target}: cannot be written: {error.strerror}") from None
+
+
+def error_record(error: WindupError) -> dict[str, Any]:
+    """Return an error as programs read it."""
+    kind = type(error).__name__.removesuffix("Error")
+    return {"error": {"kind": kind, "message": str(error), "exit_status": error.exit_status}}

@@ -1,0 +1,117 @@
+"""What a walk was like: the numbers of `windup walk --json`."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from control.balancer import Balancer
+from hal.joints import Array
+from tools.build import WalkOptions
+
+if TYPE_CHECKING:
+    from tools.robot import Robot
+
+SETTLED = 10  # steps left out of the mean speed
+
+
+@dataclass
+class WalkReport:
+    """A walk, finished or broken off.
+
+    Attributes:
+        robot: The robot that walked.
+        walker: Its controller, with a record of each step.
+        options: What was asked for.
+        requested: Steps asked for.
+    """
+
+    robot: "Robot"
+    walker: Balancer
+    options: WalkOptions
+    requested: int
+
+    def __post_init__(self) -> None:
+        self._origin = self.robot.twin.base.position.copy()
+
+    @property
+    def fell(self) -> bool:
+        """True when the robot has fallen."""
+        return self.robot.loop.reason == "fell"
+
+    @property
+    def done(self) -> bool:
+        """True when all steps were walked."""
+        return self.walker.steps >= self.requested and not self.fell
+
+    @property
+    def path(self) -> Array:
+        """Base positions (steps, 3) at the ends of the steps, m."""
+        return np.array([record.position for record in self.walker.records]).reshape(-1, 3)
+
+    @property
+    def speed(self) -> float | None:
+        """Mean speed along the path over steps 11 to the end, m/s; None for a shorter walk."""
+        records = self.walker.records[SETTLED:]
+        if len(records) < 2:
+            return None
+        ways = [record.speed * record.duration for record in records]
+        return float(sum(ways) / sum(record.duration for record in records))
+
+    def result(self) -> dict[str, Any]:
+        """Return the numbers of this walk."""
+        robot, walker, loop = self.robot, self.walker, self.robot.loop
+        end = robot.twin.base.position - self._origin
+        records = walker.records
+        watch = robot.predictor.stopwatch
+        return {
+            "robot": robot.description.name,
+            "gait": walker.gait.name,
+            "seed": robot.seed,
+            "steps_requested": self.requested,
+            "steps": walker.steps,
+            "fell": self.fell,
+            "fell_at_step": walker.steps if self.fell else None,
+            "reason": loop.reason,
+            "distance_m": float(end[0]),
+            "lateral_m": float(end[1]),
+            "heading_deg": float(np.degrees(records[-1].heading)) if records else 0.0,
+            "speed_m_s": self.speed,
+            "sim_time_s": loop.sim_time,
+            "wall_time_s": loop.wall_time,
+            "rollouts": watch.count,
+            "rollout_time_s": watch.seconds,
+            "tick_ms": loop.tick_ms(),
+            "missed": loop.missed if robot.paced else None,
+            "clamps": {name: count for name, count in robot.backend.clamps.items() if count},
+            "regulation": self.regulation(),
+        }
+
+    def regulation(self) -> list[dict[str, Any]]:
+        """Return target, mean and standard deviation of each regulation variable."""
+        records = self.walker.records
+        values = np.array([record.regulation for record in records])
+        rows = []
+        for column, variable in enumerate(self.walker.regulation):
+            row: dict[str, Any] = {"name": variable.name, "unit": variable.unit}
+            if records:
+                row["target"] = float(records[-1].target[column])
+                row["mean"] = float(values[:, column].mean())
+                row["sd"] = float(values[:, column].std())
+            rows.append(row)
+        return rows
+
+
+def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return what several seeds have in common."""
+    speeds = [row["speed_m_s"] for row in rows if row["speed_m_s"] is not None]
+    done = [row for row in rows if row["steps"] >= row["steps_requested"] and not row["fell"]]
+    headings = [abs(row["heading_deg"]) for row in rows]
+    return {
+        "runs": len(rows),
+        "walked": len(done),
+        "speed_mean_m_s": float(np.mean(speeds)) if speeds else None,
+        "speed_min_m_s": float(np.min(speeds)) if speeds else None,
+        "heading_max_deg": float(np.max(headings)) if headings else None,
+        "steps_min": min(row["steps"] for row in rows),
+    }

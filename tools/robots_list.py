@@ -1,0 +1,32 @@
+"""`windup robots`: the robots that come with Windup, and their gaits."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.table import Table
+
+from robots import load_robot, robot_names
+from tools.output import console, write_json
+
+
+@dataclass(frozen=True)
+class Robots:
+    """List the robots and what they can do."""
+
+    json: Path | None = None
+    """Write the result as JSON to a file, or to standard output with '-'."""
+
+    def run(self) -> int:
+        """List; returns the exit status."""
+        robots = [load_robot(name) for name in robot_names()]
+        table = Table("robot", "", "joints", "drive", "rate", "gaits", box=None)
+        rows = []
+        for robot in robots:
+            gaits = sorted(robot.gaits())
+            n, kind, rate = len(robot.joints), robot.drive.kind, robot.rate_hz
+            table.add_row(robot.name, robot.title, str(n), kind, f"{rate:g} Hz", ", ".join(gaits))
+            rows.append({"robot": robot.name, "title": robot.title, "joints": n, "drive": kind,
+                         "rate_hz": rate, "gaits": gaits})  # fmt: skip
+        console.print(table)
+        write_json(self.json, "robots", {"robots": rows})
+        return 0

@@ -1,0 +1,168 @@
+"""`windup walk`: walk a robot under limit-cycle balance."""
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from os import cpu_count
+from typing import Any, Literal
+
+import numpy as np
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+from hal.errors import UsageError
+from tools.build import WalkOptions, build_walk
+from tools.options import Common
+from tools.output import console, write_json
+from tools.plot import Trace, plot_walk
+from tools.report import WalkReport, summary
+from tools.robot import Robot
+
+
+@dataclass(frozen=True, kw_only=True)
+class Walk(Common):
+    """Walk a robot and say how it went."""
+
+    steps: int = 80
+    """How many steps to walk."""
+    speed: float | None = None
+    """Speed, m/s; the gait's default otherwise."""
+    gait: str = "walk"
+    """Name of the gait."""
+    rv: tuple[str, ...] | None = None
+    """Regulation variables, such as: up, or up.forward swing_com.lateral."""
+    sampling: Literal["sp", "fl", "lf", "full"] | None = None
+    """How the step model is sampled."""
+    target: tuple[str, ...] = ()
+    """Targets of the regulation variables: VALUE for the first forward one, or NAME=VALUE."""
+    torso_servo: bool = True
+    """Keep the torso upright by its own servo, where the gait has one."""
+    open_loop: bool = False
+    """Play the bare pose graph, without balance."""
+    noise: float = 0.0
+    """Standard deviation of noise on the start pose, degrees."""
+    delay: float | None = None
+    """Delay of the servos, s."""
+
+    def run(self) -> int:
+        """Walk; returns the exit status."""
+        if self.steps < 1:
+            raise UsageError(f"--steps {self.steps}: give 1 or more")
+        seeds = self.all_seeds
+        if len(seeds) == 1 and self.seeds is None:
+            result = self._one(seeds[0], show=True)
+            ok = result["steps"] >= self.steps and not result["fell"]
+            write_json(self.json, "walk", result)
+            return 130 if result["reason"] == "interrupted" else 0 if ok else 1
+        rows = list(self._many(seeds))
+        whole = summary(rows)
+        console.print(_sentence(whole))
+        write_json(self.json, "walk", {"robot": self.robot, "rows": rows, "summary": whole})
+        return 0 if whole["walked"] == whole["runs"] else 1
+
+    def _one(self, seed: int, *, show: bool) -> dict[str, Any]:
+        """Walk one seed and return its result."""
+        with Robot.open(
+            self.robot,
+            rate=self.rate,
+            realtime=self.realtime,
+            seed=seed,
+            noise=self.noise,
+            delay=self.delay,
+        ) as robot:
+            trace = Trace(robot.description.contacts)
+            robot.watch = trace.add if self.plot and show else None
+            with _progress(show) as progress:
+                report = self._walk(robot, progress)
+        if show:
+            console.print(_line(report))
+            if self.plot is not None:
+                plot_walk(self.plot, report, trace)
+                console.print(f"picture: {self.plot}")
+        return report.result()
+
+    def _walk(self, robot: Robot, progress: Progress) -> WalkReport:
+        bar = progress.add_task("walking", total=self.steps, speed="", lean="")
+        return robot.walk(
+            steps=self.steps, options=self._options(), on_step=_update(progress, bar, robot)
+        )
+
+    def _options(self) -> WalkOptions:
+        return WalkOptions(
+            gait=self.gait,
+            speed=self.speed,
+            rv=self.rv,
+            sampling=self.sampling,
+            target=self.target,
+            torso_servo=self.torso_servo,
+            open_loop=self.open_loop,
+        )
+
+    def _many(self, seeds: list[int]) -> Iterator[dict[str, Any]]:
+        """Walk several seeds side by side, one process a core."""
+        self._check()
+        with _progress(True) as progress:
+            bar = progress.add_task("seeds", total=len(seeds), speed="", lean="")
+            with ProcessPoolExecutor(max_workers=min(len(seeds), cpu_count() or 1)) as pool:
+                for row in pool.map(self._quietly, seeds):
+                    progress.advance(bar)
+                    yield row
+
+    def _check(self) -> None:
+        """Raise what is wrong with the options before any process is started."""
+        with Robot.open(self.robot, rate=self.rate, delay=self.delay) as robot:
+            build_walk(robot.description, self._options(), robot.predictor)
+
+    def _quietly(self, seed: int) -> dict[str, Any]:
+        return self._one(seed, show=False)
+
+
+def _progress(show: bool) -> Progress:
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[speed]} {task.fields[lean]}"),
+        console=console,
+        transient=True,
+        disable=not show,
+    )
+
+
+def _update(progress: Progress, bar: Any, robot: Robot) -> Callable[[int, float], None]:
+    """Return what moves the progress bar at the end of a step."""
+
+    def update(steps: int, speed: float) -> None:
+        lean = np.degrees(np.arccos(np.clip(robot.twin.up[2], -1.0, 1.0)))
+        progress.update(
+            bar, completed=steps, speed=f"{speed:5.2f} m/s", lean=f"lean {lean:4.1f} deg"
+        )
+
+    return update
+
+
+def _line(report: WalkReport) -> str:
+    """Return one line for people."""
+    result = report.result()
+    speed = result["speed_m_s"]
+    pace = "" if speed is None else f" at {speed:.3f} m/s"
+    ratio = result["sim_time_s"] / max(result["wall_time_s"], 1e-9)
+    if report.fell:
+        end = f"fell in step {result['steps'] + 1} of {report.requested}"
+    elif report.done:
+        end = f"walked {result['steps']} steps"
+    else:
+        end = f"{result['reason']} after {result['steps']} of {report.requested} steps"
+    return (
+        f"{result['robot']} {end}{pace}: {result['distance_m']:.2f} m forward, "
+        f"{result['lateral_m']:+.2f} m to the left, heading {result['heading_deg']:+.1f} degrees, "
+        f"{ratio:.1f} x real time"
+    )
+
+
+def _sentence(whole: dict[str, Any]) -> str:
+    speed = whole["speed_mean_m_s"]
+    pace = "" if speed is None else f", mean speed {speed:.3f} m/s"
+    return (
+        f"{whole['walked']} of {whole['runs']} runs walked to the end{pace}, "
+        f"heading within {whole['heading_max_deg']:.1f} degrees"
+    )
