@@ -44,7 +44,8 @@ class TorsoServo:
         torso's lean: ``goal = phi_d - pitch - (kd / kp) dpitch``.
         """
         w, x, y, z = state.base_orientation.T
-        pitch = 2.0 * np.arctan2(y * w + x * z, w * w + z * z)
+        # Lean of the base about its own y axis, whatever way it faces.
+        pitch = np.arctan2(2.0 * (w * y - x * z), 1.0 - 2.0 * (x * x + y * y))
         goals = pose.copy()
         goals[:, self.joint] = self.angle - pitch - self.ratio * state.base_angular_velocity[:, 1]
         return goals
