@@ -74,10 +74,11 @@ class BlockRead:
         self._salvage(stream)
         return self.valid
 
-    def missing(self, stream: bytes) -> bool:
-        """Return whether an answer so far lacks anybody."""
-        found = {item.id for item in self._statuses(stream) if self._fits(item)}
-        return len(found) < len(self.spans)
+    def answered(self) -> int:
+        """Return how many bytes the good replies to the last request had, without stuffing."""
+        sizes = np.array([span.size for span in self.spans])
+        each = sizes + (4 if self.fast else protocol2.OVERHEAD)
+        return int(each[self.valid].sum()) + (8 if self.fast else 0)
 
     def _sound(self, data: Bytes) -> bool:
         if data.take(self._fixed_at).tobytes() != self._fixed:
