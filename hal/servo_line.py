@@ -19,8 +19,6 @@ HEALTH = Span(0, 126, 21)
 """The same, on to voltage and temperature."""
 HEALTH_EVERY = 10
 """One servo's voltage and temperature are read every so many cycles."""
-FAST_PAUSE = 50
-"""Cycles of plain reads after a fast one that lacked somebody."""
 
 REGISTERS = {register.name: register for register in COMMON}
 
@@ -37,6 +35,7 @@ class ServoLine:
         ids: Their ids.
         rows: Their joints' indices.
         imu: The last bytes of the OpenCR, or None while there are none.
+        imu_fresh: Did they come with the last answers?
         goals: Goal positions, counts.
         gains: P registers.
     """
@@ -48,6 +47,7 @@ class ServoLine:
         self.rows: npt.NDArray[np.intp] = np.array(rows, dtype=np.intp)
         self.board = board
         self.imu: bytes | None = None
+        self.imu_fresh = False
         goal, gain = REGISTERS["goal_position"], REGISTERS["position_p_gain"]
         self.goals = BlockWrite(self.ids, goal.address, goal.size)
         self.gains = BlockWrite(self.ids, gain.address, gain.size)
@@ -55,8 +55,10 @@ class ServoLine:
         self._fast: BlockRead | None = None
         self._health = [_read(self.ids, board, row) for row in range(len(self.ids))]
         self._cycle = 0
-        self._fast_from = 0
+        self._broken_chain = False
         self._asked = self._state
+        self._long: int | None = None
+        """Row that is read on to its voltage and temperature in this cycle."""
 
     def probe_fast(self) -> bool:
         """Use the fast sync read from now on if all servos know it."""
@@ -67,9 +69,11 @@ class ServoLine:
     def request(self) -> None:
         """Ask all servos of the line, and the board."""
         self._cycle += 1
+        self._long = None
         if self._cycle % HEALTH_EVERY == 0:
-            self._asked = self._health[self._cycle // HEALTH_EVERY % len(self.ids)]
-        elif self._fast is not None and self._cycle >= self._fast_from:
+            self._long = self._cycle // HEALTH_EVERY % len(self.ids)
+            self._asked = self._health[self._long]
+        elif self._fast is not None and not self._broken_chain:
             self._asked = self._fast
         else:
             self._asked = self._state
@@ -88,26 +92,29 @@ class ServoLine:
         if not answered.size:
             return np.zeros(servos, dtype=bool)
         valid = answered[:servos]
-        if self.board is not None and answered[-1]:
+        self.imu_fresh = self.board is not None and bool(answered[-1])
+        if self.imu_fresh:
             self.imu = read.params(servos)
         state = self._fields(read)
-        if valid.all():
+        complete = bool(valid.all())
+        # In a fast answer all are silent behind a missing one: ask plainly until all are back.
+        self._broken_chain = not complete
+        if complete:
             rows, state, error = self.rows, state, read.error[:servos]
         else:
             rows, state, error = self.rows[valid], state[valid], read.error[:servos][valid]
-            if read.fast:
-                self._fast_from = self._cycle + FAST_PAUSE
         counts[0, rows] = state["position"]
         counts[1, rows] = state["velocity"]
         counts[2, rows] = state["current"]
         alert[rows] = error > 127
-        self._take_health(read, valid, health)
+        if self._long is not None and valid[self._long]:
+            self._take_health(read, self._long, health)
         return valid
 
     def _fields(self, read: BlockRead) -> npt.NDArray[np.void]:
         """Return (servos,) records of `STATE_TYPE`."""
         payload = read.payload
-        if read in self._health:
+        if self._long is not None:
             payload = payload.take(self._state_of(read))
         return payload[: len(self.ids) * STATE.size].view(STATE_TYPE)
 
@@ -116,11 +123,12 @@ class ServoLine:
         starts = np.cumsum([0, *sizes[:-1]])
         return (starts[:, None] + np.arange(STATE.size)).ravel()
 
-    def _take_health(self, read: BlockRead, valid: Mask, health: Array) -> None:
-        if read in self._health and valid[row := self._health.index(read)]:
-            data = read.params(row)
-            health[0, self.rows[row]] = int.from_bytes(data[18:20], "little") * 0.1
-            health[1, self.rows[row]] = data[20]
+    def _take_health(self, read: BlockRead, row: int, health: Array) -> None:
+        data = read.params(row)
+        voltage, temperature = REGISTERS["present_voltage"], REGISTERS["present_temperature"]
+        start = voltage.address - HEALTH.address
+        volts = voltage.decode(data[start : start + voltage.size]) * voltage.unit
+        health[:, self.rows[row]] = volts, data[temperature.address - HEALTH.address]
 
 
 def _read(
