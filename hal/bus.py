@@ -95,10 +95,15 @@ class Bus:
                 f"and reads back as {now}"
             )
 
-    def sync_read(self, ids: Sequence[int], register: Register) -> tuple[Counts, Mask]:
-        """Return (n,) counts of one register, and (n,) bool: whose are fresh."""
+    def sync_read(
+        self, ids: Sequence[int], register: Register, fast: bool = False
+    ) -> tuple[Counts, Mask]:
+        """Return (n,) counts of one register, and (n,) bool: whose are fresh.
+
+        Plain by default: behind a missing servo a fast answer is silent.
+        """
         spans = [Span(id, register.address, register.size) for id in ids]
-        read = BlockRead(spans, fast=self.fast(ids))
+        read = BlockRead(spans, fast=fast and self.fast(ids))
         self.exchange.request(read)
         valid = self.exchange.collect()
         kind = f"<{'i' if register.signed else 'u'}{register.size}"

@@ -27,7 +27,8 @@ class VirtualClock:
 class FakeSerial:
     def __init__(self, ids: list[int], clock: VirtualClock | None = None) -> None:
         self.clock = clock or VirtualClock()
-        self.baudrate, self.timeout = 1_000_000, 0.0
+        self.baudrate = 1_000_000
+        self.timeout: float | None = 0.0
         self.latency = 0.0
         self.memory = {id: self._fresh() for id in ids}
         self.error = dict.fromkeys(ids, 0)
@@ -133,7 +134,9 @@ class FakeSerial:
                 self.memory[id][start : start + len(data)] = data
 
     def _status(self, id: int, start: int, size: int) -> bytes:
-        return self._reply(id, bytes(self.memory[id][start : start + size]) if id in self.memory else b"")
+        return self._reply(
+            id, bytes(self.memory[id][start : start + size]) if id in self.memory else b""
+        )
 
     def _reply(self, id: int, params: bytes) -> bytes:
         if id not in self.memory or id in self.silent:

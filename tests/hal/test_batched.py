@@ -30,8 +30,7 @@ def test_a_whole_answer_is_taken_apart(data: list[bytes], error: int) -> None:
         read = BlockRead(spans)
         parts = [part[: span.size] for span, part in zip(spans, data, strict=False)]
         stream = b"".join(
-            protocol2.status(span.id, part, error)
-            for span, part in zip(spans, parts, strict=True)
+            protocol2.status(span.id, part, error) for span, part in zip(spans, parts, strict=True)
         )
         assert read.decode(stream).all()
         assert [read.params(row) for row in range(len(spans))] == parts
@@ -83,8 +82,7 @@ def test_a_patched_write_equals_a_built_one(values: list[int]) -> None:
     write = BlockWrite(IDS, 116, 4)
     write.values[:] = values
     data = {
-        id: value.to_bytes(4, "little", signed=True)
-        for id, value in zip(IDS, values, strict=True)
+        id: value.to_bytes(4, "little", signed=True) for id, value in zip(IDS, values, strict=True)
     }
     assert write.frame() == protocol2.sync_write(data, 116, 4)
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from hal.errors import CorruptAnswerError, NoAnswerError, PortError, RefusedError
 from hal.protocols import protocol2
+from hal.protocols.crc16 import crc16
 from hal.sdk import DynamixelLink, SdkPackets, SdkPort
 from tests.hal.fake_bus import fake_port
 
@@ -43,7 +44,7 @@ def test_the_sdk_writes_the_frames_that_we_build() -> None:
 
 @given(st.binary(min_size=1, max_size=30))
 def test_the_sdk_computes_the_same_crc(data: bytes) -> None:
-    ours = protocol2.crc16(data)
+    ours = crc16(data)
     assert Protocol2PacketHandler().updateCRC(0, data, len(data)) == ours
 
 
