@@ -65,9 +65,9 @@ class Exchange:
             return _NOBODY
         port, deadline = self.port, self._deadline
         stream = port.read(read.length, deadline)
-        valid = read.decode(stream)
+        read.decode(stream)
         self.cycles += 1
-        if not valid.all():
+        if not read.complete:
             self._resynchronise(read, stream)
         return read.valid
 
@@ -79,7 +79,7 @@ class Exchange:
     def _resynchronise(self, read: BlockRead, stream: bytes) -> None:
         """Wait for what stuffing, noise or a lost byte has moved back, and keep what is good."""
         self.errors["resynchronised"] += 1
-        while not read.valid.all() and self.port.clock.now() < self._deadline:
+        while not read.complete and self.port.clock.now() < self._deadline:
             more = self.port.read(max(1, read.length - len(stream)), self._deadline)
             if not more:
                 break

@@ -67,27 +67,36 @@ class Port:
     @baud.setter
     def baud(self, rate: int) -> None:
         if rate != self._serial.baudrate:
-            with self._explained():
+            try:
                 self._serial.baudrate = rate
+            except (SerialException, OSError, ValueError) as error:
+                raise PortError(f"port {self.url} cannot run at {rate} baud: {error}") from None
 
     def read(self, count: int, deadline: float) -> bytes:
         """Return `count` bytes, or what has come when the clock says `deadline` s."""
-        with self._explained():
-            self._serial.timeout = max(0.0, deadline - self.clock.now())
-            data = bytes(self._serial.read(count))
+        wait = deadline - self.clock.now()
+        try:
+            self._serial.timeout = wait if wait > 0.0 else 0.0
+            data = self._serial.read(count)
+        except (SerialException, OSError) as error:
+            raise self._gone(error) from None
         self.received += len(data)
         return data
 
     def write(self, data: bytes) -> None:
         """Send `data`; returns when the driver has it, not when the wire has."""
-        with self._explained():
+        try:
             self._serial.write(data)
+        except (SerialException, OSError) as error:
+            raise self._gone(error) from None
         self.sent += len(data)
 
     def flush_input(self) -> None:
         """Forget bytes that have arrived: a late answer must not pass for the next one."""
-        with self._explained():
+        try:
             self._serial.reset_input_buffer()
+        except (SerialException, OSError) as error:
+            raise self._gone(error) from None
 
     def close(self) -> None:
         """Give the device back. Closing twice is no error."""
@@ -99,13 +108,6 @@ class Port:
 
     def __exit__(self, *_: object) -> None:
         self.close()
-
-    @contextlib.contextmanager
-    def _explained(self) -> Any:
-        try:
-            yield
-        except (SerialException, OSError) as error:
-            raise self._gone(error) from None
 
     def _gone(self, error: Exception) -> PortError:
         return PortError(
@@ -119,8 +121,6 @@ class DevicePort(Port):
     def __init__(self, serial: Any, url: str, latency: float | None = None) -> None:
         super().__init__(serial, url, latency)
         self._fd: int = serial.fileno()
-        self._poll = select.poll()
-        self._poll.register(self._fd, select.POLLIN)
 
     def read(self, count: int, deadline: float) -> bytes:
         """Return `count` bytes, or what has come when the clock says `deadline` s."""
@@ -129,7 +129,8 @@ class DevicePort(Port):
         while left > 0:
             wait = deadline - self.clock.now()
             try:
-                if not self._poll.poll(max(0.0, wait * 1e3)):
+                # Not poll: it rounds the wait up to whole milliseconds.
+                if not select.select([self._fd], [], [], max(0.0, wait))[0]:
                     break
                 chunk = os.read(self._fd, left)
             except BlockingIOError:

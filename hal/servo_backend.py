@@ -88,6 +88,7 @@ class ServoBackend:
         self._answered = np.full(n, -np.inf)
         self._alert: Mask = np.zeros(n, dtype=bool)
         self._imu_at = -np.inf
+        self._patience = 0.9 * watchdog
         self._contacts = np.zeros(contacts)
         self._top = np.array([mount.model.counts_per_rev - 1 for mount in self.mounts])
         self._realised = np.empty((2, n))
@@ -151,17 +152,10 @@ class ServoBackend:
         late = False
         for line, torque in zip(self.lines, self._torque, strict=True):
             valid = line.collect(self._counts, self._health, self._alert)
-            now = self.clock.now()
-            rows = line.rows if valid.all() else line.rows[valid]
-            if torque.armed and rows.size:
-                silent = now - self._answered[rows].min() > 0.9 * self._watchdog
-                late = late or bool(silent)
-            self._answered[rows] = now
-            if line.imu_fresh:
-                self._imu_at = now
+            late |= self._note_answers(line, valid, torque.armed)
         if late:
             self.watchdog_trips += sum(torque.revive() for torque in self._torque)
-        if self._alert.any() or self.alerts:
+        if self.alerts or self._alert.any():
             self._explain_alerts()
         return self._observe()
 
@@ -177,8 +171,8 @@ class ServoBackend:
             self._send_gains(block[3])
         goal = shifted_goal(command) if block[1:3].any() else block[0]
         counts = np.rint(self.units.counts(goal))
-        inside = np.clip(counts, 0.0, self._top)
-        if (inside != counts).any():
+        inside = np.minimum(np.maximum(counts, 0.0), self._top)
+        if not np.array_equal(inside, counts):
             self.clamps["goal"] += 1
         for line in self.lines:
             line.goals.values[:] = inside[line.rows]
@@ -216,6 +210,16 @@ class ServoBackend:
         for line in self.lines:
             line.bus.port.close()
         self.lines, self._torque = [], []
+
+    def _note_answers(self, line: ServoLine, valid: Mask, armed: bool) -> bool:
+        """Date the answers that came; return whether a watchdog may have fired before them."""
+        now = self.clock.now()
+        rows = line.rows if valid.all() else line.rows[valid]
+        silent = armed and rows.size > 0 and now - self._answered[rows].min() > self._patience
+        self._answered[rows] = now
+        if line.imu_fresh:
+            self._imu_at = now
+        return bool(silent)
 
     def _observe(self) -> Observation:
         now = self.clock.now()

@@ -20,6 +20,10 @@ HEALTH = Span(0, 126, 21)
 HEALTH_EVERY = 10
 """One servo's voltage and temperature are read every so many cycles."""
 
+Rows = slice | npt.NDArray[np.intp]
+LAST_CODE = 127
+"""Largest error byte without the alert bit."""
+
 REGISTERS = {register.name: register for register in COMMON}
 
 
@@ -45,6 +49,9 @@ class ServoLine:
     ) -> None:
         self.bus, self.ids = bus, tuple(ids)
         self.rows: npt.NDArray[np.intp] = np.array(rows, dtype=np.intp)
+        # One bus in joint order is the rule, and a slice costs less than an index.
+        whole = self.rows.tolist() == list(range(len(self.ids)))
+        self._where: Rows = slice(len(self.ids)) if whole else self.rows
         self.board = board
         self.imu: bytes | None = None
         self.imu_fresh = False
@@ -95,21 +102,22 @@ class ServoLine:
         self.imu_fresh = self.board is not None and bool(answered[-1])
         if self.imu_fresh:
             self.imu = read.params(servos)
-        state = self._fields(read)
-        complete = bool(valid.all())
         # In a fast answer all are silent behind a missing one: ask plainly until all are back.
-        self._broken_chain = not complete
-        if complete:
-            rows, state, error = self.rows, state, read.error[:servos]
-        else:
-            rows, state, error = self.rows[valid], state[valid], read.error[:servos][valid]
-        counts[0, rows] = state["position"]
-        counts[1, rows] = state["velocity"]
-        counts[2, rows] = state["current"]
-        alert[rows] = error > 127
+        self._broken_chain = not read.complete
+        self._put(read, valid, counts, alert)
         if self._long is not None and valid[self._long]:
             self._take_health(read, self._long, health)
         return valid
+
+    def _put(self, read: BlockRead, valid: Mask, counts: Array, alert: Mask) -> None:
+        state, error = self._fields(read), read.error[: len(self.ids)]
+        rows: Rows = self._where
+        if not read.complete:
+            rows, state, error = self.rows[valid], state[valid], error[valid]
+        counts[0, rows] = state["position"]
+        counts[1, rows] = state["velocity"]
+        counts[2, rows] = state["current"]
+        alert[rows] = error > LAST_CODE
 
     def _fields(self, read: BlockRead) -> npt.NDArray[np.void]:
         """Return (servos,) records of `STATE_TYPE`."""

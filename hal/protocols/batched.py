@@ -29,6 +29,7 @@ class BlockRead:
         length: Bytes of a complete answer without stuffing.
         longest: Bytes of the longest answer that stuffing can make.
         valid: (n,) bool: who answered the last request.
+        complete: Did all?
         error: (n,) error bytes, and what the properties below show: as of each servo's last
             good answer.
     """
@@ -45,6 +46,7 @@ class BlockRead:
             self.request = protocol2.bulk_read(self.spans)
         self._lay_out(_fast_answer(self.spans) if fast else _answers(self.spans))
         self.valid: Mask = np.zeros(len(self.spans), dtype=bool)
+        self.complete = False
         self.error: Bytes = np.zeros(len(self.spans), dtype=np.uint8)
         self.payload: Bytes = np.zeros(self._ends[-1], dtype=np.uint8)
 
@@ -69,7 +71,9 @@ class BlockRead:
             if self._sound(data):
                 data.take(self._payload_at, out=self.payload, mode="clip")
                 data.take(self._error_at, out=self.error, mode="clip")
-                self.valid.fill(True)
+                if not self.complete:
+                    self.valid.fill(True)
+                    self.complete = True
                 return self.valid
         self._salvage(stream)
         return self.valid
@@ -96,6 +100,7 @@ class BlockRead:
                 self.payload[end - len(item.params) : end] = np.frombuffer(item.params, np.uint8)
                 self.error[row] = item.error
                 self.valid[row] = True
+        self.complete = bool(self.valid.all())
 
     def _statuses(self, stream: bytes) -> Sequence[Status]:
         if self.fast:
