@@ -62,6 +62,22 @@ class HardwareError(WindupError):
     exit_status = 3
 
 
+class PortError(HardwareError):
+    """A port cannot be opened, or went away."""
+
+
+class NoAnswerError(HardwareError):
+    """A servo that was asked said nothing before the deadline."""
+
+
+class CorruptAnswerError(HardwareError):
+    """Bytes came, but no frame with a good checksum: noise, a wrong baud rate, an id twice."""
+
+
+class RefusedError(HardwareError):
+    """A servo answered that it will not do what it was told."""
+
+
 def suggest(name: str, known: Iterable[str]) -> str:
     """Return "; did you mean ...? known: ..." for an unknown `name`.
 

@@ -1,0 +1,97 @@
+"""Split-phase reads on one port: ask, compute, collect, with deadlines from the wire itself."""
+
+from collections import Counter
+from collections.abc import Iterable
+
+import numpy as np
+
+from hal.joints import Mask
+from hal.port import Port
+from hal.protocols.batched import BlockRead
+
+SLACK = 2e-3
+"""What the host and its driver may add to the time on the wire, s."""
+TURNAROUND = 20e-6
+"""What a servo with a return delay of 0 takes to answer, s."""
+UNSET_TURNAROUND = 550e-6
+"""The same as it leaves the factory, s."""
+
+
+_NOBODY: Mask = np.zeros(0, dtype=bool)
+
+
+class Exchange:
+    """The cyclic traffic of one port.
+
+    The time on the wire of everything sent is kept in mind, so that a request behind a long
+    write has its deadline moved, and no answer is waited for longer than it can take.
+
+    Attributes:
+        port: The port.
+        errors: Kind of error to how often it happened: "no answer" and "corrupt" count servos,
+            "resynchronised" counts answers that the fast check turned down.
+        cycles: Answers collected.
+        turnaround: What each servo takes before it answers, s; `TURNAROUND` once its return
+            delay has been set to 0.
+    """
+
+    def __init__(self, port: Port) -> None:
+        self.port = port
+        self.errors: Counter[str] = Counter()
+        self.cycles = 0
+        self.turnaround = UNSET_TURNAROUND
+        self._wire_free = 0.0
+        self._deadline = 0.0
+        self._pending: BlockRead | None = None
+
+    def send(self, frames: Iterable[bytes]) -> None:
+        """Send frames that nobody answers."""
+        for frame in frames:
+            self.port.write(frame)
+            self._occupy(len(frame))
+
+    def request(self, read: BlockRead) -> None:
+        """Ask; input that has come before is too late for whatever it answered."""
+        self.port.flush_input()
+        self.port.write(read.request)
+        self._occupy(len(read.request))
+        self._deadline = self._wire_free + self.answer_time(read)
+        self._pending = read
+
+    def collect(self) -> Mask:
+        """Return (n,) bool: who answered the request in time; all False without a request."""
+        read, self._pending = self._pending, None
+        if read is None:
+            return _NOBODY
+        port, deadline = self.port, self._deadline
+        stream = port.read(read.length, deadline)
+        read.decode(stream)
+        self.cycles += 1
+        if not read.complete:
+            self._resynchronise(read, stream)
+        return read.valid
+
+    def answer_time(self, read: BlockRead) -> float:
+        """Return how long the answer to `read` may take once the request is on the wire, s."""
+        wire = read.length * 10.0 / self.port.baud
+        return wire + len(read.spans) * self.turnaround + self.port.latency + SLACK
+
+    def _resynchronise(self, read: BlockRead, stream: bytes) -> None:
+        """Wait for what stuffing, noise or a lost byte has moved back, and keep what is good."""
+        self.errors["resynchronised"] += 1
+        while not read.complete and self.port.clock.now() < self._deadline:
+            more = self.port.read(max(1, read.length - len(stream)), self._deadline)
+            if not more:
+                break
+            stream += more
+            if len(stream) > 2 * read.longest:
+                break
+            read.decode(stream)
+        lost = int((~read.valid).sum())
+        if lost:
+            kind = "corrupt" if len(stream) > read.answered() else "no answer"
+            self.errors[kind] += lost
+
+    def _occupy(self, count: int) -> None:
+        start = max(self._wire_free, self.port.clock.now())
+        self._wire_free = start + count * 10.0 / self.port.baud

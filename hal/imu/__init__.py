@@ -1,0 +1,1 @@
+"""Inertial sensors: from their bytes to an `ImuState`."""

@@ -1,0 +1,52 @@
+"""The OpenCR board of a ROBOTIS humanoid: a Dynamixel slave with an IMU, on the servos' bus.
+
+Scales, addresses and axis signs are those of ROBOTIS' OpenCR firmware for the OP3 and of its host
+driver (Apache-2.0). The board's own roll, pitch and yaw are left alone, as that driver does: the
+attitude is the estimator's business.
+"""
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from hal.joints import Array
+from hal.observation import ImuState
+from hal.protocols.protocol2 import Span
+from hal.registers import Register
+
+GYRO = 2000.0 / 32800.0 * pi / 180.0
+"""rad/s of one count."""
+ACCELERATION = 2.0 / 32768.0 * 9.80665
+"""m/s2 of one count."""
+POWER = Register("dynamixel_power", 24, 1)
+"""1: the servos of the bus have power."""
+POWER_UP_TIME = 0.5
+"""From switching that power on to servos that answer, s."""
+VOLTAGE_UNIT = 0.1
+
+
+@dataclass(frozen=True)
+class OpenCr:
+    """Where the board is and how it is turned in the body.
+
+    Attributes:
+        bus: Name of its bus.
+        id: Its id there.
+        signs: (3,) sign of each axis of the chip in the body frame.
+    """
+
+    bus: str
+    id: int = 200
+    signs: tuple[int, int, int] = (-1, -1, 1)
+
+    @property
+    def span(self) -> Span:
+        """Buttons, voltage, gyroscope, accelerometer and angles in one run of registers."""
+        return Span(self.id, 30, 20)
+
+    def decode(self, data: bytes, age: float) -> ImuState:
+        """Return the sample in the bytes of `span`, `age` s old, in the body frame."""
+        counts = np.frombuffer(data, "<i2", count=6, offset=2).astype(np.float64)
+        signs: Array = np.array(self.signs, dtype=np.float64)
+        return ImuState(None, counts[:3] * signs * GYRO, counts[3:] * signs * ACCELERATION, age)

@@ -1,0 +1,135 @@
+"""`open_port(url)`: from what a person writes to a `Port`, or to a message that helps."""
+
+import contextlib
+import errno
+import grp
+import importlib
+import os
+from pathlib import Path
+from typing import Any
+
+import serial
+from serial.tools import list_ports
+
+from hal.errors import PortError, UsageError
+from hal.port import DevicePort, Port
+
+BAUD = 1_000_000
+
+
+def open_port(url: str, baud: int = BAUD) -> Port:
+    """Open a device path, ``usb:SERIAL``, ``twin://...`` or any URL of pyserial.
+
+    Devices are opened exclusively and with low latency where their driver knows such a thing.
+
+    Raises:
+        PortError: It cannot be opened; the message says what to do.
+        UsageError: No handler for this kind of URL.
+    """
+    if "://" in url:
+        _check_handler(url)
+        return Port(_open(url, url, baud), url)
+    device = _by_serial_number(url[4:]) if url.startswith("usb:") else url
+    _check_holder(device)
+    opened = _open(device, url, baud)
+    # Pseudo-terminals and some drivers do not know the call; they have no such latency either.
+    with contextlib.suppress(ValueError, OSError, NotImplementedError):
+        opened.set_low_latency_mode(True)
+    return DevicePort(opened, url, _latency(device))
+
+
+def _open(target: str, url: str, baud: int) -> Any:
+    try:
+        if "://" in target:
+            return serial.serial_for_url(target, baudrate=baud, timeout=0)
+        return serial.Serial(target, baudrate=baud, timeout=0, exclusive=True)
+    except (serial.SerialException, OSError) as error:
+        raise PortError(_explain(target, url, error)) from None
+    except ValueError as error:
+        raise UsageError(f"{url}: {error}") from None
+
+
+def _check_handler(url: str) -> None:
+    """Find what pyserial hides: a handler that is missing, or whose import fails."""
+    scheme = url.split("://", 1)[0].lower()
+    name = f"protocol_{scheme}"
+    for package in serial.protocol_handler_packages:
+        module = f"{package}.{name}"
+        try:
+            importlib.import_module(module)
+        except ModuleNotFoundError as error:
+            if error.name in (module, package):
+                continue
+            raise UsageError(f"{url}: its handler {module} needs {error.name!r}") from error
+        return
+    if scheme == "twin":
+        raise UsageError(
+            f"{url}: nobody serves twin:// in this process; `import sim_twin.wire` first, "
+            "or use the `windup` command, which does"
+        )
+    raise UsageError(f"{url}: pyserial knows no {scheme}:// ports")
+
+
+def _by_serial_number(number: str) -> str:
+    ports = list_ports.comports()
+    for port in ports:
+        if port.serial_number == number:
+            return str(port.device)
+    known = ", ".join(sorted(p.serial_number for p in ports if p.serial_number)) or "none"
+    raise PortError(f"no USB adapter with serial number {number!r}; plugged in: {known}")
+
+
+def _explain(device: str, url: str, error: Exception) -> str:
+    code = getattr(error, "errno", None)
+    if "://" in device:
+        return f"{url} cannot be opened: {error}"
+    if not os.path.exists(device):
+        ports = ", ".join(sorted(p.device for p in list_ports.comports())) or "none"
+        return f"no port {url}; ports there are: {ports}"
+    if code == errno.EACCES or "ermission denied" in str(error):
+        return f"no permission for {url}; {_remedy(device)}"
+    if code in (errno.EAGAIN, errno.EBUSY, errno.EWOULDBLOCK) or "lock port" in str(error):
+        return _busy(url, holders(device))
+    return f"port {url} cannot be opened: {error}"
+
+
+def _remedy(device: str) -> str:
+    group = grp.getgrgid(os.stat(device).st_gid).gr_name
+    return f"join its group: sudo usermod -aG {group} $USER, then log in again"
+
+
+def _busy(url: str, held_by: list[str]) -> str:
+    return f"port {url} is in use by {', '.join(held_by) or 'another process'}; stop that first"
+
+
+def _check_holder(device: str) -> None:
+    """Refuse a device that somebody holds without a lock, as the makers' packages do.
+
+    The far side of a pseudo-terminal may well be held open by who serves it: only locks count.
+    """
+    real = os.path.realpath(device)
+    if real.startswith("/dev/pts/") or not os.path.exists(real):
+        return
+    if held_by := holders(device):
+        raise PortError(_busy(device, held_by))
+
+
+def holders(device: str) -> list[str]:
+    """Return "name (pid n)" of the processes that have `device` open, as far as we may see."""
+    real = os.path.realpath(device)
+    found = []
+    for process in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            if any(os.path.realpath(fd) == real for fd in (process / "fd").iterdir()):
+                name = (process / "comm").read_text().strip()
+                found.append(f"{name} (pid {process.name})")
+    return sorted(found)
+
+
+def _latency(device: str) -> float | None:
+    """Return the latency timer of an FTDI adapter, s; None where there is none."""
+    name = os.path.basename(os.path.realpath(device))
+    try:
+        return int(Path(f"/sys/class/tty/{name}/device/latency_timer").read_text()) * 1e-3
+    except (OSError, ValueError):
+        return None

@@ -1,0 +1,157 @@
+"""A serial port with its own clock: bytes, deadlines and nothing about servos."""
+
+import contextlib
+import os
+import select
+from typing import Any, Protocol
+
+from serial import SerialException
+
+from hal.backend import Clock
+from hal.clock import WallClock
+from hal.errors import PortError
+
+LATENCY = 1e-3
+"""What an adapter may hold back when its driver does not say, s."""
+
+
+class SerialLike(Protocol):
+    """The part of a pyserial object that a `Port` uses; timeouts are s on the object's clock."""
+
+    baudrate: int
+    timeout: float | None
+
+    def read(self, size: int = 1, /) -> bytes:
+        """Return up to `size` bytes, blocking no longer than `timeout`."""
+        ...
+
+    def write(self, data: bytes, /) -> int | None:
+        """Send all of `data`."""
+        ...
+
+    def reset_input_buffer(self) -> None:
+        """Forget what came in."""
+        ...
+
+    def close(self) -> None:
+        """Give the device back."""
+        ...
+
+
+class Port:
+    """One open port.
+
+    A virtual world passes time only while somebody waits for it, so reads block until their
+    deadline and never poll.
+
+    Attributes:
+        url: What was opened, as the user wrote it.
+        clock: The wall, or the clock of the world behind the port.
+        latency: How long the adapter may hold back bytes that have arrived, s.
+        sent: Bytes written so far.
+        received: Bytes read so far.
+    """
+
+    def __init__(self, serial: SerialLike, url: str, latency: float | None = None) -> None:
+        self._serial, self.url = serial, url
+        world: Any = getattr(serial, "clock", None)
+        self.clock: Clock = world if world is not None else WallClock()
+        self.latency: float = getattr(serial, "latency", LATENCY) if latency is None else latency
+        self.sent = self.received = 0
+
+    @property
+    def baud(self) -> int:
+        """Bits a second; assign to change it in place."""
+        return self._serial.baudrate
+
+    @baud.setter
+    def baud(self, rate: int) -> None:
+        if rate != self._serial.baudrate:
+            try:
+                self._serial.baudrate = rate
+            except (SerialException, OSError, ValueError) as error:
+                raise PortError(f"port {self.url} cannot run at {rate} baud: {error}") from None
+
+    def read(self, count: int, deadline: float) -> bytes:
+        """Return `count` bytes, or what has come when the clock says `deadline` s."""
+        wait = deadline - self.clock.now()
+        try:
+            self._serial.timeout = wait if wait > 0.0 else 0.0
+            data = self._serial.read(count)
+        except (SerialException, OSError) as error:
+            raise self._gone(error) from None
+        self.received += len(data)
+        return data
+
+    def write(self, data: bytes) -> None:
+        """Send `data`; returns when the driver has it, not when the wire has."""
+        try:
+            self._serial.write(data)
+        except (SerialException, OSError) as error:
+            raise self._gone(error) from None
+        self.sent += len(data)
+
+    def flush_input(self) -> None:
+        """Forget bytes that have arrived: a late answer must not pass for the next one."""
+        try:
+            self._serial.reset_input_buffer()
+        except (SerialException, OSError) as error:
+            raise self._gone(error) from None
+
+    def close(self) -> None:
+        """Give the device back. Closing twice is no error."""
+        with contextlib.suppress(SerialException, OSError):
+            self._serial.close()
+
+    def __enter__(self) -> "Port":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _gone(self, error: Exception) -> PortError:
+        return PortError(
+            f"port {self.url} went away ({error}); check cable and power, then open it again"
+        )
+
+
+class DevicePort(Port):
+    """A port of the operating system: reads its descriptor itself, which costs half of pyserial."""
+
+    def __init__(self, serial: Any, url: str, latency: float | None = None) -> None:
+        super().__init__(serial, url, latency)
+        self._fd: int = serial.fileno()
+
+    def read(self, count: int, deadline: float) -> bytes:
+        """Return `count` bytes, or what has come when the clock says `deadline` s."""
+        chunks: list[bytes] = []
+        left = count
+        while left > 0:
+            wait = deadline - self.clock.now()
+            try:
+                # Not poll: it rounds the wait up to whole milliseconds.
+                if not select.select([self._fd], [], [], max(0.0, wait))[0]:
+                    break
+                chunk = os.read(self._fd, left)
+            except BlockingIOError:
+                continue
+            except OSError as error:
+                raise self._gone(error) from None
+            if not chunk:
+                raise self._gone(OSError("end of file"))
+            chunks.append(chunk)
+            left -= len(chunk)
+        self.received += count - left
+        return chunks[0] if len(chunks) == 1 else b"".join(chunks)
+
+    def write(self, data: bytes) -> None:
+        """Send `data`; returns when the driver has it, not when the wire has."""
+        view = memoryview(data)
+        while view:
+            try:
+                view = view[os.write(self._fd, view) :]
+            except BlockingIOError:
+                select.select([], [self._fd], [], 0.1)
+            except OSError as error:
+                raise self._gone(error) from None
+        self.sent += len(data)

@@ -1,0 +1,222 @@
+"""The cyclic codec: all answers of a cycle checked at once, all goals patched into one frame.
+
+A read is laid out once: which bytes of the expected stream are constant, which vary, how far each
+stands from the end of its frame. A cycle then costs a handful of numpy calls whatever the number
+of servos. Anything that does not fit the layout to the byte (a stuffed, missing or broken reply)
+goes to the resynchronising parser of `hal.protocols.protocol2`, which keeps the good replies.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from hal.joints import Mask
+from hal.protocols import protocol2
+from hal.protocols.crc16 import distance_table
+from hal.protocols.protocol2 import Span, Status
+
+Bytes = npt.NDArray[np.uint8]
+Index = npt.NDArray[np.intp]
+
+
+class BlockRead:
+    """One request and the n replies to it.
+
+    Attributes:
+        spans: What is read of whom, in the order of the replies.
+        request: The frame to send.
+        length: Bytes of a complete answer without stuffing.
+        longest: Bytes of the longest answer that stuffing can make.
+        valid: (n,) bool: who answered the last request.
+        complete: Did all?
+        error: (n,) error bytes, and what the properties below show: as of each servo's last
+            good answer.
+    """
+
+    def __init__(self, spans: Sequence[Span], fast: bool = False) -> None:
+        self.spans, self.fast = tuple(spans), fast
+        self._rows = {span.id: row for row, span in enumerate(self.spans)}
+        uniform = len({(span.address, span.size) for span in self.spans}) == 1
+        ids = [span.id for span in self.spans]
+        if uniform:
+            first = self.spans[0]
+            self.request = protocol2.sync_read(ids, first.address, first.size, fast)
+        else:
+            self.request = protocol2.bulk_read(self.spans)
+        self._lay_out(_fast_answer(self.spans) if fast else _answers(self.spans))
+        self.valid: Mask = np.zeros(len(self.spans), dtype=bool)
+        self.complete = False
+        self.error: Bytes = np.zeros(len(self.spans), dtype=np.uint8)
+        self.payload: Bytes = np.zeros(self._ends[-1], dtype=np.uint8)
+
+    def column(self, offset: int, dtype: str, rows: slice = slice(None)) -> npt.NDArray[np.int64]:
+        """Return a live view of one field of the chosen rows, which must be of equal size.
+
+        `offset` counts bytes from the start of each span; the view is updated by `decode`.
+        """
+        chosen = range(len(self.spans))[rows]
+        size = self.spans[chosen[0]].size
+        start = self._ends[chosen[0]] - size + offset
+        return np.ndarray((len(chosen),), dtype, self.payload.data, start, (size,))
+
+    def params(self, row: int) -> bytes:
+        """Return the last good parameters of one row."""
+        return self.payload[self._ends[row] - self.spans[row].size : self._ends[row]].tobytes()
+
+    def decode(self, stream: bytes) -> Mask:
+        """Take in an answer and return (n,) bool: whose reply was in it and good."""
+        if len(stream) == self.length:
+            data = np.frombuffer(stream, dtype=np.uint8)
+            if self._sound(data):
+                data.take(self._payload_at, out=self.payload, mode="clip")
+                data.take(self._error_at, out=self.error, mode="clip")
+                if not self.complete:
+                    self.valid.fill(True)
+                    self.complete = True
+                return self.valid
+        self._salvage(stream)
+        return self.valid
+
+    def answered(self) -> int:
+        """Return how many bytes the good replies to the last request had, without stuffing."""
+        sizes = np.array([span.size for span in self.spans])
+        each = sizes + (4 if self.fast else protocol2.OVERHEAD)
+        return int(each[self.valid].sum()) + (8 if self.fast else 0)
+
+    def _sound(self, data: Bytes) -> bool:
+        if data.take(self._fixed_at).tobytes() != self._fixed:
+            return False
+        np.add(data.take(self._vary_at), self._base, out=self._index)
+        terms = self._table.take(self._index, mode="clip")
+        return bool((np.bitwise_xor.reduceat(terms, self._starts) == self._fixed_crc).all())
+
+    def _salvage(self, stream: bytes) -> None:
+        self.valid.fill(False)
+        for item in self._statuses(stream):
+            if self._fits(item):
+                row = self._rows[item.id]
+                end = self._ends[row]
+                self.payload[end - len(item.params) : end] = np.frombuffer(item.params, np.uint8)
+                self.error[row] = item.error
+                self.valid[row] = True
+        self.complete = bool(self.valid.all())
+
+    def _statuses(self, stream: bytes) -> Sequence[Status]:
+        if self.fast:
+            return list(protocol2.salvage_fast(stream, self.spans[0].size))
+        return list(protocol2.salvage(stream, self.longest))
+
+    def _fits(self, item: Status) -> bool:
+        row = self._rows.get(item.id)
+        return row is not None and len(item.params) == self.spans[row].size
+
+    def _lay_out(self, answer: bytes) -> None:
+        """Index the bytes of an `answer` whose error bytes, parameters and CRCs are all 0."""
+        self.length = len(answer)
+        sizes = [span.size for span in self.spans]
+        self.longest = self.length + sum((size + 1) // 3 for size in sizes)
+        self._ends = np.cumsum(sizes).tolist()
+        head = 8 if self.fast else 0
+        skip, tail = (2, 2) if self.fast else (9, 2)
+        starts = head + np.cumsum([0, *[skip + size + tail for size in sizes[:-1]]])
+        where = list(zip(starts.tolist(), sizes, strict=True))
+        params = [np.arange(at + skip, at + skip + size) for at, size in where]
+        self._payload_at: Index = np.concatenate(params)
+        self._error_at: Index = starts if self.fast else starts + 8
+        # Whether a frame is sound depends on its bytes from the error byte to the CRC.
+        first = self._error_at
+        last = [at + skip + size + tail for at, size in where]
+        varies = np.zeros(self.length, dtype=bool)
+        for begin, end in zip(first.tolist(), last, strict=True):
+            varies[begin:end] = True
+        if self.fast:
+            varies[starts + 1] = False
+            frames = [(0, self.length)]
+        else:
+            frames = [(at, end) for (at, _), end in zip(where, last, strict=True)]
+        self._vary_at: Index = np.flatnonzero(varies)
+        self._fixed_at: Index = np.flatnonzero(~varies)
+        self._fixed = bytes(answer[at] for at in self._fixed_at)
+        self._checks(answer, frames)
+
+    def _checks(self, answer: bytes, frames: list[tuple[int, int]]) -> None:
+        """Prepare the tables with which each frame of `answer` XORs to 0."""
+        longest = max(end - start for start, end in frames) - 2
+        table = distance_table(longest)
+        plain = np.stack([np.arange(256), np.arange(256) << 8]).astype(np.uint16)
+        self._table = np.concatenate([table, plain]).ravel()
+        row = np.empty(self.length, dtype=np.intp)
+        for start, end in frames:
+            row[start : end - 2] = np.arange(end - start - 3, -1, -1)
+            row[end - 2 : end] = longest, longest + 1
+        base = row * 256
+        self._base = base[self._vary_at]
+        self._index = np.empty_like(self._base)
+        heads = [start for start, _ in frames]
+        self._starts: Index = np.searchsorted(self._vary_at, heads)
+        constant = np.frombuffer(answer, np.uint8)[self._fixed_at] + base[self._fixed_at]
+        fixed_starts = np.searchsorted(self._fixed_at, heads)
+        self._fixed_crc = np.bitwise_xor.reduceat(self._table[constant], fixed_starts)
+
+
+class BlockWrite:
+    """A sync write of the same register to n servos, built once and patched each time.
+
+    Attributes:
+        values: (n,) integers, a view into the frame: assign to it, then call `frame`.
+    """
+
+    def __init__(self, ids: Sequence[int], address: int, size: int) -> None:
+        self.ids, self.address, self.size = tuple(ids), address, size
+        zero = bytes(size)
+        self._frame = bytearray(protocol2.sync_write(dict.fromkeys(ids, zero), address, size))
+        self.values: npt.NDArray[np.int64] = np.ndarray(
+            (len(self.ids),), f"<i{size}", self._frame, 13, (size + 1,)
+        )
+        whole = np.frombuffer(self._frame, np.uint8)
+        at = np.arange(12, len(self._frame) - 2).reshape(len(self.ids), size + 1)[:, 1:].ravel()
+        table = distance_table(len(self._frame) - 2)
+        self._table = table.ravel()
+        self._data = whole[12:-2]
+        self._at: Index = at - 12
+        self._base = (len(self._frame) - 3 - at) * 256
+        self._index = np.empty_like(self._base)
+        self._empty_crc = int.from_bytes(self._frame[-2:], "little")
+
+    def frame(self) -> bytes:
+        """Return the frame for the present `values`, stuffed where that is needed."""
+        frame = self._frame
+        if frame.find(b"\xff\xff\xfd", 7, len(frame) - 2) >= 0:
+            return self._stuffed()
+        np.add(self._data.take(self._at), self._base, out=self._index)
+        terms = self._table.take(self._index, mode="clip")
+        crc = int(np.bitwise_xor.reduce(terms)) ^ self._empty_crc
+        frame[-2:] = crc.to_bytes(2, "little")
+        return bytes(frame)
+
+    def _stuffed(self) -> bytes:
+        rows = self.values.tolist()
+        data = {
+            id: value.to_bytes(self.size, "little", signed=True)
+            for id, value in zip(self.ids, rows, strict=True)
+        }
+        return protocol2.sync_write(data, self.address, self.size)
+
+
+def _answers(spans: Sequence[Span]) -> bytes:
+    """Return all replies with error, parameters and CRC 0."""
+    frames = []
+    for span in spans:
+        length = (span.size + 4).to_bytes(2, "little")
+        head = protocol2.HEADER + bytes([span.id]) + length + bytes([protocol2.Instruction.STATUS])
+        frames.append(head + bytes(span.size + 3))
+    return b"".join(frames)
+
+
+def _fast_answer(spans: Sequence[Span]) -> bytes:
+    """Return the one reply to a fast sync read with error, parameters and CRCs 0."""
+    blocks = b"".join(bytes([0, span.id]) + bytes(span.size + 2) for span in spans)
+    length = (len(blocks) + 1).to_bytes(2, "little")
+    head = protocol2.HEADER + bytes([protocol2.BROADCAST]) + length
+    return head + bytes([protocol2.Instruction.STATUS]) + blocks

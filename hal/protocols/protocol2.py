@@ -1,0 +1,196 @@
+"""Dynamixel protocol 2: instruction frames to bytes, and status frames out of a dirty stream.
+
+A frame, with the checksum over everything before it::
+
+    FF FF FD 00 | id | length (2) | instruction | parameters ... | CRC (2)
+
+`length` counts from the instruction to the end. A status frame has instruction 0x55 and an error
+byte before its parameters. Inside instruction and parameters every FF FF FD is followed by one
+more FD ("stuffing"), so that no payload looks like a header. All numbers are little-endian.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from enum import IntEnum
+from typing import NamedTuple
+
+from hal.protocols.crc16 import crc16
+
+HEADER = b"\xff\xff\xfd\x00"
+BROADCAST = 0xFE
+LAST_ID = 0xFC
+OVERHEAD = 11
+"""Bytes of a status frame without parameters."""
+LONGEST = 1024
+"""No servo of the family sends a longer frame; a length above it is noise."""
+ALERT = 0x80
+"""Bit of the error byte: the servo's hardware error register is not 0."""
+
+_PATTERN = b"\xff\xff\xfd"
+_STUFFED = b"\xff\xff\xfd\xfd"
+
+
+class Instruction(IntEnum):
+    """Instruction bytes."""
+
+    PING = 0x01
+    READ = 0x02
+    WRITE = 0x03
+    REG_WRITE = 0x04
+    ACTION = 0x05
+    FACTORY_RESET = 0x06
+    REBOOT = 0x08
+    CLEAR = 0x10
+    STATUS = 0x55
+    SYNC_READ = 0x82
+    SYNC_WRITE = 0x83
+    FAST_SYNC_READ = 0x8A
+    BULK_READ = 0x92
+    BULK_WRITE = 0x93
+
+
+class Status(NamedTuple):
+    """One answer: who, the error byte, and the parameters without stuffing."""
+
+    id: int
+    error: int
+    params: bytes
+
+
+class Span(NamedTuple):
+    """A run of registers of one servo."""
+
+    id: int
+    address: int
+    size: int
+
+
+def stuff(payload: bytes) -> bytes:
+    """Return `payload` with an FD behind every FF FF FD."""
+    return payload.replace(_PATTERN, _STUFFED)
+
+
+def unstuff(payload: bytes) -> bytes:
+    """Return the inverse of `stuff`."""
+    return payload.replace(_STUFFED, _PATTERN)
+
+
+def frame(id: int, instruction: int, params: bytes = b"") -> bytes:
+    """Return a whole frame, stuffed and with its CRC.
+
+    >>> frame(1, Instruction.PING).hex(" ")
+    'ff ff fd 00 01 03 00 01 19 4e'
+    """
+    body = stuff(bytes([instruction]) + params)
+    head = HEADER + bytes([id]) + (len(body) + 2).to_bytes(2, "little")
+    return head + body + crc16(head + body).to_bytes(2, "little")
+
+
+def status(id: int, params: bytes = b"", error: int = 0) -> bytes:
+    """Return the frame that servo `id` answers with."""
+    return frame(id, Instruction.STATUS, bytes([error]) + params)
+
+
+def ping(id: int = BROADCAST) -> bytes:
+    """Return the frame that asks one servo, or all, who is there."""
+    return frame(id, Instruction.PING)
+
+
+def read(id: int, address: int, size: int) -> bytes:
+    """Return the frame that reads `size` bytes at `address`."""
+    return frame(id, Instruction.READ, _range(address, size))
+
+
+def write(id: int, address: int, data: bytes) -> bytes:
+    """Return the frame that writes `data` at `address`."""
+    return frame(id, Instruction.WRITE, _word(address) + data)
+
+
+def reg_write(id: int, address: int, data: bytes) -> bytes:
+    """Return the frame that stores a write until `action`."""
+    return frame(id, Instruction.REG_WRITE, _word(address) + data)
+
+
+def action(id: int = BROADCAST) -> bytes:
+    """Return the frame that carries out stored writes."""
+    return frame(id, Instruction.ACTION)
+
+
+def reboot(id: int) -> bytes:
+    """Return the frame that restarts a servo."""
+    return frame(id, Instruction.REBOOT)
+
+
+def factory_reset(id: int, keep: int = 0x02) -> bytes:
+    """Return the reset frame; `keep` 0xFF nothing, 0x01 the id, 0x02 id and baud rate."""
+    return frame(id, Instruction.FACTORY_RESET, bytes([keep]))
+
+
+def sync_read(ids: Iterable[int], address: int, size: int, fast: bool = False) -> bytes:
+    """Return the frame that reads the same registers of several servos."""
+    kind = Instruction.FAST_SYNC_READ if fast else Instruction.SYNC_READ
+    return frame(BROADCAST, kind, _range(address, size) + bytes(ids))
+
+
+def sync_write(data: Mapping[int, bytes], address: int, size: int) -> bytes:
+    """Return the frame that writes `size` bytes at `address` of each id in `data`."""
+    body = b"".join(bytes([id]) + value for id, value in data.items())
+    return frame(BROADCAST, Instruction.SYNC_WRITE, _range(address, size) + body)
+
+
+def bulk_read(spans: Iterable[Span]) -> bytes:
+    """Return the frame that reads other registers of each servo. No id may come twice."""
+    body = b"".join(bytes([span.id]) + _range(span.address, span.size) for span in spans)
+    return frame(BROADCAST, Instruction.BULK_READ, body)
+
+
+def salvage(stream: bytes, longest: int = LONGEST) -> Iterator[Status]:
+    """Yield every good status frame of `stream`, whatever lies between them.
+
+    Never raises. A length that cannot be, a cut frame or a bad CRC costs that frame only: the
+    search goes on behind its header, so a corrupt length swallows nothing.
+    """
+    at = stream.find(HEADER)
+    while at >= 0:
+        end = at + 7 + int.from_bytes(stream[at + 5 : at + 7], "little")
+        if _is_status(stream, at, end, longest):
+            yield Status(stream[at + 4], stream[at + 8], unstuff(stream[at + 9 : end - 2]))
+            at = stream.find(HEADER, end)
+        else:
+            at = stream.find(HEADER, at + len(HEADER))
+
+
+def _is_status(stream: bytes, at: int, end: int, longest: int) -> bool:
+    return (
+        at + OVERHEAD <= end <= min(len(stream), at + longest)
+        and stream[at + 7] == Instruction.STATUS
+        and stream[at + 4] <= LAST_ID
+        and crc16(stream[at : end - 2]) == int.from_bytes(stream[end - 2 : end], "little")
+    )
+
+
+def salvage_fast(stream: bytes, size: int) -> Iterator[Status]:
+    """Yield the good blocks of an answer to a fast sync read of `size` bytes a servo.
+
+    All servos answer in one frame without stuffing; each block ends in the CRC of the frame so
+    far. Going on from the CRC that the block before it sent checks every block by itself, so one
+    bad block costs one servo.
+    """
+    width = size + 4
+    at = stream.find(HEADER + bytes([BROADCAST]))
+    if at < 0 or stream[at + 7 : at + 8] != bytes([Instruction.STATUS]):
+        return
+    crc = crc16(stream[at : at + 8])
+    for start in range(at + 8, len(stream) - width + 1, width):
+        block = stream[start : start + width]
+        sent = int.from_bytes(block[-2:], "little")
+        if crc16(block[:-2], crc) == sent:
+            yield Status(block[1], block[0], block[2:-2])
+        crc = crc16(block[-2:], sent)
+
+
+def _word(value: int) -> bytes:
+    return value.to_bytes(2, "little")
+
+
+def _range(address: int, size: int) -> bytes:
+    return _word(address) + _word(size)

@@ -1,0 +1,115 @@
+"""Is the robot wired as its file says? One message names everything that is not."""
+
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+
+import numpy as np
+
+from hal.bus import Bus
+from hal.errors import (
+    ConfigError,
+    CorruptAnswerError,
+    HardwareError,
+    NoAnswerError,
+    UnknownNameError,
+)
+from hal.imu.opencr import OpenCr
+from hal.joints import Joints
+from hal.servo_model import ServoMount
+from hal.servo_settings import Setting, differences
+from hal.servos.x_series_registers import model_name, x_series_registers
+from hal.units import Units
+
+Differences = list[tuple[Bus, int, list[Setting]]]
+
+
+def check_mounts(
+    joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, object], units: Units
+) -> None:
+    """Refuse a wiring that cannot be: an unknown bus, an id twice, a range past the encoder's.
+
+    Raises:
+        ConfigError: The message names the joints.
+        UnknownNameError: A bus that has no port.
+    """
+    for mount in mounts:
+        if mount.bus not in buses:
+            raise UnknownNameError("bus", mount.bus, buses)
+    named = list(zip(joints.names, mounts, strict=True))
+    for (first, one), (second, other) in combinations(named, 2):
+        if (one.bus, one.id) == (other.bus, other.id):
+            raise ConfigError(
+                f"joints {first!r} and {second!r} both have id {one.id} on bus {one.bus!r}"
+            )
+    for row, (name, mount) in enumerate(named):
+        ends = sorted(float(units.counts(end)[row]) for end in (joints.lower, joints.upper))
+        top = mount.model.counts_per_rev - 1
+        if ends[0] < 0 or ends[1] > top:
+            raise ConfigError(
+                f"joint {name!r} (id {mount.id} on bus {mount.bus!r}): its range is "
+                f"{ends[0]:.0f} to {ends[1]:.0f} counts, its encoder ends at 0 and {top}; "
+                "narrow the range in robot.toml or turn the horn and calibrate"
+            )
+
+
+def check_servos(
+    joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, Bus], board: OpenCr | None
+) -> Differences:
+    """Return what has to be written to each servo. Nothing is written here.
+
+    Raises:
+        HardwareError: Somebody is missing, is another model, or has to be written while its
+            torque is on: every such servo in one message, with the command to run next.
+    """
+    problems: dict[str, list[str]] = {}
+    found: Differences = []
+    for name, mount in zip(joints.names, mounts, strict=True):
+        bus = buses[mount.bus]
+        try:
+            found.append((bus, mount.id, _inspect(bus, mount)))
+        except HardwareError as error:
+            problems.setdefault(bus.port.url, []).append(f"joint {name!r} id {mount.id}: {error}")
+    if board is not None:
+        bus = buses[board.bus]
+        try:
+            bus.ping(board.id)
+        except HardwareError as error:
+            who = f"OpenCR id {board.id}: {_short(error)}"
+            problems.setdefault(bus.port.url, []).append(who)
+    if problems:
+        raise HardwareError("; ".join(_sentence(url, each) for url, each in problems.items()))
+    return found
+
+
+def _inspect(bus: Bus, mount: ServoMount) -> list[Setting]:
+    try:
+        number = bus.ping(mount.id)
+    except HardwareError as error:
+        raise HardwareError(_short(error)) from None
+    if number != mount.model.model_number:
+        raise HardwareError(f"is a {model_name(number)} where a {mount.model.name} should be")
+    table = x_series_registers(mount.model.name)
+    settings = differences(bus, mount.id, table)
+    locked = [str(setting) for setting in settings if setting.register.area == "eeprom"]
+    if locked and bus.read(mount.id, table["torque_enable"]):
+        raise HardwareError(f"torque is on and {', '.join(locked)}; `windup stop` first")
+    return settings
+
+
+def _short(error: HardwareError) -> str:
+    if isinstance(error, NoAnswerError):
+        return "no answer"
+    if isinstance(error, CorruptAnswerError):
+        return "only broken answers (two servos with this id?)"
+    return str(error)
+
+
+def _sentence(url: str, problems: list[str]) -> str:
+    count = f"{len(problems)} thing{'s' if len(problems) > 1 else ''}"
+    return f"{url}: {count} not as wired: {'; '.join(problems)}; run `windup scan {url}`"
+
+
+def row_groups(mounts: Sequence[ServoMount]) -> dict[str, list[int]]:
+    """Return bus name to the indices of the joints on it."""
+    names = np.array([mount.bus for mount in mounts])
+    return {str(name): np.flatnonzero(names == name).tolist() for name in dict.fromkeys(names)}

@@ -1,0 +1,90 @@
+import fcntl
+import os
+from pathlib import Path
+
+import pytest
+import serial
+
+from hal.errors import PortError, UsageError
+from hal.open_port import holders, open_port
+from hal.port import DevicePort
+
+
+@pytest.fixture
+def pty() -> tuple[int, str]:
+    master, slave = os.openpty()
+    return master, os.ttyname(slave)
+
+
+def test_a_pseudo_terminal_is_a_port(pty: tuple[int, str]) -> None:
+    master, path = pty
+    with open_port(path, 1_000_000) as port:
+        assert isinstance(port, DevicePort)
+        os.write(master, b"abc")
+        assert port.read(3, port.clock.now() + 1.0) == b"abc"
+        port.write(b"hello")
+        assert os.read(master, 5) == b"hello"
+        port.baud = 57_600
+        assert (port.baud, port.sent, port.received) == (57_600, 5, 3)
+        os.write(master, b"late")
+        port.flush_input()
+        assert port.read(1, port.clock.now()) == b""
+
+
+def test_a_port_in_use_names_its_holder(pty: tuple[int, str]) -> None:
+    _, path = pty
+    held = os.open(path, os.O_RDWR)
+    fcntl.flock(held, fcntl.LOCK_EX)
+    name = Path("/proc/self/comm").read_text().strip()
+    with pytest.raises(PortError) as caught:
+        open_port(path)
+    assert f"port {path} is in use by" in str(caught.value)
+    assert f"{name} (pid {os.getpid()})" in str(caught.value)
+    assert f"{name} (pid {os.getpid()})" in holders(path)
+
+
+def test_a_port_that_is_not_there_lists_those_that_are() -> None:
+    with pytest.raises(PortError, match=r"no port /dev/ttyNONE; ports there are: "):
+        open_port("/dev/ttyNONE")
+
+
+def test_permission_denied_names_the_group(
+    pty: tuple[int, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise serial.SerialException(13, "could not open port: Permission denied")
+
+    monkeypatch.setattr(serial, "Serial", refuse)
+    with pytest.raises(PortError, match=r"no permission for .*; join its group: sudo usermod -aG"):
+        open_port(pty[1])
+
+
+def test_an_unknown_usb_serial_number_is_named() -> None:
+    with pytest.raises(PortError, match="no USB adapter with serial number 'NOPE'"):
+        open_port("usb:NOPE")
+
+
+def test_a_twin_without_its_handler_says_what_to_import(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(serial, "protocol_handler_packages", ["serial.urlhandler"])
+    with pytest.raises(UsageError, match=r"`import sim_twin.wire` first"):
+        open_port("twin://op3")
+
+
+def test_an_unknown_kind_of_url_is_refused() -> None:
+    with pytest.raises(UsageError, match="pyserial knows no carrier:// ports"):
+        open_port("carrier://pigeon")
+
+
+def test_an_unplugged_device_is_one_error(pty: tuple[int, str]) -> None:
+    master, path = pty
+    port = open_port(path)
+    os.close(master)
+    with pytest.raises(PortError, match=r"went away .*; check cable and power"):
+        port.read(1, port.clock.now() + 1.0)
+    port.close()
+
+
+def test_any_url_of_pyserial_is_a_port() -> None:
+    with open_port("loop://") as port:
+        port.write(b"round")
+        assert port.read(5, port.clock.now() + 1.0) == b"round"
