@@ -15,6 +15,7 @@ from sim_twin.wire.faults import Faults
 from sim_twin.wire.schedule import Schedule
 
 BITS = 10  # start, eight, stop
+EPSILON = 1e-9  # s
 FORGET = 0.1  # s; a frame that has been interrupted for longer is forgotten
 BAUD_TOLERANCE = 0.03
 
@@ -114,6 +115,7 @@ class Bus:
         self._sent = -math.inf  # when the host's last byte ends
         self._air: list[Burst] = []  # on the wire now or soon
         self._inbox: deque[Burst] = deque()  # for the host
+        self._queued = 0  # bytes in the inbox that the host has not read
         self._taken = 0  # bytes of the inbox's first burst that the host has
         self._by_id: dict[int, list[Device]] = {}
         self.refresh()
@@ -163,6 +165,8 @@ class Bus:
 
     def arrival(self, count: int) -> float:
         """Return when the host has `count` bytes, s; infinity if they are not on the way yet."""
+        if count > self._queued:
+            return math.inf
         count += self._taken
         for burst in self._inbox:
             if count <= len(burst.data):
@@ -179,11 +183,17 @@ class Bus:
             piece = first.data[self._taken : self._taken + count]
             data += piece
             count -= len(piece)
+            self._queued -= len(piece)
             self._taken += len(piece)
             if self._taken == len(first.data):
                 self._inbox.popleft()
                 self._taken = 0
         return bytes(data)
+
+    @property
+    def queued(self) -> int:
+        """Bytes that the host has not read, arrived or on the way."""
+        return self._queued
 
     def discard(self) -> None:
         """Throw away what has arrived and was not read."""
@@ -216,6 +226,7 @@ class Bus:
             burst.data[:] = self.faults.noise(len(burst.data))
         if burst.data:
             self._inbox.append(burst)
+            self._queued += len(burst.data)
         return end
 
     def _hear(self, item: Heard, burst: Burst, end: float) -> None:
@@ -228,10 +239,13 @@ class Bus:
 
     def _collide(self, new: Burst) -> None:
         """Make noise of what overlaps, and keep `new` in the air."""
-        air = [old for old in self._air if old.end > new.start]
+        now = self.schedule.now
+        air = [old for old in self._air if old.end > now]
         for old in air:
-            self.counts["collisions"] += 1
             start, end = max(old.start, new.start), min(old.end, new.end)
+            if start >= end - EPSILON:
+                continue
+            self.counts["collisions"] += 1
             for burst in (old, new):
                 first = max(0, int((start - burst.start) / burst.byte))
                 last = min(len(burst.data), math.ceil((end - burst.start) / burst.byte))

@@ -40,7 +40,8 @@ class ControlLoop:
         shaft: What is driven.
         encoder: Counts to angle.
         supply: Voltage at the servo, V.
-        motor: The motor at the supply that the servo was built for.
+        constant: K of the motor at the supply that the servo was built for, V s/rad.
+        resistance: Its R, ohm.
         mode: Operating mode.
         busy: Whether `update` has to be called at every step.
     """
@@ -50,7 +51,8 @@ class ControlLoop:
     ) -> None:
         self.registers, self.servo, self.shaft, self.supply = registers, servo, shaft, supply
         self.encoder = Encoder()
-        self.motor = servo.motor(supply)
+        motor = servo.motor(supply)
+        self.constant, self.resistance = motor.K, motor.R
         self.mode = POSITION
         self.busy = False
         self.profile = Profile(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -58,7 +60,7 @@ class ControlLoop:
         self._integral = 0.0
         unit, constant = model.current_unit, servo.torque_constant
         self.torque_unit = unit * constant if unit and constant else None  # N m a count
-        self._stiffness_unit = servo.error_gain * self.motor.K / self.motor.R
+        self._stiffness_unit = servo.error_gain * self.constant / self.resistance
 
     def start_at(self, value: float) -> None:
         """Make `value` (counts, or velocity units) the goal, reached long ago."""

@@ -49,6 +49,11 @@ class Device(Protocol):
         """Whether `control` has to be called at every physics step."""
         ...
 
+    @property
+    def driving(self) -> bool:
+        """Whether it really drives a motor now."""
+        ...
+
     def listens(self, now: float) -> bool:
         """Whether it is powered and has booted."""
         ...

@@ -44,6 +44,7 @@ class Firmware:
         self.health = Health(self.loop)
         self.powered = True
         self.stopped = False
+        self._on = False  # torque, as last acted upon
 
     @property
     def torque_on(self) -> bool:
@@ -68,7 +69,7 @@ class Firmware:
         """Start: RAM as the factory left it, no errors, torque off."""
         self.registers.reset(self.registers.ram())
         self.health.reset()
-        self.stopped = False
+        self.stopped = self._on = False
         self.loop.release()
         self._change_mode()
         if "startup_configuration" in self.registers.items:
@@ -129,26 +130,33 @@ class Firmware:
 
     def veto(self, writes: list[tuple[Item, int]]) -> int:
         """Return the error of values that other registers forbid."""
-        get, new = self.registers.get, {item.name: value for item, value in writes}
-        if self.registers.memory[98] == TRIPPED and not GOALS.isdisjoint(new):
-            return BAD_RANGE
-        for name, value in new.items():
-            if name == "goal_position":
-                if self.loop.mode == POSITION and not (
-                    get("min_position_limit") <= value <= get("max_position_limit")
-                ):
-                    return BAD_LIMIT
-            elif name in GOAL_LIMITS and abs(value) > get(GOAL_LIMITS[name]):
-                return BAD_LIMIT
-            elif name == "operating_mode" and value not in self.model.modes:
-                return BAD_RANGE
-            elif name == "bus_watchdog" and (value < 0 or (value and get(name) < 0)):
-                return BAD_RANGE
-            elif name == "torque_enable" and value and self._shut:
-                return BAD_ACCESS
+        for item, value in writes:
+            error = self._forbidden(item.name, value)
+            if error:
+                return error
+        new = {item.name: value for item, value in writes}
         low = new.get("min_position_limit", 0)
         high = new.get("max_position_limit", 4095)
         return BAD_LIMIT if low > high else OK
+
+    def _forbidden(self, name: str, value: int) -> int:
+        get = self.registers.get
+        if name in GOALS:
+            if self.registers.memory[98] == TRIPPED:
+                return BAD_RANGE
+            if name != "goal_position":
+                return OK if abs(value) <= get(GOAL_LIMITS[name]) else BAD_LIMIT
+            if self.loop.mode != POSITION:
+                return OK
+            inside = get("min_position_limit") <= value <= get("max_position_limit")
+            return OK if inside else BAD_LIMIT
+        if name == "operating_mode" and value not in self.model.modes:
+            return BAD_RANGE
+        if name == "bus_watchdog" and (value < 0 or (value > 0 and get(name) < 0)):
+            return BAD_RANGE
+        if name == "torque_enable" and value and self._shut:
+            return BAD_ACCESS
+        return OK
 
     def written(self, name: str, value: int, now: float) -> None:
         """Act on one register that has just been written."""
@@ -179,9 +187,10 @@ class Firmware:
 
     def _switch(self, on: bool, now: float) -> None:
         """Switch the torque; on, the goal becomes the present position."""
-        held = on and (self.driving or self.registers.memory[98] == TRIPPED)
+        same = on and self._on and (not self.stopped or self.registers.memory[98] == TRIPPED)
+        self._on = on
         self.registers.set("torque_enable", int(on))
-        if held:
+        if same:
             return
         self.stopped = False
         self.hold_here()

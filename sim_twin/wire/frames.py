@@ -8,6 +8,7 @@ the instruction to the CRC. Between instruction and CRC, ``FF FF FD`` is sent as
 """
 
 import re
+import struct
 from typing import Final, NamedTuple
 
 HEADER: Final = b"\xff\xff\xfd\x00"
@@ -22,14 +23,14 @@ _PATTERN, _STUFFED = b"\xff\xff\xfd", b"\xff\xff\xfd\xfd"
 
 
 def _crc_table() -> tuple[int, ...]:
-    """Return the table of CRC-16/BUYPASS: polynomial 0x8005, start 0, nothing reflected."""
-    table = []
+    """Return the CRCs of all pairs of bytes: CRC-16/BUYPASS, polynomial 0x8005, start 0."""
+    single = []
     for byte in range(256):
         crc = byte << 8
         for _ in range(8):
             crc = (crc << 1) ^ (0x8005 if crc & 0x8000 else 0)
-        table.append(crc & 0xFFFF)
-    return tuple(table)
+        single.append(crc & 0xFFFF)
+    return tuple((crc << 8) & 0xFF00 ^ single[crc >> 8 ^ low] for crc in single for low in range(256))
 
 
 _CRC = _crc_table()
@@ -42,8 +43,11 @@ def crc16(data: bytes, crc: int = 0) -> int:
     '0x4e19'
     """
     table = _CRC
-    for byte in data:
-        crc = ((crc << 8) & 0xFFFF) ^ table[(crc >> 8) ^ byte]
+    if len(data) & 1:
+        crc = (crc << 8) & 0xFF00 ^ table[crc >> 8 ^ data[0]]
+        data = data[1:]
+    for pair in struct.unpack(f">{len(data) // 2}H", data):
+        crc = table[crc ^ pair]
     return crc
 
 

@@ -44,12 +44,12 @@ class Health:
     def watch(self, dt: float, torque: float, driving: bool) -> None:
         """Look at the servo again after `dt` s; `torque` N m is what its motor makes."""
         loop = self.loop
-        motor, get = loop.motor, loop.registers.get
+        get = loop.registers.get
         torque = abs(torque) if driving else 0.0
-        current = torque / motor.K
-        warmth = current * current * motor.R - (self.temperature - AMBIENT) / HEAT_RESISTANCE
+        current = torque / loop.constant
+        warmth = current * current * loop.resistance - (self.temperature - AMBIENT) / HEAT_RESISTANCE
         self.temperature += dt * warmth / HEAT_CAPACITY
-        stall = motor.K / motor.R * loop.supply
+        stall = loop.constant / loop.resistance * loop.supply
         strained = driving and torque >= OVERLOAD_LEVEL * stall
         self._overloaded = self._overloaded + dt if strained else 0.0
         if self._overloaded > OVERLOAD_TIME:

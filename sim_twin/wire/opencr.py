@@ -154,6 +154,11 @@ class OpenCr:
         """It controls nothing."""
         return False
 
+    @property
+    def driving(self) -> bool:
+        """It has no motor."""
+        return False
+
     def listens(self, now: float) -> bool:
         """Whether it has power."""
         return self.supply > 0.0

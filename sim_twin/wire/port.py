@@ -69,12 +69,14 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
         bus, clock = self._bus, self._running.clock
         limit = math.inf if self._timeout is None else clock.now() + self._timeout
         schedule = self._running.world.schedule
-        while bus.available() < size and clock.now() < limit:
-            target = min(bus.arrival(size), limit, schedule.next)
+        while (now := clock.now()) < limit and (arrival := bus.arrival(size)) > now:
+            target = min(arrival, limit)
+            if arrival == math.inf:
+                target = min(limit, max(schedule.next, now))
             if target == math.inf:
                 if not isinstance(clock, RealClock):
                     raise serial.SerialException("a read without a time-out, and nobody answers")
-                target = clock.now() + 0.001
+                target = now + 0.001
             clock.wait_until(target)
         return bus.read(size)
 

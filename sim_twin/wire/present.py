@@ -8,8 +8,10 @@ from sim_twin.wire.x_series import PRESENT, PWM_FULL, VELOCITY, VELOCITY_UNIT
 IN_POSITION, IN_PROGRESS, NOT_FOLLOWING = 0x01, 0x02, 0x08  # bits of Moving Status
 CLOSE = 20  # counts; nearer than this counts as arrived
 
-# tick, moving, moving status, PWM, current or load, velocity, position, trajectories, V, deg C
-_LAYOUT = struct.Struct("<HBBhhiiiiHB")
+_MOTION = struct.Struct("<hii")  # at 126: current or load, velocity, position
+_BEFORE = struct.Struct("<HBBh")  # at 120: tick, moving, moving status, PWM
+_BEHIND = struct.Struct("<iiHB")  # at 136: trajectories, voltage, temperature
+MOTION = range(126, 136)
 
 
 class Present:
@@ -35,43 +37,37 @@ class Present:
         threshold = self.loop.registers.get("moving_threshold") * VELOCITY_UNIT
         return abs(self.velocity) > threshold
 
-    def write(self, now: float, driving: bool, temperature: float) -> None:
-        """Write the last sample into the registers."""
-        loop, velocity = self.loop, self.velocity
-        sign, counts = loop.encoder.sign, self.counts
-        trajectory, speed = loop.trajectory(now)
-        pwm = round(sign * self._duty() * PWM_FULL) if driving else 0
+    def write(self, now: float, driving: bool, temperature: float, motion: bool) -> None:
+        """Write the last sample into the registers; only position, velocity, current if `motion`."""
+        loop = self.loop
+        memory, sign, counts = loop.registers.memory, loop.encoder.sign, self.counts
+        speed = round(sign * self.velocity / VELOCITY_UNIT)
+        _MOTION.pack_into(memory, MOTION.start, self._effort(driving), speed, counts)
+        if motion:
+            return
+        trajectory, rate = loop.trajectory(now)
         going = driving and loop.mode != VELOCITY and loop.in_progress(now)
-        _LAYOUT.pack_into(
-            loop.registers.memory,
-            PRESENT[0],
-            int(now * 1e3) & 0x7FFF,
-            self.moving or going,
-            self._status(counts, trajectory, now) if driving else 0,
-            pwm,
-            self._effort(sign, pwm),
-            round(sign * velocity / VELOCITY_UNIT),
-            counts,
-            round(speed),
-            round(trajectory),
-            round(loop.supply * 10.0),
-            max(0, min(255, round(temperature))),
-        )
+        status = self._status(counts, trajectory, now) if driving else 0
+        tick, pwm = int(now * 1e3) & 0x7FFF, self._pwm(driving)
+        _BEFORE.pack_into(memory, PRESENT[0], tick, self.moving or going, status, pwm)
+        volts, warmth = round(loop.supply * 10.0), max(0, min(255, round(temperature)))
+        _BEHIND.pack_into(memory, MOTION.stop, round(rate), round(trajectory), volts, warmth)
 
-    def _duty(self) -> float:
-        """Return the duty that makes the present torque at the present speed."""
-        motor, supply = self.loop.motor, self.loop.supply
-        if supply <= 0.0:
-            return 0.0
-        volts = self.torque * motor.R / motor.K + motor.K * self.velocity
-        return max(-1.0, min(1.0, volts / supply))
+    def _pwm(self, driving: bool) -> int:
+        """Return the PWM that makes the present torque at the present speed."""
+        loop = self.loop
+        if not driving or loop.supply <= 0.0:
+            return 0
+        volts = self.torque * loop.resistance / loop.constant + loop.constant * self.velocity
+        duty = max(-1.0, min(1.0, volts / loop.supply))
+        return round(loop.encoder.sign * duty * PWM_FULL)
 
-    def _effort(self, sign: float, pwm: int) -> int:
+    def _effort(self, driving: bool) -> int:
         """Return register 126: current, or where none is sensed the load, from the PWM."""
         unit = self.loop.torque_unit
         if unit is None:
-            return round(pwm * 1000 / PWM_FULL)
-        return max(-32768, min(32767, round(sign * self.torque / unit)))
+            return round(self._pwm(driving) * 1000 / PWM_FULL)
+        return max(-32768, min(32767, round(self.loop.encoder.sign * self.torque / unit)))
 
     def _status(self, counts: int, trajectory: float, now: float) -> int:
         loop = self.loop

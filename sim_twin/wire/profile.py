@@ -43,6 +43,7 @@ class Profile:
     ) -> None:
         self.goal = goal
         self.kind = STEP
+        self.duration = 0.0
         self._phases: list[Phase] = []
         self._end = start
         if top > 0.0 and start != goal:
@@ -51,7 +52,6 @@ class Profile:
             else:
                 self.kind = RECTANGULAR
                 self._add(abs(goal - start) / top, math.copysign(top, goal - start), 0.0)
-        self.duration = sum(phase.seconds for phase in self._phases)
 
     @classmethod
     def timed(cls, start: float, goal: float, seconds: float, rise: float) -> "Profile":
@@ -93,4 +93,5 @@ class Profile:
     def _add(self, seconds: float, velocity: float, acceleration: float) -> None:
         if seconds > 0.0:
             self._phases.append(Phase(seconds, self._end, velocity, acceleration))
+            self.duration += seconds
             self._end += (velocity + 0.5 * acceleration * seconds) * seconds

@@ -11,6 +11,7 @@ BAD_LENGTH: Final = 0x05
 BAD_LIMIT: Final = 0x06
 BAD_ACCESS: Final = 0x07
 
+MASKS: Final = {1: 0xFF, 2: 0xFFFF, 4: 0xFFFFFFFF}
 EEPROM_END = 64  # items below survive a reboot
 
 
@@ -84,20 +85,18 @@ class RegisterFile:
         self._slot_addresses = frozenset(self._slots.values())
         self._routes: dict[tuple[int, int], tuple[int, ...] | None] = {}
         self._plans: dict[tuple[int, int, bool], tuple[Item, ...] | int] = {}
+        self._values: dict[str, int] = {}
         self.reset(self.items.values())
 
     # What the firmware does with it: no rules.
 
     def get(self, name: str) -> int:
-        """Return an item's value."""
-        item = self.items[name]
-        return int.from_bytes(self.memory[item.address : item.end], "little", signed=item.low < 0)
+        """Return the value that an item was last set to."""
+        return self._values[name]
 
     def set(self, name: str, value: int) -> None:
         """Give an item a value, whatever a host may do with it; wraps around its size."""
-        item = self.items[name]
-        wrapped = value & (1 << 8 * item.size) - 1
-        self.memory[item.address : item.end] = wrapped.to_bytes(item.size, "little")
+        self._store(self.items[name], value)
 
     def reset(self, items: Iterable[Item]) -> None:
         """Give some items their defaults."""
@@ -181,10 +180,16 @@ class RegisterFile:
     def commit(self, writes: Iterable[tuple[Item, int]]) -> None:
         """Do writes that `check` has let through."""
         for item, value in writes:
-            wrapped = value & (1 << 8 * item.size) - 1
-            self.memory[item.address : item.end] = wrapped.to_bytes(item.size, "little")
+            self._store(item, value)
             if item.address in self._slot_addresses:
                 self._forget()
+
+    def _store(self, item: Item, value: int) -> None:
+        """Keep a value twice: as bytes for the host, as a number for the firmware."""
+        address, size = item.address, item.size
+        wrapped = value & MASKS[size]
+        self.memory[address : address + size] = wrapped.to_bytes(size, "little")
+        self._values[item.name] = value
 
     def _forget(self) -> None:
         self._routes.clear()

@@ -2,6 +2,7 @@
 
 from hal.servo_model import ServoModel
 from sim_twin.wire.firmware import Firmware
+from sim_twin.wire.present import MOTION
 from sim_twin.wire.register_file import BAD_ACCESS, BAD_INSTRUCTION, BAD_RANGE, FAILED, OK
 from sim_twin.wire.shaft import Shaft
 from sim_twin.wire.x_series import BAUD_RATES, PRESENT, Model
@@ -83,6 +84,11 @@ class Servo:
         """Whether `control` has to be called at every step."""
         return self.firmware.loop.busy
 
+    @property
+    def driving(self) -> bool:
+        """Whether it really drives its motor now."""
+        return self.firmware.driving
+
     def listens(self, now: float) -> bool:
         """Whether it is powered and has booted."""
         return self.firmware.powered and now >= self._ready
@@ -100,7 +106,8 @@ class Servo:
         """Return the error byte and the data of a read."""
         if self.registers.touches(address, count, *PRESENT):
             firmware = self.firmware
-            firmware.present.write(now, firmware.driving, firmware.health.temperature)
+            motion = address >= MOTION.start and address + count <= MOTION.stop
+            firmware.present.write(now, firmware.driving, firmware.health.temperature, motion)
         data = self.registers.read(address, count)
         if data is None:
             return self.firmware.alert | BAD_ACCESS, b""

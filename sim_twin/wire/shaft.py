@@ -59,13 +59,15 @@ class InertiaShaft:
         position: Angle, rad.
         velocity: Speed, rad/s.
         torque: Torque of the motor, N m.
-        motor: The motor at the present supply.
+        constant: K of the motor, V s/rad.
+        resistance: R of the motor, ohm.
         load: Torque from outside, N m.
         blocked: Whether something holds the shaft still.
     """
 
     def __init__(self, motor: Motor, inertia: float, friction: float = 0.0) -> None:
-        self.motor, self.inertia, self.friction = motor, inertia, friction
+        self.inertia, self.friction = inertia, friction
+        self.constant, self.resistance = motor.K, motor.R
         self.position = self.velocity = self.torque = self.load = 0.0
         self.blocked = False
         self._mode = "off"
@@ -93,11 +95,16 @@ class InertiaShaft:
 
     def step(self, dt: float) -> None:
         """Advance by `dt` s."""
-        constant, resistance = self.motor.K, self.motor.R
-        damping = 0.0 if self._mode == "off" else constant * constant / resistance
-        stall = self._volts_now(constant, resistance) * constant / resistance
-        if abs(stall - damping * self.velocity) > self._most:
-            stall, damping = math.copysign(self._most, stall - damping * self.velocity), 0.0
+        if self._mode == "off":
+            stall = damping = 0.0
+            if self.velocity == 0.0 and abs(self.load) <= self.friction:
+                self.torque = 0.0
+                return
+        else:
+            gain = self.constant / self.resistance
+            stall, damping = self._volts_now() * gain, self.constant * gain
+            if abs(stall - damping * self.velocity) > self._most:
+                stall, damping = math.copysign(self._most, stall - damping * self.velocity), 0.0
         free = self.inertia * self.velocity + dt * (stall + self.load)
         drag = min(dt * self.friction, abs(free))
         free -= drag if free > 0.0 else -drag
@@ -105,14 +112,12 @@ class InertiaShaft:
         self.position += dt * self.velocity
         self.torque = stall - damping * self.velocity
 
-    def _volts_now(self, constant: float, resistance: float) -> float:
+    def _volts_now(self) -> float:
         """Return the voltage at the motor, V."""
         if self._mode == "push":
             return self._volts
         if self._mode == "drive":
-            volts = self._gain * resistance / constant * (self._goal - self.position)
-        elif self._mode == "pull":
-            volts = self._gain * resistance / constant + constant * self.velocity
+            volts = self._gain * self.resistance / self.constant * (self._goal - self.position)
         else:
-            return 0.0
+            volts = self._gain * self.resistance / self.constant + self.constant * self.velocity
         return max(-self._volts, min(self._volts, volts))

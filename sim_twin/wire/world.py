@@ -9,7 +9,7 @@ from sim_twin.wire.device import Device
 from sim_twin.wire.schedule import Schedule
 from sim_twin.wire.shaft import InertiaShaft
 
-WATCH_PERIOD = 0.005  # s between two looks at watchdogs and health
+WATCH_PERIOD = 0.010  # s between two looks at watchdogs and health
 EPSILON = 1e-9  # s; steps that are due to the bit
 
 
