@@ -1,10 +1,11 @@
 """What a ``twin://`` URL says.
 
-``twin://op3[?clock=virtual|real&world=NAME&bus=legs&faults=drop:0.01&seed=1&supply=12...]``: a robot
-of ours; ``twin://bench?servos=XM430-W350:1-20,XL430:30&baud=1000000``: servos on a bench.
+``twin://op3[?clock=virtual|real&world=NAME&bus=legs&faults=drop:0.01&seed=1&supply=12...]``: a
+robot of ours; ``twin://bench?servos=XM430-W350:1-20,XL430:30&baud=1000000``: servos on a bench.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
+from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
 from hal.errors import UsageError, suggest
@@ -59,7 +60,8 @@ CHOICES = {
     "power": ("on", "off"),
     "hold": ("yes", "no"),
 }
-KINDS = {item.name: item.type for item in fields(Address)}
+DEFAULTS = Address(BENCH)
+OPTIONS = tuple(item.name for item in fields(Address) if item.name != "robot")
 
 
 def parse_address(url: str) -> Address:
@@ -74,13 +76,12 @@ def parse_address(url: str) -> Address:
     parts = urlsplit(url)
     if parts.scheme != SCHEME or not parts.netloc:
         raise UsageError(f"{url!r} is not a twin:// address; 'twin://op3' is")
-    values: dict[str, object] = {"robot": parts.netloc + parts.path.rstrip("/")}
-    known = [name for name in KINDS if name != "robot"]
+    values: dict[str, Any] = {"robot": parts.netloc + parts.path.rstrip("/")}
     for name, text in parse_qsl(parts.query, keep_blank_values=True):
-        if name not in known:
-            raise UsageError(f"{url!r}: unknown option {name!r}{suggest(name, known)}")
+        if name not in OPTIONS:
+            raise UsageError(f"{url!r}: unknown option {name!r}{suggest(name, OPTIONS)}")
         values[name] = _value(url, name, text)
-    return Address(**values)  # type: ignore[arg-type]
+    return replace(DEFAULTS, **values)
 
 
 def parse_servos(text: str) -> list[tuple[str, int]]:
@@ -105,10 +106,10 @@ def parse_servos(text: str) -> list[tuple[str, int]]:
     return found
 
 
-def _value(url: str, name: str, text: str) -> object:
+def _value(url: str, name: str, text: str) -> Any:
     if name in CHOICES and text not in CHOICES[name]:
         raise UsageError(f"{url!r}: {name} is one of {', '.join(CHOICES[name])}, not {text!r}")
-    kind = {int: int, float: float}.get(KINDS[name], str)  # type: ignore[call-overload]
+    kind: type = type(getattr(DEFAULTS, name))
     try:
         return kind(text)
     except ValueError:

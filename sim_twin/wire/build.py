@@ -18,6 +18,9 @@ from sim_twin.wire.world import Bench, World
 from sim_twin.wire.x_series import model
 
 
+NOMINAL = 12.0  # V, for servos that stand so much
+
+
 def build_world(address: Address) -> World:
     """Return a new world.
 
@@ -31,20 +34,29 @@ def build_world(address: Address) -> World:
 
 
 def _bench(address: Address) -> World:
-    supply, baud = address.supply or 12.0, address.baud or 1_000_000
+    baud = address.baud or 1_000_000
     shafts: list[InertiaShaft] = []
     devices: list[Device] = []
     for name, identifier in parse_servos(address.servos):
         table = model(name)
         sheet = servo_model(table.name)
+        supply = address.supply or min(NOMINAL, sheet.rows[-1].voltage)
         shaft = InertiaShaft(sheet.motor(supply), sheet.armature, sheet.friction_loss)
         shafts.append(shaft)
         devices.append(
-            Servo(table, sheet, shaft, identifier, baud, supply, return_delay_time=address.return_delay)
+            Servo(
+                table,
+                sheet,
+                shaft,
+                identifier,
+                baud,
+                supply,
+                return_delay_time=address.return_delay,
+            )
         )
     schedule = Schedule()
     buses = {BENCH: _bus(address, BENCH, devices, schedule, baud)}
-    return World(Bench(shafts), schedule, buses, supply)
+    return World(Bench(shafts), schedule, buses, address.supply or NOMINAL)
 
 
 def _robot(address: Address, robot: RobotDescription) -> World:
@@ -80,9 +92,7 @@ def _robot(address: Address, robot: RobotDescription) -> World:
     return World(physics, schedule, buses, supply, owned=(twin,))
 
 
-def _bus(
-    address: Address, name: str, devices: list[Device], schedule: Schedule, baud: int
-) -> Bus:
+def _bus(address: Address, name: str, devices: list[Device], schedule: Schedule, baud: int) -> Bus:
     timing = Timing(address.latency * 1e-3, address.turnaround * 1e-6, address.missing == "wait")
     faults = Faults.parse(address.faults, address.seed)
     return Bus(name, devices, Dynamixel2(), schedule, baud, timing, faults)

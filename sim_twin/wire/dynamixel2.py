@@ -34,7 +34,7 @@ class Turn(NamedTuple):
 
     identifier: int
     address: int
-    count: int
+    size: int
 
 
 class Dynamixel2:
@@ -96,7 +96,7 @@ def _one(frame: Frame, bus: Bus) -> None:
         if level >= needs and not silent:
             status = encode_status(frame.identifier, error, data)
             start = bus.schedule.now + delay + bus.timing.turnaround
-            bus.schedule.at(start, partial(bus.answer, status, baud))
+            bus.schedule.at(start, partial(_answer, bus, status, baud))
 
 
 def _act(device: Device, frame: Frame, bus: Bus, broadcast: bool = False) -> tuple[int, bytes]:
@@ -140,6 +140,10 @@ def _write(device: Device, address: int, data: bytes, bus: Bus) -> int:
     return error
 
 
+def _answer(bus: Bus, status: bytes, baud: int) -> None:
+    bus.answer(status, baud)
+
+
 def _ping_all(bus: Bus) -> None:
     """Every device answers in the slot of its id."""
     now = bus.schedule.now
@@ -147,7 +151,7 @@ def _ping_all(bus: Bus) -> None:
         data = encode_status(device.identifier, device.read(0, 1, now)[0], device.ping())
         slot = PING_GAP + len(data) * 10.0 / bus.baud
         start = now + device.identifier * slot + device.return_delay
-        bus.schedule.at(start, partial(bus.answer, data, device.baud))
+        bus.schedule.at(start, partial(_answer, bus, data, device.baud))
 
 
 def _sync_write(parameters: bytes, bus: Bus) -> None:
@@ -210,7 +214,7 @@ def _go_on(left: Iterator[tuple[Turn, list[Device]]], bus: Bus, end: float) -> N
             return
         if bus.timing.waits:
             return
-        end += (turn.count + STATUS_BYTES) * 10.0 / bus.baud
+        end += (turn.size + STATUS_BYTES) * 10.0 / bus.baud
 
 
 def _take_turn(
@@ -218,7 +222,7 @@ def _take_turn(
 ) -> None:
     end = bus.schedule.now
     for device in devices:
-        error, data = device.read(turn.address, turn.count, end)
+        error, data = device.read(turn.address, turn.size, end)
         end = max(end, bus.answer(encode_status(turn.identifier, error, data), device.baud))
     _go_on(left, bus, end)
 
@@ -232,7 +236,7 @@ def _chained(turns: list[Turn], bus: Bus) -> None:
     for devices in who:
         for device in devices[:1]:
             device.sample()
-    length = 1 + sum(turn.count + 4 for turn in turns)
+    length = 1 + sum(turn.size + 4 for turn in turns)
     head = HEADER + bytes((BROADCAST,)) + length.to_bytes(2, "little") + bytes((STATUS,))
     _chain_on(iter([*zip(turns, who, strict=True)]), head, 0, bus, bus.schedule.now)
 
@@ -250,7 +254,7 @@ def _chain_on(
             return
         if bus.timing.waits or head:
             return
-        end += (turn.count + 4) * 10.0 / bus.baud
+        end += (turn.size + 4) * 10.0 / bus.baud
 
 
 def _add_part(
@@ -261,8 +265,8 @@ def _add_part(
     crc: int,
     bus: Bus,
 ) -> None:
-    error, data = device.read(turn.address, turn.count, bus.schedule.now)
-    part = head + bytes((error, turn.identifier)) + data.ljust(turn.count, b"\0")
+    error, data = device.read(turn.address, turn.size, bus.schedule.now)
+    part = head + bytes((error, turn.identifier)) + data.ljust(turn.size, b"\0")
     crc = crc16(part, crc)
     tail = crc.to_bytes(2, "little")
     end = bus.answer(part + tail, device.baud)

@@ -46,7 +46,7 @@ class Faults:
                 rates[kind] = -1.0
             if not 0.0 <= rates[kind] <= 1.0:
                 raise UsageError(f"faults: {part!r}: a rate from 0 to 1, as in 'drop:0.01'")
-        return cls(seed=seed, **rates)
+        return cls(rates.get("drop", 0.0), rates.get("corrupt", 0.0), seed)
 
     def answer(self, data: bytes) -> bytes:
         """Return what the host gets of an answer; nothing where it is lost."""

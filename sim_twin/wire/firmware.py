@@ -72,9 +72,9 @@ class Firmware:
         self.stopped = self._on = False
         self.loop.release()
         self._change_mode()
-        if "startup_configuration" in self.registers.items:
-            if self.registers.get("startup_configuration") & STARTUP_TORQUE:
-                self._switch(True, now)
+        startup = "startup_configuration"
+        if startup in self.registers.items and self.registers.get(startup) & STARTUP_TORQUE:
+            self._switch(True, now)
 
     def hold_here(self) -> None:
         """Make the present position the goal; a mode that knows one turn forgets the others."""

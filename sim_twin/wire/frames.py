@@ -30,13 +30,15 @@ def _crc_table() -> tuple[int, ...]:
         for _ in range(8):
             crc = (crc << 1) ^ (0x8005 if crc & 0x8000 else 0)
         single.append(crc & 0xFFFF)
-    return tuple((crc << 8) & 0xFF00 ^ single[crc >> 8 ^ low] for crc in single for low in range(256))
+    return tuple(
+        (crc << 8) & 0xFF00 ^ single[crc >> 8 ^ low] for crc in single for low in range(256)
+    )
 
 
 _CRC = _crc_table()
 
 
-def crc16(data: bytes, crc: int = 0) -> int:
+def crc16(data: bytes | bytearray, crc: int = 0) -> int:
     """Return the CRC of `data`, going on from `crc`.
 
     >>> hex(crc16(bytes.fromhex("FFFFFD0001030001")))
@@ -138,7 +140,9 @@ class Parser:
             # Two bytes of body decide nothing yet; the byte behind the pattern has to be known.
             known = start + 7 + bare.end()
             if len(data) > known or len(data) >= end:
-                return FrameError("stuffing", offset + min(known + 1, end)), start + 7 + bare.start()
+                return FrameError(
+                    "stuffing", offset + min(known + 1, end)
+                ), start + 7 + bare.start()
         if len(data) < end:
             return None, start
         if crc16(data[start : end - 2]) != data[end - 2] | data[end - 1] << 8:

@@ -47,7 +47,9 @@ class Health:
         get = loop.registers.get
         torque = abs(torque) if driving else 0.0
         current = torque / loop.constant
-        warmth = current * current * loop.resistance - (self.temperature - AMBIENT) / HEAT_RESISTANCE
+        warmth = (
+            current * current * loop.resistance - (self.temperature - AMBIENT) / HEAT_RESISTANCE
+        )
         self.temperature += dt * warmth / HEAT_CAPACITY
         stall = loop.constant / loop.resistance * loop.supply
         strained = driving and torque >= OVERLOAD_LEVEL * stall

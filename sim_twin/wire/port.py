@@ -20,6 +20,8 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
     pass. A read without a time-out that can never end is an error.
     """
 
+    is_open: bool
+
     def open(self) -> None:
         """Open the world that the URL names, or share it."""
         if self._port is None:

@@ -38,7 +38,7 @@ class Present:
         return abs(self.velocity) > threshold
 
     def write(self, now: float, driving: bool, temperature: float, motion: bool) -> None:
-        """Write the last sample into the registers; only position, velocity, current if `motion`."""
+        """Write the last sample into the registers; only 126 to 135 where `motion` is enough."""
         loop = self.loop
         memory, sign, counts = loop.registers.memory, loop.encoder.sign, self.counts
         speed = round(sign * self.velocity / VELOCITY_UNIT)

@@ -52,7 +52,7 @@ class Indirect(NamedTuple):
 
     address: int
     data: int
-    count: int
+    slots: int
 
 
 class RegisterFile:
@@ -65,14 +65,14 @@ class RegisterFile:
     def __init__(self, items: Sequence[Item], indirect: Sequence[Indirect] = ()) -> None:
         slots = [
             Item(run.address + 2 * k, 2, f"indirect_address_{run.address + 2 * k}", "RW",
-                 run.data + k, EEPROM_END, max(r.data + r.count for r in indirect) - 1)
+                 run.data + k, EEPROM_END, max(r.data + r.slots for r in indirect) - 1)
             for run in indirect
-            for k in range(run.count)
+            for k in range(run.slots)
         ]  # fmt: skip
         cells = [
             Item(run.data + k, 1, f"indirect_data_{run.data + k}", "RW", 0, 0, 255)
             for run in indirect
-            for k in range(run.count)
+            for k in range(run.slots)
         ]
         self.items = {item.name: item for item in (*items, *slots, *cells)}
         self.size = max(item.end for item in self.items.values())
@@ -81,7 +81,9 @@ class RegisterFile:
         self._defined = bytearray(self.size)
         for item in self.items.values():
             self._defined[item.address : item.end] = b"\1" * item.size
-        self._slots = {run.data + k: run.address + 2 * k for run in indirect for k in range(run.count)}
+        self._slots = {
+            run.data + k: run.address + 2 * k for run in indirect for k in range(run.slots)
+        }
         self._slot_addresses = frozenset(self._slots.values())
         self._routes: dict[tuple[int, int], tuple[int, ...] | None] = {}
         self._plans: dict[tuple[int, int, bool], tuple[Item, ...] | int] = {}

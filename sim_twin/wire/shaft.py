@@ -28,9 +28,7 @@ class Shaft(Protocol):
         """Torque of the motor at the horn, N m."""
         ...
 
-    def drive(
-        self, goal: float, stiffness: float, volts: float, torque: float = math.inf
-    ) -> None:
+    def drive(self, goal: float, stiffness: float, volts: float, torque: float = math.inf) -> None:
         """Hold `goal` rad by ``u = clip(stiffness R/K (goal - q), +-volts)``, within `torque` N m.
 
         Stiffness in N m/rad, before back-EMF takes its share.
@@ -74,9 +72,7 @@ class InertiaShaft:
         self._goal = self._gain = self._volts = 0.0
         self._most = math.inf
 
-    def drive(
-        self, goal: float, stiffness: float, volts: float, torque: float = math.inf
-    ) -> None:
+    def drive(self, goal: float, stiffness: float, volts: float, torque: float = math.inf) -> None:
         """See `Shaft`."""
         self._mode, self._goal, self._gain, self._volts = "drive", goal, stiffness, volts
         self._most = torque

@@ -64,9 +64,7 @@ class TwinShaft:
         """See `Shaft`."""
         return float(self._force[self._joint]) / self._turn
 
-    def drive(
-        self, goal: float, stiffness: float, volts: float, torque: float = math.inf
-    ) -> None:
+    def drive(self, goal: float, stiffness: float, volts: float, torque: float = math.inf) -> None:
         """See `Shaft`."""
         if volts <= 0.0:
             self.push(0.0)

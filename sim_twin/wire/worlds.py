@@ -31,7 +31,7 @@ _running: dict[str, Running] = {}
 
 
 def put_world(name: str, world: World, clock: str = "virtual") -> None:
-    """Offer a world of your own under ``twin://anything?world=NAME``; it stays until `drop_world`."""
+    """Offer a world under ``twin://anything?world=NAME``; it stays until `drop_world`."""
     _running[name] = _start(world, clock, keep=True)
 
 
@@ -59,7 +59,9 @@ def enter(address: Address) -> Running:
         running = _start(build_world(address), address.clock, keep=bool(address.world))
         _running[name] = running
     elif running.kind != address.clock:
-        raise UsageError(f"world {name!r} runs on a {running.kind} clock, not a {address.clock} one")
+        raise UsageError(
+            f"world {name!r} runs on a {running.kind} clock, not a {address.clock} one"
+        )
     if address.bus and address.bus not in running.world.buses:
         raise UnknownNameError("bus", address.bus, running.world.buses)
     running.ports += 1

@@ -140,9 +140,7 @@ class Model:
             "baud_rate": (1, 0, self.bauds - 1),
         }
         items = [
-            item._replace(**dict(zip(("default", "low", "high"), changed[item.name], strict=True)))
-            if item.name in changed
-            else item
+            Item(*item[:4], *changed[item.name]) if item.name in changed else item
             for item in REGISTERS
             if item.name not in self.lacks
         ]
