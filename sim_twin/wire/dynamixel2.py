@@ -9,6 +9,7 @@ from sim_twin.wire.device import Device
 from sim_twin.wire.frames import (
     BROADCAST,
     HEADER,
+    LENGTH_MAX,
     STATUS,
     Frame,
     Parser,
@@ -237,6 +238,8 @@ def _chained(turns: list[Turn], bus: Bus) -> None:
         for device in devices[:1]:
             device.sample()
     length = 1 + sum(turn.size + 4 for turn in turns)
+    if length > LENGTH_MAX:
+        return
     head = HEADER + bytes((BROADCAST,)) + length.to_bytes(2, "little") + bytes((STATUS,))
     _chain_on(iter([*zip(turns, who, strict=True)]), head, 0, bus, bus.schedule.now)
 

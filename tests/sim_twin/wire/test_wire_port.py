@@ -114,7 +114,7 @@ def test_a_closed_port_says_so() -> None:
 
 
 def test_a_real_clock_keeps_time_with_the_wall() -> None:
-    with open_host("twin://bench?clock=real", timeout=1.0) as host:
+    with open_host("twin://bench?clock=real", timeout=0.05) as host:
         assert host.read(1, "present_position") == 2048
         before = host.now
         host.wait(0.02)
