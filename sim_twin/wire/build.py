@@ -17,7 +17,6 @@ from sim_twin.wire.twin_shaft import TwinImu, TwinPhysics, TwinShaft
 from sim_twin.wire.world import Bench, World
 from sim_twin.wire.x_series import model
 
-
 NOMINAL = 12.0  # V, for servos that stand so much
 
 

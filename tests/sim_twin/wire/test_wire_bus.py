@@ -5,9 +5,9 @@ import math
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from wire_host import Host, open_host
 
 from sim_twin.wire.frames import Frame, Parser, encode
+from tests.sim_twin.wire.wire_host import Host, open_host
 
 BYTE = 1e-5  # s at 1 Mbaud
 

@@ -8,9 +8,9 @@ from typing import Any
 import dynamixel_sdk
 import pytest
 import serial
-from emulator_process import emulator
 
 from sim_twin.wire.frames import encode
+from tests.sim_twin.wire.emulator_process import emulator
 
 rustypot = pytest.importorskip("rustypot")
 
@@ -90,6 +90,7 @@ def test_the_sdk_registers_acts_moves_and_reboots(port: Any, sdk: Any) -> None:
     assert sdk.write1ByteTxRx(port, 2, TORQUE, 1) == (0, 0)
     assert sdk.regWriteTxRx(port, 2, GOAL, 4, list((2400).to_bytes(4, "little"))) == (0, 0)
     sdk.action(port, 2)
+    time.sleep(0.05)  # the SDK does not wait for the answer, and would take it for the next one
     deadline = time.monotonic() + 20.0
     while abs(sdk.read4ByteTxRx(port, 2, POSITION)[0] - 2400) > 60:
         assert time.monotonic() < deadline
@@ -112,16 +113,23 @@ def test_the_sdk_changes_id_and_baud_rate(port: Any, sdk: Any) -> None:
     assert sdk.ping(port, 3)[0] == 1060
 
 
-def test_rustypot_talks_to_it(pty: str) -> None:
-    servos = rustypot.Xl430PyController(serial_port=pty, baudrate=1_000_000, timeout=0.5)
-    assert servos.ping(1)
-    servos.write_torque_enable(1, False)
-    assert servos.read_model_number(1)[0] == 1060
-    servos.sync_write_raw_goal_position([1, 2, 3], [2000, 2001, 2002])
-    assert servos.sync_read_raw_goal_position([1, 2, 3]) == [2000, 2001, 2002]
-    angles = servos.sync_read_present_position([1, 2, 3])
-    assert len(angles) == 3
+def test_rustypot_scans_reads_writes_and_reboots(pty: str) -> None:
+    servos = rustypot.Xl330PyController(serial_port=pty, baudrate=1_000_000, timeout=0.5)
+    assert servos.scan() == {1: 1060, 2: 1060, 3: 1060, 4: 1020}
+    assert servos.ping(1) and not servos.ping(9)
+    ids, goals = [1, 2, 3], [2000, 2001, 2002]
+    servos.sync_write_raw_goal_position(ids, goals)
+    for fast in (False, True):
+        servos.set_fast_sync_read(fast)
+        assert servos.sync_read_raw_goal_position(ids) == goals
+    angles = servos.sync_read_goal_position(ids)
+    assert angles == pytest.approx([(goal - 2048) * 6.283185 / 4096 for goal in goals], abs=2e-3)
+    servos.write_torque_enable(1, True)
     servos.reboot(1)
+    deadline = time.monotonic() + 10.0
+    while not servos.ping(1):
+        assert time.monotonic() < deadline
+    assert not servos.read_torque_enable(1)[0]
     servos.close()
 
 

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 import serial
-from wire_host import open_host
 
 from hal.errors import UnknownNameError, UsageError
 from sim_twin.wire import drop_world, find_world, parse_address, put_world
@@ -11,6 +10,7 @@ from sim_twin.wire.frames import encode
 from sim_twin.wire.opencr import ACCELERATION_UNIT, GYRO_UNIT, OpenCr, RestingImu
 from sim_twin.wire.schedule import Schedule
 from sim_twin.wire.world import Bench, World
+from tests.sim_twin.wire.wire_host import open_host
 
 
 @pytest.mark.parametrize(
@@ -37,12 +37,12 @@ def test_a_wrong_address_says_what_is_wrong(url: str, message: str) -> None:
 
 
 def test_two_opens_of_one_world_share_it_and_its_time() -> None:
-    with open_host("twin://bench?world=shared") as one:
-        with open_host("twin://bench?world=shared") as two:
-            assert one.world is two.world
-            two.write(1, "led", 1)
-            assert one.read(1, "led") == 1
-            assert one.now == two.now
+    url = "twin://bench?world=shared"
+    with open_host(url) as one, open_host(url) as two:
+        assert one.world is two.world
+        two.write(1, "led", 1)
+        assert one.read(1, "led") == 1
+        assert one.now == two.now
     with open_host("twin://bench?world=shared") as again:
         assert again.read(1, "led") == 1
         assert find_world("shared") is again.world
@@ -89,9 +89,7 @@ def test_a_read_that_can_never_end_is_an_error() -> None:
 
 
 def test_two_buses_do_not_wait_for_each_other() -> None:
-    with (
-        open_host("twin://bench?servos=XM430-W350:1-20&return_delay=0&world=a") as one,
-    ):
+    with open_host("twin://bench?servos=XM430-W350:1-20&return_delay=0&world=a") as one:
         bus = one.port.bus
         other = Bus("other", list(bus.devices), Dynamixel2(), one.world.schedule)
         one.world.buses["other"] = other
@@ -123,7 +121,12 @@ def test_a_real_clock_keeps_time_with_the_wall() -> None:
 
 def test_the_address_is_parsed_into_si() -> None:
     address = parse_address("twin://op3?clock=real&world=w&bus=legs&supply=11.1&latency=2")
-    assert (address.robot, address.clock, address.world, address.bus) == ("op3", "real", "w", "legs")
+    assert (address.robot, address.clock, address.world, address.bus) == (
+        "op3",
+        "real",
+        "w",
+        "legs",
+    )
     assert (address.supply, address.latency) == (11.1, 2.0)
 
 

@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 
 import pytest
-from wire_host import Host, open_host
 
 from sim_twin.wire.firmware import ALERT
 from sim_twin.wire.health import ENCODER, INPUT_VOLTAGE, OVERHEATING, OVERLOAD
@@ -15,6 +14,7 @@ from sim_twin.wire.register_file import (
     FAILED,
     OK,
 )
+from tests.sim_twin.wire.wire_host import Host, open_host
 
 XM = 1
 XL430 = 2
@@ -124,7 +124,9 @@ def test_reverse_mode_and_homing_offset_change_what_is_reported(host: Host) -> N
     host.write(XM, "goal_position", 1000)
     host.wait(2.0)
     assert host.read(XM, "present_position") == pytest.approx(1000, abs=2)
-    assert host.shaft(XM).position == pytest.approx((2048 + 100 - 1000) * 6.2831853 / 4096, abs=5e-3)
+    assert host.shaft(XM).position == pytest.approx(
+        (2048 + 100 - 1000) * 6.2831853 / 4096, abs=5e-3
+    )
 
 
 def test_velocity_mode_holds_its_velocity_and_ramps_with_the_profile(host: Host) -> None:

@@ -74,6 +74,8 @@ class Host:
 
 
 @contextmanager
-def open_host(url: str = "twin://bench", baud: int = 1_000_000, timeout: float = 0.02) -> Iterator[Host]:
+def open_host(
+    url: str = "twin://bench", baud: int = 1_000_000, timeout: float = 0.02
+) -> Iterator[Host]:
     with serial.serial_for_url(url, baudrate=baud, timeout=timeout) as port:
         yield Host(port)
