@@ -60,6 +60,11 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
         return self._running.clock
 
     @property
+    def latency(self) -> float:
+        """What the adapter holds bytes back, s; drivers add it to their deadlines."""
+        return self._bus.timing.latency
+
+    @property
     def in_waiting(self) -> int:
         """Number of bytes that can be read at once."""
         self._check()
