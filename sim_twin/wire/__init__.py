@@ -1,0 +1,21 @@
+"""Emulated servos on a bus. Importing this makes ``twin://`` a port that pyserial can open."""
+
+import serial
+
+from sim_twin.wire.address import Address, parse_address
+from sim_twin.wire.build import build_world
+from sim_twin.wire.world import World
+from sim_twin.wire.worlds import drop_world, find_world, put_world
+
+if __name__ not in serial.protocol_handler_packages:
+    serial.protocol_handler_packages.append(__name__)
+
+__all__ = [
+    "Address",
+    "World",
+    "build_world",
+    "drop_world",
+    "find_world",
+    "parse_address",
+    "put_world",
+]

@@ -1,0 +1,116 @@
+"""What a ``twin://`` URL says.
+
+``twin://op3[?clock=virtual|real&world=NAME&bus=legs&faults=drop:0.01&seed=1&supply=12...]``: a
+robot of ours; ``twin://bench?servos=XM430-W350:1-20,XL430:30&baud=1000000``: servos on a bench.
+"""
+
+from dataclasses import dataclass, fields, replace
+from typing import Any
+from urllib.parse import parse_qsl, urlsplit
+
+from hal.errors import UsageError, suggest
+
+SCHEME = "twin"
+BENCH = "bench"
+
+
+@dataclass(frozen=True)
+class Address:
+    """The parts of a URL.
+
+    Attributes:
+        robot: A robot's name, or "bench".
+        clock: "virtual" (time passes when somebody waits) or "real".
+        world: Name of the world; opens of one world share it, also one after the other. Without a
+            name, the world lives until its last port is closed.
+        bus: Which bus of the robot.
+        faults: See `Faults.parse`.
+        seed: Seed of everything random.
+        supply: Voltage, V; 0: the robot's own, or 12.
+        latency: Of the adapter, ms.
+        turnaround: Of the servos, on top of their return delay, us.
+        missing: Behind a missing servo in a sync read, the others "skip" its slot or "wait".
+        power: Whether a board that switches the servo power has it "on" or "off" at the start.
+        hold: Whether the robot is held until its servos are driven, "yes" or "no".
+        servos: On the bench, models and ids: "XM430-W350:1-20,XL430:30".
+        baud: On the bench, the servos' baud rate; 0: the robot's own, or 1000000.
+        return_delay: Register 9 of the servos at the start; 250 as they leave the factory.
+    """
+
+    robot: str
+    clock: str = "virtual"
+    world: str = ""
+    bus: str = ""
+    faults: str = ""
+    seed: int = 0
+    supply: float = 0.0
+    latency: float = 0.0
+    turnaround: float = 0.0
+    missing: str = "skip"
+    power: str = "on"
+    hold: str = "yes"
+    servos: str = "XM430-W350:1"
+    baud: int = 0
+    return_delay: int = 250
+
+
+CHOICES = {
+    "clock": ("virtual", "real"),
+    "missing": ("skip", "wait"),
+    "power": ("on", "off"),
+    "hold": ("yes", "no"),
+}
+DEFAULTS = Address(BENCH)
+OPTIONS = tuple(item.name for item in fields(Address) if item.name != "robot")
+
+
+def parse_address(url: str) -> Address:
+    """Return the parts of a URL.
+
+    >>> parse_address("twin://op3?clock=real&supply=11.1").supply
+    11.1
+
+    Raises:
+        UsageError: It is not a twin:// URL, or says something unknown.
+    """
+    parts = urlsplit(url)
+    if parts.scheme != SCHEME or not parts.netloc:
+        raise UsageError(f"{url!r} is not a twin:// address; 'twin://op3' is")
+    values: dict[str, Any] = {"robot": parts.netloc + parts.path.rstrip("/")}
+    for name, text in parse_qsl(parts.query, keep_blank_values=True):
+        if name not in OPTIONS:
+            raise UsageError(f"{url!r}: unknown option {name!r}{suggest(name, OPTIONS)}")
+        values[name] = _value(url, name, text)
+    return replace(DEFAULTS, **values)
+
+
+def parse_servos(text: str) -> list[tuple[str, int]]:
+    """Return (model, id) of a text like "XM430-W350:1-20,XL430:30".
+
+    >>> parse_servos("XL330:1-2,XC330-T288:7")
+    [('XL330', 1), ('XL330', 2), ('XC330-T288', 7)]
+
+    Raises:
+        UsageError: The text says something else.
+    """
+    found = []
+    for part in text.split(","):
+        name, _, ids = part.partition(":")
+        first, _, last = ids.partition("-")
+        try:
+            found += [(name, k) for k in range(int(first), int(last or first) + 1)]
+        except ValueError:
+            raise UsageError(
+                f"servos: {part!r}: a model and its ids, as in 'XM430-W350:1-20'"
+            ) from None
+    return found
+
+
+def _value(url: str, name: str, text: str) -> Any:
+    if name in CHOICES and text not in CHOICES[name]:
+        raise UsageError(f"{url!r}: {name} is one of {', '.join(CHOICES[name])}, not {text!r}")
+    kind: type = type(getattr(DEFAULTS, name))
+    try:
+        return kind(text)
+    except ValueError:
+        raise UsageError(f"{url!r}: {name} is a number, not {text!r}") from None

@@ -1,0 +1,256 @@
+"""A half-duplex bus: bytes in time, at a baud rate, from one sender at a time.
+
+What two senders say at the same time is noise for everybody. A device hears the host only at its
+own baud rate, and the other way round.
+"""
+
+import math
+from collections import deque
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple, Protocol
+
+from sim_twin.wire.device import Device
+from sim_twin.wire.faults import Faults
+from sim_twin.wire.schedule import Schedule
+
+BITS = 10  # start, eight, stop
+EPSILON = 1e-9  # s
+FORGET = 0.1  # s; a frame that has been interrupted for longer is forgotten
+BAUD_TOLERANCE = 0.03
+
+
+class Heard(Protocol):
+    """A frame, or something that was dropped, with the bytes of the chunk that it ends at."""
+
+    @property
+    def end(self) -> int:
+        """Bytes of the chunk up to its end."""
+        ...
+
+
+class Language(Protocol):
+    """A protocol: how bytes become frames, and what devices do with a frame."""
+
+    def feed(self, chunk: bytes) -> list[Heard]:
+        """Return the frames that end in `chunk`."""
+        ...
+
+    def reset(self) -> None:
+        """Forget a frame that has begun."""
+        ...
+
+    def execute(self, frame: Heard, bus: "Bus") -> bool:
+        """Do what a frame says; False if it was dropped."""
+        ...
+
+
+class Timing(NamedTuple):
+    """What differs between adapters and between servos, and no manual says.
+
+    Attributes:
+        latency: From a byte's end on the wire to the host having it, s.
+        turnaround: Added to every return delay, s.
+        waits: Behind a missing servo in a sync read: True, the others wait for it for ever;
+            False, they answer when its slot has passed.
+    """
+
+    latency: float = 0.0
+    turnaround: float = 0.0
+    waits: bool = False
+
+
+@dataclass(slots=True)
+class Burst:
+    """Bytes on the wire, one after the other.
+
+    Attributes:
+        start: When the first one begins, s.
+        byte: How long each takes, s.
+        data: What they are.
+        ruined: From when on they are noise, s.
+    """
+
+    start: float
+    byte: float
+    data: bytearray
+    ruined: float = math.inf
+
+    @property
+    def end(self) -> float:
+        """When the last one ends, s."""
+        return self.start + len(self.data) * self.byte
+
+
+class Bus:
+    """One bus and its host side.
+
+    Attributes:
+        name: Its name.
+        devices: What hangs on it. Call `refresh` after changing ids from outside.
+        baud: Baud rate of the host.
+        schedule: The world's.
+        timing: Latencies.
+        faults: What happens to answers.
+        heard: When the last good instruction ended, s.
+        counts: "frames" executed, "dropped", "collisions".
+    """
+
+    def __init__(
+        self,
+        name: str,
+        devices: list[Device],
+        language: Language,
+        schedule: Schedule,
+        baud: int = 1_000_000,
+        timing: Timing | None = None,
+        faults: Faults | None = None,
+    ) -> None:
+        self.name, self.devices, self.language, self.schedule = name, devices, language, schedule
+        self.timing = timing or Timing()
+        self.faults = faults or Faults()
+        self.heard = 0.0
+        self.counts = {"frames": 0, "dropped": 0, "collisions": 0}
+        self._baud = baud
+        self._sent = -math.inf  # when the host's last byte ends
+        self._air: list[Burst] = []  # on the wire now or soon
+        self._inbox: deque[Burst] = deque()  # for the host
+        self._queued = 0  # bytes in the inbox that the host has not read
+        self._taken = 0  # bytes of the inbox's first burst that the host has
+        self._by_id: dict[int, list[Device]] = {}
+        self.refresh()
+
+    @property
+    def baud(self) -> int:
+        """Baud rate of the host."""
+        return self._baud
+
+    @baud.setter
+    def baud(self, baud: int) -> None:
+        if baud != self._baud:
+            self._baud = baud
+            self.language.reset()
+
+    def refresh(self) -> None:
+        """Look up everybody's id again."""
+        self._by_id.clear()
+        for device in self.devices:
+            self._by_id.setdefault(device.identifier, []).append(device)
+            if device.shadow < 253:
+                self._by_id.setdefault(device.shadow, []).append(device)
+
+    # The host's side
+
+    def write(self, data: bytes) -> None:
+        """Send bytes, now or behind those that are still going out."""
+        start = max(self.schedule.now, self._sent)
+        if start - self._sent > FORGET:
+            self.language.reset()
+        burst = Burst(start, BITS / self._baud, bytearray(data))
+        self._sent = burst.end
+        self._collide(burst)
+        for item in self.language.feed(bytes(burst.data)):
+            end = start + item.end * burst.byte
+            self.schedule.at(end, partial(self._hear, item, burst, end))
+
+    def available(self) -> int:
+        """Return the number of bytes that the host has got and not read."""
+        now, total = self.schedule.now - self.timing.latency, -self._taken
+        for burst in self._inbox:
+            arrived = int((now - burst.start) / burst.byte + 1e-6)
+            total += max(0, min(arrived, len(burst.data)))
+            if arrived < len(burst.data):
+                break
+        return max(total, 0)
+
+    def arrival(self, count: int) -> float:
+        """Return when the host has `count` bytes, s; infinity if they are not on the way yet."""
+        if count > self._queued:
+            return math.inf
+        count += self._taken
+        for burst in self._inbox:
+            if count <= len(burst.data):
+                return burst.start + count * burst.byte + self.timing.latency
+            count -= len(burst.data)
+        return math.inf
+
+    def read(self, count: int) -> bytes:
+        """Return up to `count` bytes that have arrived."""
+        count = min(count, self.available())
+        data = bytearray()
+        while count > 0:
+            first = self._inbox[0]
+            piece = first.data[self._taken : self._taken + count]
+            data += piece
+            count -= len(piece)
+            self._queued -= len(piece)
+            self._taken += len(piece)
+            if self._taken == len(first.data):
+                self._inbox.popleft()
+                self._taken = 0
+        return bytes(data)
+
+    @property
+    def queued(self) -> int:
+        """Bytes that the host has not read, arrived or on the way."""
+        return self._queued
+
+    def discard(self) -> None:
+        """Throw away what has arrived and was not read."""
+        self.read(self.available())
+
+    # The devices' side
+
+    def listeners(self, identifier: int) -> list[Device]:
+        """Return who hears the host and has this id, or has it as a shadow."""
+        return [d for d in self._by_id.get(identifier, ()) if self.hears(d)]
+
+    def everybody(self) -> list[Device]:
+        """Return who hears the host."""
+        return [device for device in self.devices if self.hears(device)]
+
+    def hears(self, device: Device) -> bool:
+        """Whether a device understands what the host sends now."""
+        same = abs(device.baud - self._baud) <= BAUD_TOLERANCE * self._baud
+        return same and device.listens(self.schedule.now)
+
+    def answer(self, data: bytes, baud: int) -> float:
+        """Put an answer on the wire, now; return when it ends, s."""
+        burst = Burst(self.schedule.now, BITS / baud, bytearray(data))
+        end = burst.end
+        got = self.faults.answer(data)
+        self._collide(burst)
+        if got is not data:
+            burst.data[:] = got
+        if abs(baud - self._baud) > BAUD_TOLERANCE * self._baud:
+            burst.data[:] = self.faults.noise(len(burst.data))
+        if burst.data:
+            self._inbox.append(burst)
+            self._queued += len(burst.data)
+        return end
+
+    def _hear(self, item: Heard, burst: Burst, end: float) -> None:
+        """Execute a frame of the host, unless a collision has ruined it since."""
+        if end > burst.ruined or not self.language.execute(item, self):
+            self.counts["dropped"] += 1
+            return
+        self.counts["frames"] += 1
+        self.heard = end
+
+    def _collide(self, new: Burst) -> None:
+        """Make noise of what overlaps, and keep `new` in the air."""
+        now = self.schedule.now
+        air = [old for old in self._air if old.end > now]
+        for old in air:
+            start, end = max(old.start, new.start), min(old.end, new.end)
+            if start >= end - EPSILON:
+                continue
+            self.counts["collisions"] += 1
+            for burst in (old, new):
+                first = max(0, int((start - burst.start) / burst.byte))
+                last = min(len(burst.data), math.ceil((end - burst.start) / burst.byte))
+                if last > first:
+                    burst.data[first:last] = self.faults.noise(last - first)
+                    burst.ruined = min(burst.ruined, start)
+        air.append(new)
+        self._air = air

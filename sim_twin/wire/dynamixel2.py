@@ -1,0 +1,276 @@
+"""The instructions of Dynamixel protocol 2: who does what, who answers, and when."""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import NamedTuple
+
+from sim_twin.wire.bus import Bus, Heard
+from sim_twin.wire.device import Device
+from sim_twin.wire.frames import (
+    BROADCAST,
+    HEADER,
+    LENGTH_MAX,
+    STATUS,
+    Frame,
+    Parser,
+    crc16,
+    encode_status,
+)
+from sim_twin.wire.register_file import BAD_INSTRUCTION, BAD_LENGTH, OK
+
+PING, READ, WRITE, REG_WRITE, ACTION = 0x01, 0x02, 0x03, 0x04, 0x05
+FACTORY_RESET, REBOOT, CLEAR = 0x06, 0x08, 0x10
+SYNC_READ, SYNC_WRITE, FAST_SYNC_READ = 0x82, 0x83, 0x8A
+BULK_READ, BULK_WRITE, FAST_BULK_READ = 0x92, 0x93, 0x9A
+
+READS = 1  # return level from which reads are answered
+WRITES = 2
+STATUS_BYTES = 11  # of a status frame around its data
+PING_GAP = 0.003  # s between the slots of a broadcast ping, which SDKs allow for each id
+EEPROM_END = 64
+
+
+class Turn(NamedTuple):
+    """One device's part in a sync or bulk read."""
+
+    identifier: int
+    address: int
+    size: int
+
+
+class Dynamixel2:
+    """Protocol 2, as a bus full of devices takes it.
+
+    Attributes:
+        errors: Reason to the number of times something was dropped.
+    """
+
+    def __init__(self) -> None:
+        self._parser = Parser()
+        self.errors: dict[str, int] = {}
+        self._many: dict[int, Callable[[bytes, Bus], None]] = {
+            SYNC_READ: lambda parameters, bus: _in_turns(_sync(parameters), bus),
+            BULK_READ: lambda parameters, bus: _in_turns(_bulk(parameters), bus),
+            FAST_SYNC_READ: lambda parameters, bus: _chained(_sync(parameters), bus),
+            FAST_BULK_READ: lambda parameters, bus: _chained(_bulk(parameters), bus),
+            SYNC_WRITE: _sync_write,
+            BULK_WRITE: _bulk_write,
+        }
+
+    def feed(self, chunk: bytes) -> list[Heard]:
+        """Return the frames that end in `chunk`."""
+        return [*self._parser.feed(chunk)]
+
+    def reset(self) -> None:
+        """Forget a frame that has begun."""
+        self._parser.reset()
+
+    def execute(self, frame: Heard, bus: Bus) -> bool:
+        """Do what a frame says; False if it was dropped."""
+        if not isinstance(frame, Frame):
+            reason = getattr(frame, "reason", "unknown")
+            self.errors[reason] = self.errors.get(reason, 0) + 1
+            return False
+        if frame.instruction == STATUS:
+            return False
+        many = self._many.get(frame.instruction)
+        if frame.identifier != BROADCAST:
+            _one(frame, bus)
+        elif many is not None:
+            many(frame.parameters, bus)
+        elif frame.instruction == PING:
+            _ping_all(bus)
+        elif frame.instruction != READ:
+            for device in bus.everybody():
+                _act(device, frame, bus, broadcast=True)
+            bus.refresh()
+        return True
+
+
+def _one(frame: Frame, bus: Bus) -> None:
+    """Execute an instruction for one id."""
+    for device in bus.listeners(frame.identifier):
+        delay, level, baud = device.return_delay, device.return_level, device.baud
+        silent = device.identifier != frame.identifier
+        needs = {PING: 0, READ: READS}.get(frame.instruction, WRITES)
+        error, data = _act(device, frame, bus)
+        if level >= needs and not silent:
+            status = encode_status(frame.identifier, error, data)
+            start = bus.schedule.now + delay + bus.timing.turnaround
+            bus.schedule.at(start, partial(_answer, bus, status, baud))
+
+
+def _act(device: Device, frame: Frame, bus: Bus, broadcast: bool = False) -> tuple[int, bytes]:
+    """Let a device do an instruction; return the error byte and the data of its answer."""
+    now, instruction, parameters = bus.schedule.now, frame.instruction, frame.parameters
+    if instruction == PING:
+        device.sample()
+        return device.read(0, 1, now)[0], device.ping()
+    if instruction == READ:
+        if len(parameters) != 4:
+            return BAD_LENGTH, b""
+        device.sample()
+        return device.read(_word(parameters, 0), _word(parameters, 2), now)
+    if instruction in (WRITE, REG_WRITE):
+        if len(parameters) < 3:
+            return BAD_LENGTH, b""
+        address, data = _word(parameters, 0), parameters[2:]
+        if instruction == REG_WRITE:
+            return device.register_write(address, data), b""
+        return _write(device, address, data, bus), b""
+    if instruction == ACTION:
+        error = device.action(now)
+        bus.refresh()
+        return error, b""
+    if instruction == REBOOT:
+        device.reboot(now)
+        return OK, b""
+    if instruction == FACTORY_RESET:
+        error = device.factory_reset(parameters[0] if parameters else 0, broadcast, now)
+        bus.refresh()
+        return error, b""
+    if instruction == CLEAR:
+        return device.clear(parameters), b""
+    return BAD_INSTRUCTION, b""
+
+
+def _write(device: Device, address: int, data: bytes, bus: Bus) -> int:
+    error = device.write(address, data, bus.schedule.now)
+    if address < EEPROM_END:
+        bus.refresh()
+    return error
+
+
+def _answer(bus: Bus, status: bytes, baud: int) -> None:
+    bus.answer(status, baud)
+
+
+def _ping_all(bus: Bus) -> None:
+    """Every device answers in the slot of its id."""
+    now = bus.schedule.now
+    for device in bus.everybody():
+        data = encode_status(device.identifier, device.read(0, 1, now)[0], device.ping())
+        slot = PING_GAP + len(data) * 10.0 / bus.baud
+        start = now + device.identifier * slot + device.return_delay
+        bus.schedule.at(start, partial(_answer, bus, data, device.baud))
+
+
+def _sync_write(parameters: bytes, bus: Bus) -> None:
+    address, count = _word(parameters, 0), _word(parameters, 2)
+    for at in range(4, len(parameters) - count, count + 1):
+        for device in bus.listeners(parameters[at]):
+            _write(device, address, parameters[at + 1 : at + 1 + count], bus)
+
+
+def _bulk_write(parameters: bytes, bus: Bus) -> None:
+    at = 0
+    while at + 5 <= len(parameters):
+        count = _word(parameters, at + 3)
+        for device in bus.listeners(parameters[at]):
+            _write(device, _word(parameters, at + 1), parameters[at + 5 : at + 5 + count], bus)
+        at += 5 + count
+
+
+def _sync(parameters: bytes) -> list[Turn]:
+    address, count = _word(parameters, 0), _word(parameters, 2)
+    return [Turn(identifier, address, count) for identifier in parameters[4:]]
+
+
+def _bulk(parameters: bytes) -> list[Turn]:
+    return [
+        Turn(parameters[at], _word(parameters, at + 1), _word(parameters, at + 3))
+        for at in range(0, len(parameters) - 4, 5)
+    ]
+
+
+def _word(data: bytes, at: int) -> int:
+    return int.from_bytes(data[at : at + 2], "little")
+
+
+def _answering(turn: Turn, bus: Bus, fast: bool) -> list[Device]:
+    return [
+        device
+        for device in bus.listeners(turn.identifier)
+        if device.identifier == turn.identifier
+        and device.return_level >= READS
+        and (device.fast or not fast)
+    ]
+
+
+def _in_turns(turns: list[Turn], bus: Bus) -> None:
+    """Answer a sync or bulk read: one status frame after the other."""
+    who = [_answering(turn, bus, fast=False) for turn in turns]
+    for devices in who:
+        for device in devices:
+            device.sample()
+    _go_on(iter([*zip(turns, who, strict=True)]), bus, bus.schedule.now)
+
+
+def _go_on(left: Iterator[tuple[Turn, list[Device]]], bus: Bus, end: float) -> None:
+    """Let the next device answer; the one before it was through at `end` s."""
+    for turn, devices in left:
+        if devices:
+            start = end + devices[0].return_delay + bus.timing.turnaround
+            bus.schedule.at(start, partial(_take_turn, turn, devices, left, bus))
+            return
+        if bus.timing.waits:
+            return
+        end += (turn.size + STATUS_BYTES) * 10.0 / bus.baud
+
+
+def _take_turn(
+    turn: Turn, devices: list[Device], left: Iterator[tuple[Turn, list[Device]]], bus: Bus
+) -> None:
+    end = bus.schedule.now
+    for device in devices:
+        error, data = device.read(turn.address, turn.size, end)
+        end = max(end, bus.answer(encode_status(turn.identifier, error, data), device.baud))
+    _go_on(left, bus, end)
+
+
+def _chained(turns: list[Turn], bus: Bus) -> None:
+    """Answer a fast read: all devices build one status frame, without stuffing.
+
+    Every part ends with a CRC over everything so far; the last one is the frame's.
+    """
+    who = [_answering(turn, bus, fast=True) for turn in turns]
+    for devices in who:
+        for device in devices[:1]:
+            device.sample()
+    length = 1 + sum(turn.size + 4 for turn in turns)
+    if length > LENGTH_MAX:
+        return
+    head = HEADER + bytes((BROADCAST,)) + length.to_bytes(2, "little") + bytes((STATUS,))
+    _chain_on(iter([*zip(turns, who, strict=True)]), head, 0, bus, bus.schedule.now)
+
+
+def _chain_on(
+    left: Iterator[tuple[Turn, list[Device]]], head: bytes, crc: int, bus: Bus, end: float
+) -> None:
+    """Let the next device add its part, beginning with `head` if it is the first."""
+    for turn, devices in left:
+        if devices:
+            # Only the first device waits for its return delay: the frame has no gaps.
+            delay = devices[0].return_delay + bus.timing.turnaround if head else 0.0
+            part = partial(_add_part, turn, devices[0], left, head, crc, bus)
+            bus.schedule.at(end + delay, part)
+            return
+        if bus.timing.waits or head:
+            return
+        end += (turn.size + 4) * 10.0 / bus.baud
+
+
+def _add_part(
+    turn: Turn,
+    device: Device,
+    left: Iterator[tuple[Turn, list[Device]]],
+    head: bytes,
+    crc: int,
+    bus: Bus,
+) -> None:
+    error, data = device.read(turn.address, turn.size, bus.schedule.now)
+    part = head + bytes((error, turn.identifier)) + data.ljust(turn.size, b"\0")
+    crc = crc16(part, crc)
+    tail = crc.to_bytes(2, "little")
+    end = bus.answer(part + tail, device.baud)
+    _chain_on(left, b"", crc16(tail, crc), bus, end)

@@ -1,0 +1,203 @@
+"""Serves a world in real time to programs that are not ours, or not in this process.
+
+The loop sleeps until something is due and does the work of a reply before its time, so that bytes
+leave when the modelled wire would have carried them. One process for one world.
+"""
+
+import contextlib
+import ctypes
+import gc
+import math
+import os
+import select
+import time as wall
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from hal.errors import UsageError
+from sim_twin.wire.address import Address
+from sim_twin.wire.build import build_world
+from sim_twin.wire.bus import Bus
+from sim_twin.wire.link import Link, Pty, Tcp
+from sim_twin.wire.world import World
+
+AHEAD = 0.002  # s by which replies may be worked out before their time
+MARGIN = 0.0005  # s before its time that the next reply has to be worked out at the latest
+CHUNK_TIME = 0.0006  # s of bytes that go out together in the middle of an answer
+QUIET = 0.00015  # s without anything due, that a step of the physics may take
+SPIN = 0.00008  # s before the ends of an answer that are not slept through
+HOP = 0.000025  # s that a pseudo-terminal takes each way, which the wire does not have
+IDLE = 0.002  # s; the longest sleep
+PR_SET_TIMERSLACK = 29
+
+Journal = Callable[[float, int], None]
+
+
+@dataclass
+class Outlet:
+    """A bus, its plug, and when bytes go out next.
+
+    Attributes:
+        bus: The bus.
+        link: The plug.
+        sent: When bytes went out last, s.
+    """
+
+    bus: Bus
+    link: Link
+    sent: float = -math.inf
+
+    def due(self, more: bool) -> float:
+        """Return when bytes should go out next, s.
+
+        The first and the last of an answer go out as they arrive, those between in pieces. `more`
+        says that the end of the answer has still to be worked out.
+        """
+        bus = self.bus
+        if not bus.queued:
+            return math.inf
+        piece = max(bus.arrival(1), self.sent + CHUNK_TIME)
+        return piece if more else min(bus.arrival(bus.queued), piece)
+
+    def send(self, now: float) -> None:
+        """Send what has arrived."""
+        if data := self.bus.read(self.bus.available()):
+            self.link.send(data)
+            self.sent = now
+
+    def receive(self) -> None:
+        """Take in what the program has sent."""
+        data = self.link.receive()
+        if data:
+            if baud := self.link.baud():
+                self.bus.baud = baud
+            self.bus.write(data)
+
+
+class Emulator:
+    """A world that runs by the wall clock, with plugs.
+
+    Args:
+        world: The world.
+        journal: Called with the time and the number of driven motors whenever that changes.
+    """
+
+    def __init__(self, world: World, journal: Journal | None = None) -> None:
+        self.world, self.journal = world, journal
+        self.outlets: list[Outlet] = []
+        self._wake_read, self._wake_write = os.pipe()
+        self._running = True
+        self._driven = -1
+
+    def plug(self, bus: str, link: Link) -> None:
+        """Connect a link to a bus."""
+        self.outlets.append(Outlet(self.world.bus(bus), link))
+
+    def stop(self) -> None:
+        """End `run`; signal handlers and threads may call this."""
+        self._running = False
+        os.write(self._wake_write, b"x")
+
+    def run(self) -> None:
+        """Serve until `stop`."""
+        _be_punctual()
+        start = wall.perf_counter() - self.world.now
+        schedule = self.world.schedule
+        while self._running:
+            now = wall.perf_counter() - start
+            if schedule.next <= now + AHEAD:
+                schedule.run_next()
+                schedule.now = now
+            more = schedule.next <= now + AHEAD
+            due = self._send(now, more)
+            if more or self._step(now, due):
+                continue
+            step = self.world.physics_time + self.world.physics.timestep
+            wake = min(due, schedule.next - MARGIN, max(step, now + QUIET), now + IDLE)
+            left = wake - now
+            self._wait(max(left - SPIN if wake == due else left, 0.0), start)
+
+    def close(self) -> None:
+        """Pull the plugs."""
+        for outlet in self.outlets:
+            outlet.link.close()
+        os.close(self._wake_read)
+        os.close(self._wake_write)
+
+    def _send(self, now: float, more: bool) -> float:
+        """Send what is due when it gets there; return when something will be next, s."""
+        soonest = math.inf
+        now += HOP
+        self.world.schedule.now = now
+        for outlet in self.outlets:
+            due = outlet.due(more)
+            if due <= now:
+                outlet.send(now)
+                due = outlet.due(more)
+            soonest = min(soonest, due - HOP)
+        self.world.schedule.now = now - HOP
+        return soonest
+
+    def _step(self, now: float, due: float) -> bool:
+        """Do a step of the physics, if one is due and there is time for it."""
+        world = self.world
+        late = now - world.physics_time - world.physics.timestep
+        if late < 0.0 or (due - now < QUIET and late < 2.0 * world.physics.timestep):
+            return False
+        world.step()
+        if self.journal is not None:
+            driven = sum(device.driving for device in world.devices)
+            if driven != self._driven:
+                self._driven = driven
+                self.journal(now, driven)
+        return True
+
+    def _wait(self, seconds: float, start: float) -> None:
+        """Sleep until something comes, or for some time."""
+        places = {place: out for out in self.outlets for place in out.link.descriptors()}
+        ready, _, _ = select.select([*places, self._wake_read], [], [], seconds)
+        self.world.schedule.now = wall.perf_counter() - start - HOP
+        for place in ready:
+            if place in places:
+                places[place].receive()
+
+
+def emulate(
+    address: Address,
+    pty: Path | None = None,
+    tcp: int | None = None,
+    on_ready: Callable[[Emulator], None] | None = None,
+    journal: Journal | None = None,
+) -> None:
+    """Serve the world of an address, each of its buses on a plug, until `Emulator.stop`.
+
+    Args:
+        address: The world.
+        pty: Path of the pseudo-terminal; with several buses, each has its name behind it.
+        tcp: TCP port, of the first bus; the next has the next port. 0: any.
+        on_ready: Called before serving; `Emulator.outlets` know their links' names.
+        journal: See `Emulator`.
+    """
+    if (pty is None) == (tcp is None):
+        raise UsageError("an emulated bus needs a --pty PATH or a --tcp PORT, one of them")
+    emulator = Emulator(build_world(address), journal)
+    with contextlib.closing(emulator):
+        for k, bus in enumerate(emulator.world.buses):
+            if pty is not None:
+                alone = len(emulator.world.buses) == 1
+                emulator.plug(bus, Pty(pty if alone else Path(f"{pty}-{bus}")))
+            elif tcp is not None:
+                emulator.plug(bus, Tcp(tcp + k if tcp else 0))
+        if on_ready is not None:
+            on_ready(emulator)
+        emulator.run()
+
+
+def _be_punctual() -> None:
+    """Ask the kernel for exact sleeps, and Python not to tidy up in the middle of an answer."""
+    with contextlib.suppress(OSError, AttributeError):
+        ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 1)
+    gc.collect()
+    gc.freeze()
+    gc.disable()

@@ -1,0 +1,159 @@
+"""Frames of Dynamixel protocol 2, as a servo reads and writes them.
+
+Written from the manual and sharing nothing with the driver's codec, so that the two check each
+other. A servo is strict: a frame with a wrong CRC, or with an unstuffed header inside, is dropped.
+
+Frame: ``FF FF FD 00, id, length (2), instruction, parameters..., CRC (2)``; the length counts from
+the instruction to the CRC. Between instruction and CRC, ``FF FF FD`` is sent as ``FF FF FD FD``.
+"""
+
+import re
+import struct
+from typing import Final, NamedTuple
+
+HEADER: Final = b"\xff\xff\xfd\x00"
+BROADCAST: Final = 0xFE
+STATUS: Final = 0x55
+
+LENGTH_MAX = 4096  # bytes; longer frames are taken for noise
+SMALLEST = 3  # instruction and CRC
+
+_BARE_HEADER = re.compile(rb"\xff\xff\xfd(?!\xfd)")
+_PATTERN, _STUFFED = b"\xff\xff\xfd", b"\xff\xff\xfd\xfd"
+
+
+def _crc_table() -> tuple[int, ...]:
+    """Return the CRCs of all pairs of bytes: CRC-16/BUYPASS, polynomial 0x8005, start 0."""
+    single = []
+    for byte in range(256):
+        crc = byte << 8
+        for _ in range(8):
+            crc = (crc << 1) ^ (0x8005 if crc & 0x8000 else 0)
+        single.append(crc & 0xFFFF)
+    return tuple(
+        (crc << 8) & 0xFF00 ^ single[crc >> 8 ^ low] for crc in single for low in range(256)
+    )
+
+
+_CRC = _crc_table()
+
+
+def crc16(data: bytes | bytearray, crc: int = 0) -> int:
+    """Return the CRC of `data`, going on from `crc`.
+
+    >>> hex(crc16(bytes.fromhex("FFFFFD0001030001")))
+    '0x4e19'
+    """
+    table = _CRC
+    if len(data) & 1:
+        crc = (crc << 8) & 0xFF00 ^ table[crc >> 8 ^ data[0]]
+        data = data[1:]
+    for pair in struct.unpack(f">{len(data) // 2}H", data):
+        crc = table[crc ^ pair]
+    return crc
+
+
+def stuff(body: bytes) -> bytes:
+    """Return `body` with every header inside it broken up."""
+    return body.replace(_PATTERN, _STUFFED) if _PATTERN in body else body
+
+
+def encode(identifier: int, instruction: int, parameters: bytes = b"") -> bytes:
+    """Return an instruction frame."""
+    body = stuff(bytes((instruction,)) + parameters)
+    frame = HEADER + bytes((identifier,)) + (len(body) + 2).to_bytes(2, "little") + body
+    return frame + crc16(frame).to_bytes(2, "little")
+
+
+def encode_status(identifier: int, error: int, parameters: bytes = b"") -> bytes:
+    """Return a status frame."""
+    return encode(identifier, STATUS, bytes((error,)) + parameters)
+
+
+class Frame(NamedTuple):
+    """One good frame.
+
+    Attributes:
+        identifier: Whom it is for (instruction) or from (status).
+        instruction: The instruction's number.
+        parameters: What follows it, unstuffed.
+        end: Bytes of the chunk just fed that had been taken when the frame was complete.
+    """
+
+    identifier: int
+    instruction: int
+    parameters: bytes
+    end: int
+
+
+class FrameError(NamedTuple):
+    """Something that was dropped.
+
+    Attributes:
+        reason: "crc", "stuffing" or "length".
+        end: As in `Frame`.
+    """
+
+    reason: str
+    end: int
+
+
+class Parser:
+    """Turns a stream of bytes, in chunks of any size, into frames and errors."""
+
+    def __init__(self) -> None:
+        self._pending = bytearray()
+
+    def reset(self) -> None:
+        """Forget a frame that has begun."""
+        self._pending.clear()
+
+    def feed(self, chunk: bytes) -> list[Frame | FrameError]:
+        """Take `chunk` and return what it completes, in order."""
+        found: list[Frame | FrameError] = []
+        before = len(self._pending)
+        self._pending += chunk
+        taken = 0
+        while True:
+            item, used = self._next(taken - before)
+            taken += used
+            del self._pending[:used]
+            if item is None:
+                return found
+            found.append(item)
+
+    def _next(self, offset: int) -> tuple[Frame | FrameError | None, int]:
+        """Return the first complete item and the bytes it uses up; `offset` is where it starts."""
+        data = self._pending
+        start = data.find(HEADER)
+        if start < 0:
+            return None, _useless(data)
+        if len(data) < start + 7:
+            return None, start
+        length = data[start + 5] | data[start + 6] << 8
+        if not SMALLEST <= length <= LENGTH_MAX:
+            return FrameError("length", offset + start + 7), start + 4
+        end = start + 7 + length
+        body = bytes(data[start + 7 : end - 2])
+        if bare := _BARE_HEADER.search(body):
+            # Another frame may begin here: the one before it was cut short, or not stuffed.
+            # Two bytes of body decide nothing yet; the byte behind the pattern has to be known.
+            known = start + 7 + bare.end()
+            if len(data) > known or len(data) >= end:
+                return FrameError(
+                    "stuffing", offset + min(known + 1, end)
+                ), start + 7 + bare.start()
+        if len(data) < end:
+            return None, start
+        if crc16(data[start : end - 2]) != data[end - 2] | data[end - 1] << 8:
+            return FrameError("crc", offset + end), start + 4
+        plain = body.replace(_STUFFED, _PATTERN)
+        return Frame(data[start + 4], plain[0], plain[1:], offset + end), end
+
+
+def _useless(data: bytearray) -> int:
+    """Return how many bytes at the front of `data` cannot be part of a header."""
+    for keep in (3, 2, 1):
+        if data.endswith(HEADER[:keep]):
+            return len(data) - keep
+    return len(data)

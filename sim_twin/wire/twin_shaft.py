@@ -1,0 +1,173 @@
+"""Shafts that are the joints of the MuJoCo twin.
+
+A servo's firmware changes the parameters of the joint's `dcmotor`; MuJoCo integrates the motor.
+The controller of a dcmotor asks for a torque, ``kp (ctrl - q) - kd dq``, and drives the voltage
+``u = R/K torque + K dq``, within ``Vmax`` (0: no limit). From that come all four ways of driving:
+
+| | kp | kd | Vmax | ctrl |
+|---|---|---|---|---|
+| hold a goal | stiffness | K^2/R: cancels ``+ K dq`` | volts | goal |
+| put volts on | anything | K^2/R | volts | far away, so that it saturates |
+| make a torque | next to nothing | 0 | volts | torque / kp |
+| let go | 0 | 0 | none | anything: u = K dq, no current |
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from hal.joints import Array
+from hal.servo_model import ServoMount
+from sim_twin.servo_motor import KD, KP, VMAX
+from sim_twin.twin import Twin
+from sim_twin.wire.x_series import CENTRE
+
+FAR = 1e6  # rad
+SOFT = 1e-6  # N m/rad
+
+
+class TwinShaft:
+    """The horn of the servo at one joint of a twin.
+
+    Args:
+        twin: The twin; it should have no command delay of its own, the wire has one.
+        joint: Index of the joint.
+        mount: How the servo sits there.
+    """
+
+    def __init__(self, twin: Twin, joint: int, mount: ServoMount) -> None:
+        self._data, self._joint = twin.data, joint
+        self._turn = mount.sign * mount.ratio  # rad of the horn for one of the joint
+        per_rad = mount.model.counts_per_rev / (2.0 * math.pi)
+        self._zero = (mount.zero - CENTRE) / per_rad
+        self._prm = twin.model.actuator_gainprm[joint]
+        self._range = twin.model.actuator_forcerange[joint]
+        self._limited = twin.model.actuator_forcelimited
+        self._limit_open = True
+        self._damping = mount.model.damping(twin.supply) * mount.ratio**2
+        self._q, self._dq = twin.data.qpos[7:], twin.data.qvel[6:]
+        self._ctrl, self._force = twin.data.ctrl, twin.data.actuator_force
+
+    @property
+    def position(self) -> float:
+        """See `Shaft`."""
+        return self._turn * float(self._q[self._joint]) + self._zero
+
+    @property
+    def velocity(self) -> float:
+        """See `Shaft`."""
+        return self._turn * float(self._dq[self._joint])
+
+    @property
+    def torque(self) -> float:
+        """See `Shaft`."""
+        return float(self._force[self._joint]) / self._turn
+
+    def drive(self, goal: float, stiffness: float, volts: float, torque: float = math.inf) -> None:
+        """See `Shaft`."""
+        if volts <= 0.0:
+            self.push(0.0)
+            return
+        self._set(stiffness * self._turn**2, self._damping, volts, torque)
+        self._ctrl[self._joint] = (goal - self._zero) / self._turn
+
+    def push(self, volts: float) -> None:
+        """See `Shaft`."""
+        if volts == 0.0:
+            self._set(0.0, self._damping, 0.0)
+        else:
+            self._set(1.0, self._damping, abs(volts))
+            self._ctrl[self._joint] = math.copysign(FAR, volts * self._turn)
+
+    def pull(self, torque: float, volts: float) -> None:
+        """See `Shaft`."""
+        if volts <= 0.0:
+            self.push(0.0)
+            return
+        self._set(SOFT, 0.0, volts)
+        self._ctrl[self._joint] = torque * self._turn / SOFT
+
+    def off(self) -> None:
+        """See `Shaft`."""
+        self._set(0.0, 0.0, 0.0)
+
+    def _set(self, kp: float, kd: float, volts: float, torque: float = math.inf) -> None:
+        prm = self._prm
+        prm[KP], prm[KD], prm[VMAX] = kp, kd, volts
+        open_ = torque == math.inf
+        if not (open_ and self._limit_open):
+            self._limited[self._joint] = not open_
+            most = 0.0 if open_ else torque * abs(self._turn)
+            self._range[:] = -most, most
+            self._limit_open = open_
+
+
+class TwinImu:
+    """The IMU of a twin; a source for `OpenCr`."""
+
+    def __init__(self, twin: Twin) -> None:
+        imu = twin.robot.imu
+        if imu is None:
+            raise ValueError(f"robot {twin.robot.name!r} has no IMU")
+        self._data = twin.data.sensordata
+        self._gyro = int(twin.model.sensor(imu.gyro).adr[0])
+        self._acceleration = int(twin.model.sensor(imu.accelerometer).adr[0])
+        self._base = twin.data.qpos
+
+    @property
+    def angular_velocity(self) -> Array:
+        """(3,) rad/s."""
+        return np.asarray(self._data[self._gyro : self._gyro + 3])
+
+    @property
+    def acceleration(self) -> Array:
+        """(3,) m/s2."""
+        return np.asarray(self._data[self._acceleration : self._acceleration + 3])
+
+    @property
+    def orientation(self) -> Array:
+        """(4,) wxyz."""
+        return np.asarray(self._base[3:7])
+
+
+@dataclass
+class TwinPhysics:
+    """A twin as the physics of a world.
+
+    A robot without torque would fall before its host has said a word. So hands hold it: the base,
+    and every joint whose servo has not been driven yet, stay where they are until all servos have
+    been driven once. From then on nobody holds it.
+
+    Attributes:
+        twin: The twin.
+        driven: (n,) bool: has the servo of this joint been driven?
+        held: Whether the hands still hold.
+    """
+
+    twin: Twin
+    held: bool = True
+
+    def __post_init__(self) -> None:
+        self.timestep = self.twin.timestep
+        self.driven = np.zeros(len(self.twin.robot.joints), dtype=bool)
+        self._qpos, self._qvel = self.twin.data.qpos.copy(), np.zeros(self.twin.model.nv)
+
+    def step(self) -> None:
+        """Advance by one step."""
+        if self.held:
+            prm = self.twin.model.actuator_gainprm
+            self.driven |= (prm[:, KP] != 0.0) | (prm[:, KD] != 0.0)
+            if self.driven.all():
+                self.held = False
+        self.twin.step(1)
+        if self.held:
+            self._hold()
+
+    def _hold(self) -> None:
+        """Put back what the hands hold."""
+        data = self.twin.data
+        free = np.flatnonzero(self.driven)
+        kept_q, kept_v = data.qpos[7 + free].copy(), data.qvel[6 + free].copy()
+        data.qpos[:], data.qvel[:] = self._qpos, self._qvel
+        data.qpos[7 + free], data.qvel[6 + free] = kept_q, kept_v

@@ -1,0 +1,81 @@
+"""The worlds that are open in this process, so that two opens of one world share it."""
+
+from dataclasses import dataclass
+
+from hal.errors import UnknownNameError, UsageError
+from sim_twin.wire.address import Address
+from sim_twin.wire.build import build_world
+from sim_twin.wire.world import RealClock, VirtualClock, WireClock, World
+
+
+@dataclass
+class Running:
+    """A world that somebody has opened, or that was put here by name.
+
+    Attributes:
+        world: The world.
+        clock: Its clock.
+        kind: "virtual" or "real".
+        ports: Number of open ports.
+        keep: Whether it stays when the last port is closed.
+    """
+
+    world: World
+    clock: WireClock
+    kind: str
+    ports: int = 0
+    keep: bool = False
+
+
+_running: dict[str, Running] = {}
+
+
+def put_world(name: str, world: World, clock: str = "virtual") -> None:
+    """Offer a world under ``twin://anything?world=NAME``; it stays until `drop_world`."""
+    _running[name] = _start(world, clock, keep=True)
+
+
+def find_world(name: str) -> World:
+    """Return the world that is known by a name.
+
+    Raises:
+        UnknownNameError: There is none.
+    """
+    if name not in _running:
+        raise UnknownNameError("world", name, _running)
+    return _running[name].world
+
+
+def drop_world(name: str) -> None:
+    """Forget a world; ports that are open keep theirs."""
+    _running.pop(name, None)
+
+
+def enter(address: Address) -> Running:
+    """Return the running world of an address, built if need be, with one port more."""
+    name = address.world or f"{address.robot} ({address.clock})"
+    running = _running.get(name)
+    if running is None:
+        running = _start(build_world(address), address.clock, keep=bool(address.world))
+        _running[name] = running
+    elif running.kind != address.clock:
+        raise UsageError(
+            f"world {name!r} runs on a {running.kind} clock, not a {address.clock} one"
+        )
+    if address.bus and address.bus not in running.world.buses:
+        raise UnknownNameError("bus", address.bus, running.world.buses)
+    running.ports += 1
+    return running
+
+
+def leave(running: Running) -> None:
+    """Count one port less; a world without a name of its own ends with its last port."""
+    running.ports -= 1
+    if running.ports == 0 and not running.keep:
+        for name in [name for name, other in _running.items() if other is running]:
+            del _running[name]
+
+
+def _start(world: World, clock: str, keep: bool) -> Running:
+    ticking: WireClock = VirtualClock(world) if clock == "virtual" else RealClock(world)
+    return Running(world, ticking, clock, keep=keep)
