@@ -14,6 +14,8 @@ from typing import Final, NamedTuple
 HEADER: Final = b"\xff\xff\xfd\x00"
 BROADCAST: Final = 0xFE
 STATUS: Final = 0x55
+ID_AT: Final = 4
+LENGTH_AT: Final = 5
 
 LENGTH_MAX = 4096  # bytes; longer frames are taken for noise
 SMALLEST = 3  # instruction and CRC
@@ -68,6 +70,11 @@ def encode(identifier: int, instruction: int, parameters: bytes = b"") -> bytes:
 def encode_status(identifier: int, error: int, parameters: bytes = b"") -> bytes:
     """Return a status frame."""
     return encode(identifier, STATUS, bytes((error,)) + parameters)
+
+
+def seal(frame: bytes) -> bytes:
+    """Return `frame` with the CRC that it should have."""
+    return frame[:-2] + crc16(frame[:-2]).to_bytes(2, "little")
 
 
 class Frame(NamedTuple):

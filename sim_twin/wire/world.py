@@ -54,6 +54,8 @@ class World:
         physics: What moves the shafts.
         schedule: What will happen.
         supply: Voltage of the servos, V. Set it with `set_supply`.
+        nominal: The supply voltage that it was built with, V.
+        dead: What will never work again.
     """
 
     def __init__(
@@ -66,9 +68,13 @@ class World:
     ) -> None:
         self.physics, self.schedule, self.buses, self.supply = physics, schedule, buses, supply
         self.owned = tuple(owned)  # such as the twin, for whoever wants the truth
+        self.nominal = supply
+        self.dead: list[Device] = []
         self._steps = 0
         self._watched = 0.0
         self._devices = [(bus, device) for bus in buses.values() for device in bus.devices]
+        for bus in buses.values():
+            bus.faults.attach(self)
 
     @property
     def now(self) -> float:
@@ -122,7 +128,16 @@ class World:
         """Change the supply voltage of everything."""
         self.supply = volts
         for _, device in self._devices:
-            device.set_supply(volts, self.now)
+            if device not in self.dead:
+                device.set_supply(volts, self.now)
+        for bus in self.buses.values():
+            bus.refresh()
+
+    def kill(self, device: Device) -> None:
+        """Let a device die: it has no power any more."""
+        if device not in self.dead:
+            self.dead.append(device)
+            device.set_supply(0.0, self.now)
 
 
 class VirtualClock:

@@ -68,10 +68,13 @@ def enter(address: Address) -> Running:
     return running
 
 
-def leave(running: Running) -> None:
-    """Count one port less; a world without a name of its own ends with its last port."""
+def leave(running: Running, lost: bool = False) -> None:
+    """Count one port less; a world without a name of its own ends with its last port.
+
+    Unless that port was lost, by unplugging: its host will want to find the world again.
+    """
     running.ports -= 1
-    if running.ports == 0 and not running.keep:
+    if running.ports == 0 and not running.keep and not lost:
         for name in [name for name, other in _running.items() if other is running]:
             del _running[name]
 
