@@ -4,11 +4,12 @@ import logging
 import sys
 from typing import Annotated
 
+import mujoco
 import tyro
 
 from hal.errors import WindupError
 from tools.bench import Bench
-from tools.output import console, error_record, write_json
+from tools.output import check_writable, console, error_record, write_json
 from tools.play import Play
 from tools.robots_list import Robots
 from tools.walk import Walk
@@ -29,6 +30,9 @@ def main(arguments: list[str] | None = None) -> None:
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line and return the exit status."""
     logging.basicConfig(level=logging.WARNING)
+    # MuJoCo would write its warnings into a file in the present folder; a twin that diverges says
+    # so itself.
+    mujoco.set_mju_user_warning(logging.getLogger("mujoco").debug)
     command = None
     try:
         command = tyro.cli(
@@ -38,6 +42,7 @@ def run(arguments: list[str] | None = None) -> int:
             args=arguments,
             config=(tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes),
         )
+        check_writable(getattr(command, "json", None), getattr(command, "plot", None))
         return int(command.run())
     except WindupError as error:
         console.print(f"windup: {error}", markup=False, soft_wrap=True)
@@ -50,5 +55,8 @@ def run(arguments: list[str] | None = None) -> int:
 
 def _write_error(command: object, error: WindupError) -> None:
     """Tell programs too, where they asked for JSON."""
-    name = type(command).__name__.lower()
-    write_json(getattr(command, "json", None), name, error_record(error))
+    try:
+        target = getattr(command, "json", None)
+        write_json(target, type(command).__name__.lower(), error_record(error))
+    except OSError:
+        return  # the error was about this very file

@@ -15,7 +15,7 @@ State = Literal["true", "estimated"]
 class Common:
     """Options of every command that runs a robot."""
 
-    robot: Annotated[str, tyro.conf.Positional]
+    robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
     """A robot's name (`windup robots` lists them), or the path of a folder with your own."""
     state: State = "true"
     """Where the base state comes from: the twin's truth, or an estimate from the sensors."""

@@ -124,7 +124,7 @@ def _progress(show: bool) -> Progress:
         TextColumn("{task.fields[speed]} {task.fields[lean]}"),
         console=console,
         transient=True,
-        disable=not show,
+        disable=not (show and console.is_terminal),
     )
 
 
