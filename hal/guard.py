@@ -149,17 +149,21 @@ class GuardedBackend:
         self._count(block)
         return self._write(JointCommand(self._buffer.copy()))
 
-    def stop(self) -> Mask:
+    def stop(self, policy: StopPolicy | None = None) -> Mask:
         """Carry out the stop policy and return (n,) bool: joints whose torque is still on.
+
+        Args:
+            policy: What to do instead of the robot's own policy.
 
         Raises:
             HardwareError: Torque was told to go off and a joint read back on.
         """
-        if self.stop_policy == "hold":
+        policy = policy or self.stop_policy
+        if policy == "hold":
             pose = self._pose()
             self._write(JointCommand.hold(self.joints, pose))
             return np.ones(len(self.joints), dtype=bool)
-        if self.stop_policy == "crouch" and self.crouch is not None:
+        if policy == "crouch" and self.crouch is not None:
             self._glide(self._pose(), self.crouch, CROUCH_SECONDS)
         on = self.backend.set_torque(False)
         if on.any():

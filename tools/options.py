@@ -2,13 +2,12 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import tyro
 
 from hal.errors import UsageError
-
-State = Literal["true", "estimated"]
+from tools.stack import State
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,8 +16,13 @@ class Common:
 
     robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
     """A robot's name (`windup robots` lists them), or the path of a folder with your own."""
-    state: State = "true"
-    """Where the base state comes from: the twin's truth, or an estimate from the sensors."""
+    port: str | None = None
+    """Servo bus: /dev/ttyUSB0, usb:SERIAL, socket://HOST:PORT, twin://ROBOT; or BUS=URL,BUS=URL."""
+    arm: bool = False
+    """Allow torque on a port that is not twin://. Hold on to the robot."""
+    state: State | None = None
+    """Where the base state comes from: the twin's truth (the default without a port), or an
+    estimate from the sensors (the default on a port)."""
     rate: float | None = None
     """Rate of the control loop, Hz; the robot's own by default."""
     realtime: bool = False

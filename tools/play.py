@@ -38,6 +38,9 @@ class Play(Common):
     def _one(self, seed: int) -> dict[str, object]:
         with Robot.open(
             self.robot,
+            port=self.port,
+            arm=self.arm,
+            state=self.state,
             rate=self.rate,
             realtime=self.realtime,
             seed=seed,

@@ -63,6 +63,9 @@ class Walk(Common):
         """Walk one seed and return its result."""
         with Robot.open(
             self.robot,
+            port=self.port,
+            arm=self.arm,
+            state=self.state,
             rate=self.rate,
             realtime=self.realtime,
             seed=seed,
