@@ -1,6 +1,7 @@
 """The `windup` command: parse, run, and turn errors into one line and an exit status."""
 
 import logging
+import signal
 import sys
 from typing import Annotated
 
@@ -12,11 +13,17 @@ from tools.bench import Bench
 from tools.output import check_writable, console, error_record, write_json
 from tools.play import Play
 from tools.robots_list import Robots
+from tools.scan import Scan
+from tools.stand import Stand
+from tools.stop import Stop
 from tools.walk import Walk
 
 Command = (
     Annotated[Walk, tyro.conf.subcommand("walk")]
     | Annotated[Play, tyro.conf.subcommand("play")]
+    | Annotated[Stand, tyro.conf.subcommand("stand")]
+    | Annotated[Stop, tyro.conf.subcommand("stop")]
+    | Annotated[Scan, tyro.conf.subcommand("scan")]
     | Annotated[Robots, tyro.conf.subcommand("robots")]
     | Annotated[Bench, tyro.conf.subcommand("bench")]
 )
@@ -34,6 +41,8 @@ def run(arguments: list[str] | None = None) -> int:
     # so itself.
     mujoco.set_mju_user_warning(logging.getLogger("mujoco").debug)
     command = None
+    # A robot has to be let go on SIGTERM as on Ctrl-C.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         command = tyro.cli(
             Command,

@@ -9,6 +9,7 @@ from control.loop import Estimator
 from hal.errors import UsageError
 from hal.guard import GuardedBackend, SafetyLimits
 from hal.imu.opencr import OpenCr
+from hal.joints import Mask
 from hal.observation import Observation
 from hal.servo_backend import BusPort, ServoBackend
 from robots import RobotDescription
@@ -115,6 +116,18 @@ def wire_stack(
         raise
     delay = robot.drive.wire_delay
     return Stack(backend, twin, estimator, delay, True, arm or emulated, world)
+
+
+def limp(robot: RobotDescription, port: str) -> Mask:
+    """Switch all torque of `robot` off, whatever state it is in; (n,) bool of what is still on."""
+    if port.startswith(TWIN):
+        port, _ = _in_a_world(robot, port)
+    backend = _servo_backend(robot, port)
+    backend.connect()
+    try:
+        return backend.set_torque(False)
+    finally:
+        backend.disconnect()
 
 
 def _servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
