@@ -5,6 +5,7 @@ with Robot.open("op3") as robot:              # its twin
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from types import TracebackType
 from typing import Self
@@ -15,7 +16,7 @@ from control.balancer import Balancer
 from control.loop import LoopReport, Until, run_loop
 from control.play import GraphPlayer, PoseHolder
 from hal.controller import Controller, Stopwatch
-from hal.errors import HardwareError, UnknownNameError, UsageError, WindupError
+from hal.errors import ControllerError, HardwareError, UnknownNameError, UsageError, WindupError
 from hal.guard import GuardedBackend
 from hal.observation import BaseState, Observation
 from robots import RobotDescription, load_robot
@@ -28,6 +29,7 @@ from tools.stack import Stack, State, twin_stack, wire_stack
 
 START_SECONDS = 1.0
 REST_SECONDS = 1.5
+PLAY_SECONDS = 5.0
 # Called once a tick with the observation and the controller.
 Watch = Callable[[Observation], None]
 # Called at the end of a step with its number and its speed, m/s.
@@ -209,8 +211,13 @@ class Robot:
         return self.run(PoseHolder(self.description.joints, self.description.stance), seconds)
 
     def play(self, graph: str, seconds: float | None = None) -> LoopReport:
-        """Play a pose graph of the robot to its end, or for `seconds` s."""
+        """Play a pose graph of the robot to its end, or for `seconds` s.
+
+        A graph without an end is played for 5 s.
+        """
         gait = find_gait(self.description, graph)
+        if seconds is None and gait.graph.periodic:
+            seconds = PLAY_SECONDS
         player = GraphPlayer(gait, self.description.joints, self.description.contacts)
         self.start_at(gait.file.start)
         return self.run(player, seconds, until=lambda _: "done" if player.finished else None)
@@ -242,11 +249,8 @@ class Robot:
         walker = build_walk(self.description, options, self.predictor)
         self.start_at(walker.gait.file.start)
         report = WalkReport(self, walker, options, steps)
-        try:
+        with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far it got
             self.run(walker, until=_walk_end(walker, steps, on_step), rollouts=True)
-        except KeyboardInterrupt:
-            self.loop.reason = "interrupted"
-            self.stop()
         report.loop = self.loop
         return report
 
@@ -290,9 +294,16 @@ class Robot:
             )
         except WindupError as error:
             self.loop.reason = str(error)
-            if error.exit_status != 2:
-                self._stop_after_error()
+            self._stop_after_error()
             raise
+        except KeyboardInterrupt:
+            self.loop.reason = "interrupted"
+            self._stop_after_error()
+            raise
+        except Exception as error:
+            self.loop.reason = f"the controller failed: {type(error).__name__}: {error}"
+            self._stop_after_error()
+            raise ControllerError(self.loop.reason) from error
         return self.loop
 
     def _stop_after_error(self) -> None:

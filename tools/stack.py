@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from itertools import count
+from math import inf
 from typing import Literal
 
 import sim_twin.wire as wire
@@ -195,7 +196,7 @@ def _guarded(backend: TwinBackend | ServoBackend, robot: RobotDescription) -> Gu
 def _check_delay(delay: float | None, robot: RobotDescription) -> None:
     if delay is None:
         return
-    if delay < 0.0:
+    if not 0.0 <= delay < inf:
         raise UsageError(f"--delay {delay:g}: give 0 s or more")
     steps = delay / robot.timestep
     if abs(steps - round(steps)) > 1e-6:

@@ -38,8 +38,6 @@ class Walk(Common):
     """Keep the torso upright by its own servo, where the gait has one."""
     open_loop: bool = False
     """Play the bare pose graph, without balance."""
-    noise: float = 0.0
-    """Standard deviation of noise on the start pose, degrees."""
     delay: float | None = None
     """Delay of the servos, s."""
 
