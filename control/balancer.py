@@ -22,7 +22,7 @@ from control.step_record import StepRecord, StepStart
 from control.torso_servo import TorsoServo
 from hal.command import JointCommand
 from hal.contacts import ContactSensors
-from hal.controller import RolloutStart
+from hal.controller import Outcomes, RolloutStart
 from hal.errors import StateMissingError
 from hal.joints import Array, Joints
 from hal.observation import Observation
@@ -99,10 +99,11 @@ class Balancer:
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the command of this tick; at the start of a step, plan it first."""
         if self._start is None:
-            self._begin_step(observation, dt)
+            self._begin_step(observation, self.body.measure(observation), dt)
         elif self._tracker.advance(observation.contacts[None])[0]:
-            self._end_step(observation, self._start)
-            self._begin_step(observation, dt)
+            here = self.body.measure(observation)
+            self._end_step(observation.time, here, self._start)
+            self._begin_step(observation, here, dt)
         if self._asked:
             self._take_answer(observation.time)
         goals = self._tracker.step(policy_input(observation), dt)[0]
@@ -112,9 +113,9 @@ class Balancer:
         block[0] = goals
         return JointCommand(block)
 
-    def _begin_step(self, observation: Observation, dt: float) -> None:
-        """Measure where the step begins and ask for its scalings."""
-        start = StepStart.of(observation, int(self._tracker.stance()[0]), self.body)
+    def _begin_step(self, observation: Observation, here: Outcomes, dt: float) -> None:
+        """Remember where the step begins and ask for its scalings."""
+        start = StepStart(observation.time, int(self._tracker.stance()[0]), here)
         self._start = start
         self.speed.begin_step()
         scale = self.speed.scale()
@@ -145,16 +146,15 @@ class Balancer:
         scale[self._columns] += answer
         self._tracker.rescale(scale[None])
 
-    def _end_step(self, observation: Observation, start: StepStart) -> None:
+    def _end_step(self, time: float, end: Outcomes, start: StepStart) -> None:
         """Write down how the step went, and tell the speed feedback."""
-        end = self.body.measure(observation)
-        duration = observation.time - start.time
+        duration = time - start.time
         self._turned += start.turned(end)
         speed = start.speed(end, duration)
         self.speed.measured(speed)
         self.records.append(
             StepRecord(
-                time=observation.time,
+                time=time,
                 duration=duration,
                 position=end.base_position[0].copy(),
                 heading=self._turned,

@@ -46,6 +46,10 @@ class UnsafeCommandError(WindupError):
     """A command that the guard refuses outright: not a number, or of the wrong shape."""
 
 
+class ControllerError(WindupError):
+    """A controller failed in mid-run with an error of its own."""
+
+
 class StaleStateError(WindupError):
     """A servo has not answered for longer than the limits allow."""
 

@@ -36,6 +36,7 @@ class RobotDescription:
         model_path: Its MJCF.
         timestep: Physics step of the MJCF, s.
         rate_hz: Rate of the control loop, Hz.
+        wire_rate_hz: Rate of the control loop on a servo bus, Hz.
         base: Body with the free joint.
         torso: Body whose z axis is the robot's "up".
         joints: The joints.
@@ -60,6 +61,7 @@ class RobotDescription:
     model_path: Path
     timestep: float
     rate_hz: float
+    wire_rate_hz: float
     base: str
     torso: str
     joints: Joints
@@ -158,6 +160,7 @@ def _describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDes
         model_path=folder / robot.model,
         timestep=model.opt.timestep,
         rate_hz=robot.rate_hz,
+        wire_rate_hz=robot.wire_rate_hz or robot.rate_hz,
         base=robot.base,
         torso=robot.torso,
         joints=joints,

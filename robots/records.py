@@ -21,6 +21,7 @@ class Drive(Record, frozen=True):
         supply: Voltage of the servos, V.
         command_delay: From a write to the joint acting on it, s.
         sensor_delay: From the joint moving to its state being read, s.
+        wire_delay: From a state being measured to a command for it acting, on the bus, s.
         servo: Servo of the joints that name none.
         bus: Bus of the joints that name none.
         stiffness: Of the joints that state none, N m/rad.
@@ -31,6 +32,7 @@ class Drive(Record, frozen=True):
     supply: Positive = 12.0
     command_delay: NotNegative = 0.0
     sensor_delay: NotNegative = 0.0
+    wire_delay: NotNegative = 0.0
     servo: str | None = None
     bus: str | None = None
     stiffness: NotNegative | None = None
@@ -115,6 +117,7 @@ class RobotFile(Record, frozen=True):
         sources: Where the numbers come from.
         model: The MJCF beside this file.
         rate_hz: Rate of the control loop, Hz.
+        wire_rate_hz: Rate of the control loop on a servo bus, Hz; by default the same.
         base: Body with the free joint.
         torso: Body whose z axis is the robot's "up".
         stop: What "stop" means: hold, crouch, or limp.
@@ -134,6 +137,7 @@ class RobotFile(Record, frozen=True):
     joint: tuple[JointEntry, ...]
     fall: Fall
     poses: dict[str, dict[str, float]]
+    wire_rate_hz: Positive | None = None
     stop: StopPolicy = "limp"
     model: str = "model.xml"
     crouch: str | None = None

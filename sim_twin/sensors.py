@@ -57,6 +57,7 @@ class Sensors:
         if delay > 0.0:
             self._line = deque(maxlen=round(delay / twin.timestep) + 1)
             twin.on_step = self._record
+            twin.on_jump = self._line.clear
 
     def read(self) -> Observation:
         """Return the observation that is available now."""

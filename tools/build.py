@@ -1,6 +1,7 @@
 """Putting a walking controller together from a robot, a gait and what the user asked for."""
 
 from dataclasses import dataclass, replace
+from math import isfinite
 
 import msgspec
 import numpy as np
@@ -188,4 +189,6 @@ def _targets(given: tuple[str, ...], variables: list[RegulationVariable]) -> dic
             targets[name] = float(value)
         except ValueError:
             raise UsageError(f"--target {text}: {value!r} is no number") from None
+        if not isfinite(targets[name]):
+            raise UsageError(f"--target {text}: {value!r} is no number to aim at")
     return targets

@@ -1,21 +1,32 @@
 """The `windup` command: parse, run, and turn errors into one line and an exit status."""
 
 import logging
+import signal
 import sys
+from contextlib import suppress
+from pathlib import Path
 from typing import Annotated
 
+import mujoco
 import tyro
 
-from hal.errors import WindupError
+from hal.errors import UsageError, WindupError
 from tools.bench import Bench
-from tools.output import console, error_record, write_json
+from tools.options import Common
+from tools.output import check_writable, console, error_record, write_json
 from tools.play import Play
 from tools.robots_list import Robots
+from tools.scan import Scan
+from tools.stand import Stand
+from tools.stop import Stop
 from tools.walk import Walk
 
 Command = (
     Annotated[Walk, tyro.conf.subcommand("walk")]
     | Annotated[Play, tyro.conf.subcommand("play")]
+    | Annotated[Stand, tyro.conf.subcommand("stand")]
+    | Annotated[Stop, tyro.conf.subcommand("stop")]
+    | Annotated[Scan, tyro.conf.subcommand("scan")]
     | Annotated[Robots, tyro.conf.subcommand("robots")]
     | Annotated[Bench, tyro.conf.subcommand("bench")]
 )
@@ -29,7 +40,12 @@ def main(arguments: list[str] | None = None) -> None:
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line and return the exit status."""
     logging.basicConfig(level=logging.WARNING)
+    # MuJoCo would write its warnings into a file in the present folder; a twin that diverges says
+    # so itself.
+    mujoco.set_mju_user_warning(logging.getLogger("mujoco").debug)
     command = None
+    # A robot has to be let go on SIGTERM as on Ctrl-C.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         command = tyro.cli(
             Command,
@@ -38,6 +54,9 @@ def run(arguments: list[str] | None = None) -> int:
             args=arguments,
             config=(tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes),
         )
+        if isinstance(command, Common):
+            command.check()
+        check_writable(getattr(command, "json", None), getattr(command, "plot", None))
         return int(command.run())
     except WindupError as error:
         console.print(f"windup: {error}", markup=False, soft_wrap=True)
@@ -46,9 +65,24 @@ def run(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         console.print("windup: interrupted")
         return 130
+    except SystemExit as parsed:
+        status = parsed.code if isinstance(parsed.code, int) else 2
+        if status != 0:
+            _write_unparsed(sys.argv[1:] if arguments is None else arguments)
+        return status
+
+
+def _write_unparsed(arguments: list[str]) -> None:
+    """Tell programs that their command line could not be understood."""
+    if "--json" in arguments[:-1]:
+        target = Path(arguments[arguments.index("--json") + 1])
+        message = f"the command line cannot be understood: {' '.join(arguments)}"
+        with suppress(OSError):
+            write_json(target, arguments[0], error_record(UsageError(message)))
 
 
 def _write_error(command: object, error: WindupError) -> None:
     """Tell programs too, where they asked for JSON."""
-    name = type(command).__name__.lower()
-    write_json(getattr(command, "json", None), name, error_record(error))
+    with suppress(OSError):  # the error may be about this very file
+        target = getattr(command, "json", None)
+        write_json(target, type(command).__name__.lower(), error_record(error))

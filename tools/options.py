@@ -1,24 +1,29 @@
 """Options that every command takes, and what they mean together."""
 
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import tyro
 
 from hal.errors import UsageError
-
-State = Literal["true", "estimated"]
+from tools.stack import State
 
 
 @dataclass(frozen=True, kw_only=True)
 class Common:
     """Options of every command that runs a robot."""
 
-    robot: Annotated[str, tyro.conf.Positional]
+    robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
     """A robot's name (`windup robots` lists them), or the path of a folder with your own."""
-    state: State = "true"
-    """Where the base state comes from: the twin's truth, or an estimate from the sensors."""
+    port: str | None = None
+    """Servo bus: /dev/ttyUSB0, usb:SERIAL, socket://HOST:PORT, twin://ROBOT; or BUS=URL,BUS=URL."""
+    arm: bool = False
+    """Allow torque on a port that is not twin://. Hold on to the robot."""
+    state: State | None = None
+    """Where the base state comes from: the twin's truth (the default without a port), or an
+    estimate from the sensors (the default on a port)."""
     rate: float | None = None
     """Rate of the control loop, Hz; the robot's own by default."""
     realtime: bool = False
@@ -32,11 +37,23 @@ class Common:
     plot: Path | None = None
     """Draw the run into an image file."""
 
-    def __post_init__(self) -> None:
+    noise: float = 0.0
+    """Standard deviation of noise on the start pose, degrees."""
+
+    def check(self) -> None:
+        """Raise what cannot be, before anything is opened.
+
+        Raises:
+            UsageError: An option is out of its range.
+        """
         if self.seeds is not None and self.seeds < 1:
             raise UsageError(f"--seeds {self.seeds}: give 1 or more")
-        if self.rate is not None and self.rate <= 0.0:
+        if self.seed < 0:
+            raise UsageError(f"--seed {self.seed}: give 0 or more")
+        if self.rate is not None and not 0.0 < self.rate < inf:
             raise UsageError(f"--rate {self.rate:g}: give a rate above 0 Hz")
+        if not 0.0 <= self.noise < inf:
+            raise UsageError(f"--noise {self.noise:g}: give 0 degrees or more")
 
     @property
     def all_seeds(self) -> list[int]:

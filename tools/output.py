@@ -3,6 +3,7 @@
 import json
 import sys
 from math import isfinite
+from os import W_OK, access
 from pathlib import Path
 from typing import Any
 
@@ -30,22 +31,31 @@ def plain(value: Any) -> Any:
     return value
 
 
-def write_json(target: Path | None, command: str, result: dict[str, Any]) -> None:
-    """Write one JSON object to `target`: a file, standard output for "-", or nowhere for None.
+def check_writable(*targets: Path | None) -> None:
+    """Raise before anything runs if one of the result files could not be written.
 
     Raises:
-        UsageError: The file cannot be written.
+        UsageError: The folder is missing or may not be written.
     """
+    for target in targets:
+        if target is None or str(target) == "-":
+            continue
+        folder = target.resolve().parent
+        if not folder.is_dir():
+            raise UsageError(f"{target} cannot be written: there is no folder {folder}")
+        if not access(folder, W_OK) or (target.exists() and not access(target, W_OK)):
+            raise UsageError(f"{target} cannot be written: permission denied")
+
+
+def write_json(target: Path | None, command: str, result: dict[str, Any]) -> None:
+    """Write one JSON object to `target`: a file, standard output for "-", or nowhere for None."""
     if target is None:
         return
     text = json.dumps(plain({"schema": SCHEMA, "command": command, **result}), indent=2)
     if str(target) == "-":
         sys.stdout.write(text + "\n")
         return
-    try:
-        target.write_text(text + "\n", encoding="utf-8")
-    except OSError as error:
-        raise UsageError(f"--json {target}: cannot be written: {error.strerror}") from None
+    target.write_text(text + "\n", encoding="utf-8")
 
 
 def error_record(error: WindupError) -> dict[str, Any]:

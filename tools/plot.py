@@ -78,7 +78,7 @@ def _draw_path(axis, report: WalkReport, trace: Trace) -> None:  # type: ignore[
     pace = "" if speed is None else f", {speed:.2f} m/s"
     axis.set_title(
         f"{report.robot.description.title}, gait {report.walker.gait.name!r}: "
-        f"{report.walker.steps} steps{pace}, {report.robot.loop.reason}"
+        f"{report.walker.steps} steps{pace}, {report.loop.reason}"
     )
     axis.set(xlabel="forward [m]", ylabel="left [m]", aspect="equal")
     low, high = axis.get_ylim()

@@ -1,11 +1,12 @@
 """What a walk was like: the numbers of `windup walk --json`."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from control.balancer import Balancer
+from control.loop import LoopReport
 from hal.joints import Array
 from tools.build import WalkOptions
 
@@ -24,20 +25,22 @@ class WalkReport:
         walker: Its controller, with a record of each step.
         options: What was asked for.
         requested: Steps asked for.
+        loop: How its loop went.
     """
 
     robot: "Robot"
     walker: Balancer
     options: WalkOptions
     requested: int
+    loop: LoopReport = field(default_factory=LoopReport)
 
     def __post_init__(self) -> None:
-        self._origin = self.robot.twin.base.position.copy()
+        self._origin = self._position()
 
     @property
     def fell(self) -> bool:
         """True when the robot has fallen."""
-        return self.robot.loop.reason == "fell"
+        return self.loop.reason == "fell"
 
     @property
     def done(self) -> bool:
@@ -58,10 +61,16 @@ class WalkReport:
         ways = [record.speed * record.duration for record in records]
         return float(sum(ways) / sum(record.duration for record in records))
 
+    def _position(self) -> Array:
+        """Return where the base is: the truth on a twin, an estimate on a robot."""
+        twin, seen = self.robot.stack.twin, self.robot.base
+        base = seen if twin is None else twin.base
+        return np.zeros(3) if base is None else base.position.copy()
+
     def result(self) -> dict[str, Any]:
         """Return the numbers of this walk."""
-        robot, walker, loop = self.robot, self.walker, self.robot.loop
-        end = robot.twin.base.position - self._origin
+        robot, walker, loop = self.robot, self.walker, self.loop
+        end = self._position() - self._origin
         records = walker.records
         watch = robot.predictor.stopwatch
         return {
@@ -71,7 +80,7 @@ class WalkReport:
             "steps_requested": self.requested,
             "steps": walker.steps,
             "fell": self.fell,
-            "fell_at_step": walker.steps if self.fell else None,
+            "fell_at_step": walker.steps + 1 if self.fell else None,
             "reason": loop.reason,
             "distance_m": float(end[0]),
             "lateral_m": float(end[1]),
@@ -94,10 +103,9 @@ class WalkReport:
         rows = []
         for column, variable in enumerate(self.walker.regulation):
             row: dict[str, Any] = {"name": variable.name, "unit": variable.unit}
-            if records:
-                row["target"] = float(records[-1].target[column])
-                row["mean"] = float(values[:, column].mean())
-                row["sd"] = float(values[:, column].std())
+            row["target"] = float(records[-1].target[column]) if records else None
+            row["mean"] = float(values[:, column].mean()) if records else None
+            row["sd"] = float(values[:, column].std()) if records else None
             rows.append(row)
         return rows
 

@@ -5,26 +5,31 @@ with Robot.open("op3") as robot:              # its twin
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from types import TracebackType
 from typing import Self
+
+import numpy as np
 
 from control.balancer import Balancer
 from control.loop import LoopReport, Until, run_loop
 from control.play import GraphPlayer, PoseHolder
 from hal.controller import Controller, Stopwatch
-from hal.errors import UnknownNameError, UsageError, WindupError
-from hal.guard import GuardedBackend, SafetyLimits
-from hal.observation import Observation
+from hal.errors import ControllerError, HardwareError, UnknownNameError, UsageError, WindupError
+from hal.guard import GuardedBackend
+from hal.observation import BaseState, Observation
 from robots import RobotDescription, load_robot
-from sim_twin.backend import TwinBackend
 from sim_twin.push import Push
 from sim_twin.rollouts import RolloutPredictor
 from sim_twin.twin import Twin
 from tools.build import WalkOptions, build_walk, find_gait
 from tools.report import WalkReport
+from tools.stack import Stack, State, twin_stack, wire_stack
 
 START_SECONDS = 1.0
+REST_SECONDS = 1.5
+PLAY_SECONDS = 5.0
 # Called once a tick with the observation and the controller.
 Watch = Callable[[Observation], None]
 # Called at the end of a step with its number and its speed, m/s.
@@ -37,20 +42,19 @@ class Robot:
 
     Attributes:
         description: What robot it is.
-        backend: Its guarded backend.
-        twin: Its twin, where it is one.
+        stack: Its backend and what belongs to it.
         predictor: Plays rollouts of it.
         period: Period of the control loop, s.
         noise: Noise of the start pose, degrees.
         seed: Seed of everything random.
-        paced: Simulated time is held back to real time.
+        paced: Its time is real time.
         loop: Report of the last run.
         watch: Called with every observation, for whoever draws or logs.
+        base: Base state last seen: the truth on a twin, an estimate on a robot.
     """
 
     description: RobotDescription
-    backend: GuardedBackend
-    twin: Twin
+    stack: Stack
     predictor: RolloutPredictor
     period: float
     noise: float = 0.0
@@ -58,12 +62,17 @@ class Robot:
     paced: bool = False
     loop: LoopReport = field(default_factory=LoopReport)
     watch: Watch | None = None
+    base: BaseState | None = None
+    _armed: bool = False
 
     @classmethod
     def open(
         cls,
         name: str,
         *,
+        port: str | None = None,
+        arm: bool = False,
+        state: State | None = None,
         rate: float | None = None,
         realtime: bool = False,
         seed: int = 0,
@@ -74,6 +83,9 @@ class Robot:
 
         Args:
             name: Name of a robot, or path of a folder with one.
+            port: URL of its servo bus, or "BUS=URL,BUS=URL"; without one, its twin.
+            arm: Allow torque on a port that is not twin://.
+            state: Where the base state comes from; on a port it is estimated, else the truth.
             rate: Rate of the loop, Hz; the robot's own by default.
             realtime: Let simulated time pass no faster than real time.
             seed: Seed of everything random.
@@ -81,30 +93,25 @@ class Robot:
             delay: Delay of the servos, s; the robot's own by default.
 
         Raises:
-            WindupError: The robot's files or these options cannot be.
+            WindupError: The robot's files, these options, or the bus cannot be.
         """
         description = load_robot(name)
-        steps = description.physics_steps(rate)
-        _check_delay(delay, description)
-        twin = Twin(description, delay=delay)
-        backend = GuardedBackend(
-            TwinBackend(twin, paced=realtime),
-            SafetyLimits.of(description.joints),
-            description.stop,
-            description.crouch,
-        )
-        backend.connect()
-        backend.configure()
-        sensed = None if delay is None else delay + description.drive.sensor_delay
+        wired = description.wire_rate_hz if port is not None else None
+        steps = description.physics_steps(rate or wired)
+        if port is None:
+            stack = twin_stack(description, state=state or "true", paced=realtime, delay=delay)
+        else:
+            stack = wire_stack(
+                description, port, state=state or "estimated", arm=arm, noise=noise, seed=seed
+            )
         return cls(
             description=description,
-            backend=backend,
-            twin=twin,
-            predictor=RolloutPredictor(description, delay=sensed),
+            stack=stack,
+            predictor=RolloutPredictor(description, delay=stack.delay),
             period=steps * description.timestep,
             noise=noise,
             seed=seed,
-            paced=realtime,
+            paced=realtime or stack.twin is None,
         )
 
     def __enter__(self) -> Self:
@@ -116,12 +123,41 @@ class Robot:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self.backend.disconnect()
+        try:
+            if self._armed and error is None and not self.fallen:
+                self.rest()
+            elif self._armed:
+                self.stop()
+        finally:
+            self.stack.close()
+
+    @property
+    def backend(self) -> GuardedBackend:
+        """The guarded backend."""
+        return self.stack.backend
+
+    @property
+    def twin(self) -> Twin:
+        """The twin behind the backend.
+
+        Raises:
+            UsageError: This is a robot, not a twin.
+        """
+        if self.stack.twin is None:
+            raise UsageError("only a twin can do that; leave --port away")
+        return self.stack.twin
 
     @property
     def fallen(self) -> bool:
         """True when the robot has fallen."""
-        return self.twin.fallen
+        if self.stack.twin is not None:
+            return self.stack.twin.fallen
+        if self.base is None:
+            return False
+        fall = self.description.fall
+        _, x, y, _ = self.base.orientation
+        tilted = 1.0 - 2.0 * (x * x + y * y) < np.cos(fall.tilt)
+        return bool(self.base.position[2] < fall.height or tilted)
 
     def push(
         self, impulse: float, direction: float = 0.0, *, duration: float = 0.1, delay: float = 0.0
@@ -137,13 +173,51 @@ class Robot:
         start = self.twin.time + delay
         self.twin.push(Push.impulse(self.description.torso, impulse, direction, start, duration))
 
+    def arm(self) -> None:
+        """Switch the torque on at the present pose, where there are servos to switch.
+
+        Raises:
+            UsageError: The port is real and `arm` was not given; nothing has moved.
+            HardwareError: A servo did not take it; all torque is off again.
+        """
+        if self._armed or not self.stack.wired:
+            return
+        if not self.stack.may_arm:
+            raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
+        self._armed = True
+        on = self.backend.set_torque(True)
+        if not on.all():
+            names = ", ".join(np.array(self.description.joints.names)[~on])
+            raise HardwareError(f"torque does not come on at {names}; run `windup scan`")
+
+    def rest(self) -> None:
+        """Crouch, if the robot has a pose for it, and switch the torque off."""
+        crouch = self.description.crouch
+        if crouch is not None:
+            self.run(PoseHolder(self.description.joints, crouch, REST_SECONDS), REST_SECONDS + 0.3)
+        self.stop(limp=True)
+
+    def stop(self, *, limp: bool = False) -> None:
+        """Carry out the stop policy at once; with `limp`, just switch the torque off.
+
+        Raises:
+            HardwareError: Torque was told to go off and a joint read back on.
+        """
+        on = self.backend.stop("limp" if limp else None)
+        self._armed = bool(on.any())
+
     def stand(self, seconds: float = 2.0) -> LoopReport:
         """Hold the stance for `seconds` s of the robot's time."""
         return self.run(PoseHolder(self.description.joints, self.description.stance), seconds)
 
     def play(self, graph: str, seconds: float | None = None) -> LoopReport:
-        """Play a pose graph of the robot to its end, or for `seconds` s."""
+        """Play a pose graph of the robot to its end, or for `seconds` s.
+
+        A graph without an end is played for 5 s.
+        """
         gait = find_gait(self.description, graph)
+        if seconds is None and gait.graph.periodic:
+            seconds = PLAY_SECONDS
         player = GraphPlayer(gait, self.description.joints, self.description.contacts)
         self.start_at(gait.file.start)
         return self.run(player, seconds, until=lambda _: "done" if player.finished else None)
@@ -175,11 +249,9 @@ class Robot:
         walker = build_walk(self.description, options, self.predictor)
         self.start_at(walker.gait.file.start)
         report = WalkReport(self, walker, options, steps)
-        try:
+        with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far it got
             self.run(walker, until=_walk_end(walker, steps, on_step), rollouts=True)
-        except KeyboardInterrupt:
-            self.loop.reason = "interrupted"
-            self.backend.stop()
+        report.loop = self.loop
         return report
 
     def run(
@@ -195,9 +267,11 @@ class Robot:
         Raises:
             WindupError: From the guard, the backend or the controller; the stop policy has run.
         """
+        self.arm()
         begin = self.backend.clock.now()
 
         def end(observation: Observation) -> str | None:
+            self.base = observation.base
             if self.watch is not None:
                 self.watch(observation)
             if self.fallen:
@@ -214,20 +288,28 @@ class Robot:
                 controller,
                 period=self.period,
                 until=end,
+                estimator=self.stack.estimator,
                 rollouts=self.predictor.stopwatch if rollouts else None,
                 report=self.loop,
             )
         except WindupError as error:
             self.loop.reason = str(error)
-            if error.exit_status != 2:
-                self._stop_after_error()
+            self._stop_after_error()
             raise
+        except KeyboardInterrupt:
+            self.loop.reason = "interrupted"
+            self._stop_after_error()
+            raise
+        except Exception as error:
+            self.loop.reason = f"the controller failed: {type(error).__name__}: {error}"
+            self._stop_after_error()
+            raise ControllerError(self.loop.reason) from error
         return self.loop
 
     def _stop_after_error(self) -> None:
         """Carry out the stop policy; a twin that has diverged can no longer do it."""
         try:
-            self.backend.stop()
+            self.stop()
         except WindupError as error:
             self.loop.reason += f"; and the stop failed: {error}"
 
@@ -237,7 +319,7 @@ class Robot:
         if name is not None and name not in poses:
             raise UnknownNameError(f"pose of {self.description.name}", name, poses)
         pose = self.description.stance if name is None else poses[name]
-        if self.twin.time == 0.0:
+        if not self.stack.wired and self.twin.time == 0.0:
             self.twin.reset(pose, noise=self.noise, seed=self.seed)
         else:
             self.run(PoseHolder(self.description.joints, pose), START_SECONDS)
@@ -255,15 +337,3 @@ def _walk_end(walker: Balancer, steps: int, on_step: OnStep | None) -> Until:
         return "done" if walker.steps >= steps else None
 
     return until
-
-
-def _check_delay(delay: float | None, robot: RobotDescription) -> None:
-    if delay is None:
-        return
-    if delay < 0.0:
-        raise UsageError(f"--delay {delay:g}: give 0 s or more")
-    steps = delay / robot.timestep
-    if abs(steps - round(steps)) > 1e-6:
-        raise UsageError(
-            f"--delay {delay:g}: give a whole number of physics steps of {robot.timestep:g} s"
-        )

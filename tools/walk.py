@@ -38,8 +38,6 @@ class Walk(Common):
     """Keep the torso upright by its own servo, where the gait has one."""
     open_loop: bool = False
     """Play the bare pose graph, without balance."""
-    noise: float = 0.0
-    """Standard deviation of noise on the start pose, degrees."""
     delay: float | None = None
     """Delay of the servos, s."""
 
@@ -63,6 +61,9 @@ class Walk(Common):
         """Walk one seed and return its result."""
         with Robot.open(
             self.robot,
+            port=self.port,
+            arm=self.arm,
+            state=self.state,
             rate=self.rate,
             realtime=self.realtime,
             seed=seed,
@@ -124,7 +125,7 @@ def _progress(show: bool) -> Progress:
         TextColumn("{task.fields[speed]} {task.fields[lean]}"),
         console=console,
         transient=True,
-        disable=not show,
+        disable=not (show and console.is_terminal),
     )
 
 

@@ -1,0 +1,205 @@
+"""The lower half of a robot: a guarded backend, on a twin or on a port of servos."""
+
+from dataclasses import dataclass, replace
+from itertools import count
+from math import inf
+from typing import Literal
+
+import sim_twin.wire as wire
+from control.loop import Estimator
+from hal.errors import UsageError
+from hal.guard import GuardedBackend, SafetyLimits
+from hal.imu.opencr import OpenCr
+from hal.joints import Mask
+from hal.observation import Observation
+from hal.servo_backend import BusPort, ServoBackend
+from robots import RobotDescription
+from sim_twin.backend import TwinBackend
+from sim_twin.sensors import Sensors
+from sim_twin.twin import Twin
+
+State = Literal["true", "estimated"]
+TWIN = "twin://"
+_worlds = count()
+
+
+@dataclass(frozen=True)
+class Stack:
+    """A guarded backend and what belongs to it.
+
+    Attributes:
+        backend: The guarded backend, connected and configured; nothing has moved.
+        twin: The twin behind it, or None on a robot.
+        estimator: Fills in the base state, or None where the backend knows it.
+        delay: From a state being measured to a command for it acting, s.
+        wired: There is a port with servos between us and the joints.
+        may_arm: Torque may be switched on.
+        world: Name of the emulated world to forget at the end, or "".
+    """
+
+    backend: GuardedBackend
+    twin: Twin | None
+    estimator: Estimator | None
+    delay: float
+    wired: bool = False
+    may_arm: bool = True
+    world: str = ""
+
+    def close(self) -> None:
+        """Disconnect."""
+        self.backend.disconnect()
+        if self.world:
+            wire.drop_world(self.world)
+
+
+@dataclass
+class Truth:
+    """An estimator that cheats: it looks at the twin behind an emulated bus.
+
+    Attributes:
+        sensors: What the twin's own sensors would say.
+    """
+
+    sensors: Sensors
+
+    def update(self, observation: Observation, dt: float) -> Observation:
+        """Return `observation` with the true base and contacts."""
+        true = self.sensors.read()
+        return replace(observation, base=true.base, contacts=true.contacts)
+
+
+def twin_stack(robot: RobotDescription, *, state: State, paced: bool, delay: float | None) -> Stack:
+    """Return a stack on a twin of `robot`.
+
+    Raises:
+        UsageError: The delay is negative, or no whole number of physics steps.
+    """
+    _check_delay(delay, robot)
+    twin = Twin(robot, delay=delay)
+    backend = _guarded(TwinBackend(twin, paced=paced, true_base=state == "true"), robot)
+    return Stack(backend, twin, None, twin.delay + robot.drive.sensor_delay)
+
+
+def wire_stack(
+    robot: RobotDescription, port: str, *, state: State, arm: bool, noise: float, seed: int
+) -> Stack:
+    """Return a stack on a port with the servos of `robot`.
+
+    Args:
+        robot: The robot.
+        port: URL of its bus, or "BUS=URL,BUS=URL" for several.
+        state: Where the base state comes from; the truth is there behind twin:// only.
+        arm: Torque may be switched on. It always may on a twin:// port.
+        noise: Noise of the pose that an emulated robot begins in, degrees.
+        seed: Seed of that noise.
+
+    Raises:
+        UsageError: The port does not fit the robot.
+        HardwareError: Something on the bus is not as the robot's file says.
+    """
+    emulated = port.startswith(TWIN)
+    world = ""
+    if emulated:
+        port, world = _in_a_world(robot, port)
+    backend = _guarded(_servo_backend(robot, port), robot)
+    backend.connect()
+    twin = _twin_behind(world) if emulated else None
+    estimator: Estimator | None = None
+    try:
+        if twin is not None:
+            twin.reset(noise=noise, seed=seed)
+            estimator = Truth(Sensors(twin)) if state == "true" else None
+        elif state == "true":
+            raise UsageError("--state true needs a twin; a robot has `--state estimated`")
+        backend.configure()
+    except BaseException:
+        backend.disconnect()
+        raise
+    delay = robot.drive.wire_delay
+    return Stack(backend, twin, estimator, delay, True, arm or emulated, world)
+
+
+def limp(robot: RobotDescription, port: str) -> Mask:
+    """Switch all torque of `robot` off, whatever state it is in; (n,) bool of what is still on."""
+    if port.startswith(TWIN):
+        port, _ = _in_a_world(robot, port)
+    backend = _servo_backend(robot, port)
+    backend.connect()
+    try:
+        return backend.set_torque(False)
+    finally:
+        backend.disconnect()
+
+
+def _servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
+    mounts = [servo for servo in robot.servos if servo is not None]
+    if len(mounts) < len(robot.joints):
+        raise UsageError(f"{robot.name} has no servos on a wire; leave --port away")
+    bauds = {bus.name: bus.baud for bus in robot.buses}
+    ports = {name: BusPort(url, bauds[name]) for name, url in _urls(robot, port).items()}
+    board = OpenCr(robot.buses[0].name) if robot.imu is not None else None
+    return ServoBackend(
+        robot.joints,
+        mounts,
+        ports,
+        supply=robot.drive.supply,
+        board=board,
+        contacts=len(robot.contacts.names),
+    )
+
+
+def _urls(robot: RobotDescription, port: str) -> dict[str, str]:
+    """Return the URL of each bus.
+
+    Raises:
+        UsageError: A bus has none, or a name is no bus of the robot.
+    """
+    names = [bus.name for bus in robot.buses]
+    first, equals, _ = port.partition("=")
+    if not (equals and first in names):
+        if port.startswith(TWIN) and len(names) > 1:
+            return {name: f"{port}{'&' if '?' in port else '?'}bus={name}" for name in names}
+        if len(names) > 1:
+            wanted = ",".join(f"{name}=URL" for name in names)
+            raise UsageError(f"{robot.name} has several buses; give --port {wanted}")
+        return {names[0]: port}
+    given = dict(part.partition("=")[::2] for part in port.split(","))
+    if set(given) != set(names):
+        raise UsageError(f"--port names {', '.join(given)}; the buses are {', '.join(names)}")
+    return given
+
+
+def _in_a_world(robot: RobotDescription, port: str) -> tuple[str, str]:
+    """Return a twin:// URL that names its world, and the name if it is ours to forget.
+
+    Raises:
+        UsageError: It names another robot.
+    """
+    address = wire.parse_address(port)
+    if address.robot != robot.name and address.robot != str(robot.folder):
+        raise UsageError(f"the port is a twin of {address.robot!r}, the robot is {robot.name!r}")
+    if address.world:
+        return port, address.world
+    name = f"{robot.name}-{next(_worlds)}"
+    return f"{port}{'&' if '?' in port else '?'}world={name}", name
+
+
+def _twin_behind(world: str) -> Twin | None:
+    owned = wire.find_world(world).owned
+    return next((item for item in owned if isinstance(item, Twin)), None)
+
+
+def _guarded(backend: TwinBackend | ServoBackend, robot: RobotDescription) -> GuardedBackend:
+    return GuardedBackend(backend, SafetyLimits.of(robot.joints), robot.stop, robot.crouch)
+
+
+def _check_delay(delay: float | None, robot: RobotDescription) -> None:
+    if delay is None:
+        return
+    if not 0.0 <= delay < inf:
+        raise UsageError(f"--delay {delay:g}: give 0 s or more")
+    steps = delay / robot.timestep
+    if abs(steps - round(steps)) > 1e-6:
+        raise UsageError(
+            f"--delay {delay:g}: give a whole number of physics steps of {robot.timestep:g} s"
+        )

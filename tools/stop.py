@@ -1,0 +1,39 @@
+"""`windup stop`: switch the torque of a robot off, and say so only when it has been read back."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from robots import load_robot
+from tools.output import console, write_json
+from tools.stack import limp
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stop:
+    """Switch all torque off."""
+
+    robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
+    """Name of the robot, or path of its folder."""
+    port: str
+    """Its servo bus; see `windup walk --help`."""
+    json: Path | None = None
+    """Write the result as JSON to a file, or to standard output with '-'."""
+
+    def run(self) -> int:
+        """Stop; returns the exit status."""
+        robot = load_robot(self.robot)
+        on = limp(robot, self.port)
+        names = [name for name, still in zip(robot.joints.names, on, strict=True) if still]
+        if names:
+            console.print(
+                f"torque is still on, or unknown, at {', '.join(names)}; cut the servo power"
+            )
+        else:
+            console.print(f"all {len(on)} joints of {robot.name} are limp, read back")
+        write_json(
+            self.json, "stop", {"robot": robot.name, "stopped": not names, "still_on": names}
+        )
+        return 3 if names else 0
