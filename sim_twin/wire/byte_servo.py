@@ -118,6 +118,11 @@ class ByteServo(ABC):
         """Whether it really drives its motor now."""
         return self.torque_on and self.powered
 
+    @property
+    def supply(self) -> float:
+        """Its supply voltage, V."""
+        return self.loop.supply
+
     def listens(self, now: float) -> bool:
         """Whether it is powered and has booted."""
         return self.powered and now >= self._ready

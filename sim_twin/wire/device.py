@@ -54,6 +54,11 @@ class Device(Protocol):
         """Whether it really drives a motor now."""
         ...
 
+    @property
+    def supply(self) -> float:
+        """Its supply voltage, V."""
+        ...
+
     def listens(self, now: float) -> bool:
         """Whether it is powered and has booted."""
         ...

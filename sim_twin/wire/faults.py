@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from sim_twin.wire.world import World
 
 EVERYBODY = -1
+IDS = 253
 REMEMBERED = 10_000  # hits
 
 
@@ -229,6 +230,8 @@ class Faults:
         if place is None or place >= len(data):
             place = dice.randrange(len(data))
         changed = data[place] ^ dice.randrange(1, 256)
+        if kind == "wrong_id":
+            changed = (data[place] + dice.randrange(1, IDS)) % IDS
         spoilt = data[:place] + bytes((changed,)) + data[place + 1 :]
         return language.seal(spoilt) if kind == "wrong_id" else spoilt
 
@@ -263,8 +266,8 @@ class Faults:
             if rule.seconds < math.inf:
                 bus.schedule.at(now + rule.seconds, partial(bus.plug, True))
         elif rule.kind == "brown_out" and world is not None:
-            bus.schedule.at(now + rule.seconds, partial(world.set_supply, world.nominal))
-            world.set_supply(rule.volts)
+            bus.schedule.at(now + rule.seconds, world.recover)
+            world.sag(rule.volts)
         for device in [*bus.devices]:
             if device.identifier != identifier:
                 continue

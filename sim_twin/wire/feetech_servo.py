@@ -223,15 +223,15 @@ class FeetechServo(ByteServo):
 
     def _go(self, now: float) -> None:
         """Follow the goals, as the mode has it."""
-        get, loop = self.table.get, self.loop
+        get, loop, mode = self.table.get, self.loop, self.mode
         speed = get("goal_speed") * self._speed_unit
         rise = float(get("acceleration"))
         if self.magnetic:
             rise = (rise or get("max_acceleration")) * ACCELERATION_STEP
-        if self.mode == SPEED:
+        if mode == SPEED:
             fastest = self._fastest()
             loop.run(now, max(-fastest, min(fastest, speed)), rise)
-        elif self.mode in (POSITION, STEP):
+        elif mode in (POSITION, STEP):
             goal = self._goal_counts(now)
             seconds = 0 if self.magnetic else get("goal_time")
             if seconds:

@@ -38,6 +38,7 @@ def _crc_table() -> tuple[int, ...]:
 
 
 _CRC = _crc_table()
+_HEADS: dict[tuple[int, int], tuple[bytes, int]] = {}
 
 
 def crc16(data: bytes | bytearray, crc: int = 0) -> int:
@@ -68,8 +69,16 @@ def encode(identifier: int, instruction: int, parameters: bytes = b"") -> bytes:
 
 
 def encode_status(identifier: int, error: int, parameters: bytes = b"") -> bytes:
-    """Return a status frame."""
-    return encode(identifier, STATUS, bytes((error,)) + parameters)
+    """Return a status frame; its head and the CRC of that are kept for the next one."""
+    body = bytes((error,)) + parameters
+    if _PATTERN in body:
+        return encode(identifier, STATUS, body)
+    key = (identifier, len(body))
+    known = _HEADS.get(key)
+    if known is None:
+        head = HEADER + bytes((identifier, *(len(body) + 3).to_bytes(2, "little"), STATUS))
+        known = _HEADS[key] = head, crc16(head)
+    return known[0] + body + crc16(body, known[1]).to_bytes(2, "little")
 
 
 def seal(frame: bytes) -> bytes:

@@ -37,9 +37,9 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
             raise serial.SerialException(str(error)) from error
         self._bus: Bus = self._running.world.bus(address.bus)
         if not self._bus.plugged:
-            leave(self._running, lost=True)
+            leave(self._running, address)
             raise serial.SerialException(f"the adapter of {self._port} is unplugged")
-        self._plugs = self._bus.plugs
+        self._address, self._plugs = address, self._bus.plugs
         self.is_open = True
         self._reconfigure_port()
         self.reset_input_buffer()
@@ -48,7 +48,7 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
         """Leave the world."""
         if self.is_open:
             self.is_open = False
-            leave(self._running, lost=self._plugs != self._bus.plugs)
+            leave(self._running, self._address if self._plugs != self._bus.plugs else None)
 
     @property
     def world(self) -> World:
@@ -93,6 +93,7 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
                 target = min(target, now + 0.001)
             clock.wait_until(target)
             self._check_plug()
+        clock.settle()
         return bus.read(size)
 
     def write(self, data: bytes | bytearray | memoryview) -> int:

@@ -90,6 +90,11 @@ class Servo:
         """Whether it really drives its motor now."""
         return self.firmware.driving
 
+    @property
+    def supply(self) -> float:
+        """Its supply voltage, V."""
+        return self.firmware.loop.supply
+
     def listens(self, now: float) -> bool:
         """Whether it is powered and has booted."""
         return self.firmware.powered and now >= self._ready

@@ -8,6 +8,7 @@ from sim_twin.wire.bus import BITS, Bus
 from sim_twin.wire.device import Device
 
 Encode = Callable[[int, int, bytes], bytes]
+PIECE = 4  # answers that are worked out together
 READS = 1  # return level from which reads are answered
 
 
@@ -47,7 +48,7 @@ def take_turns(turns: Sequence[Turn], round_: Round) -> None:
         for device in devices:
             device.sample()
     if _gapless(who, bus):
-        _in_one_piece(who, round_)
+        _in_pieces(who, 0, round_)
     else:
         _go_on(iter(who), round_, bus.schedule.now)
 
@@ -74,16 +75,22 @@ def _gapless(who: Turns, bus: Bus) -> bool:
     )
 
 
-def _in_one_piece(who: Turns, round_: Round) -> None:
-    """Put all answers on the wire at once: what a bus does that has nothing to wait for."""
+def _in_pieces(who: Turns, first: int, round_: Round) -> None:
+    """Put answers on the wire, several at once: nobody has to wait for anything.
+
+    Not all at once, because somebody may be waiting for the first of them in real time.
+    """
     bus, encode = round_.bus, round_.encode
     now, byte = bus.schedule.now, BITS / bus.baud
+    last = first + PIECE
     answers: list[bytes] = []
-    for turn, (device,) in who:
+    for turn, (device,) in who[first:last]:
         error, data = device.read(turn.address, turn.size, now)
         answers.append(encode(turn.identifier, error, data))
         now += len(answers[-1]) * byte
     bus.answers(answers)
+    if last < len(who):
+        bus.schedule.at(now, partial(_in_pieces, who, last, round_))
 
 
 def _go_on(left: Iterator[tuple[Turn, list[Device]]], round_: Round, end: float) -> None:

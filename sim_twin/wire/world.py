@@ -54,7 +54,6 @@ class World:
         physics: What moves the shafts.
         schedule: What will happen.
         supply: Voltage of the servos, V. Set it with `set_supply`.
-        nominal: The supply voltage that it was built with, V.
         dead: What will never work again.
     """
 
@@ -68,7 +67,7 @@ class World:
     ) -> None:
         self.physics, self.schedule, self.buses, self.supply = physics, schedule, buses, supply
         self.owned = tuple(owned)  # such as the twin, for whoever wants the truth
-        self.nominal = supply
+        self._full: list[float] | None = None  # supplies before a brown-out
         self.dead: list[Device] = []
         self._steps = 0
         self._watched = 0.0
@@ -127,9 +126,24 @@ class World:
     def set_supply(self, volts: float) -> None:
         """Change the supply voltage of everything."""
         self.supply = volts
-        for _, device in self._devices:
+        self._supply([volts] * len(self._devices))
+
+    def sag(self, volts: float) -> None:
+        """Let the supply of everything sink to `volts` V, until `recover`."""
+        if self._full is None:
+            self._full = [device.supply for _, device in self._devices]
+        self._supply([min(volts, full) for full in self._full])
+
+    def recover(self) -> None:
+        """Give everything the supply that it had before it sank."""
+        if self._full is not None:
+            full, self._full = self._full, None
+            self._supply(full)
+
+    def _supply(self, volts: list[float]) -> None:
+        for (_, device), supply in zip(self._devices, volts, strict=True):
             if device not in self.dead:
-                device.set_supply(volts, self.now)
+                device.set_supply(supply, self.now)
         for bus in self.buses.values():
             bus.refresh()
 
