@@ -83,6 +83,7 @@ class Bus:
         timing: Latencies.
         faults: What happens to answers.
         heard: When the last good instruction ended, s.
+        began: When the last bytes of the host began, s.
         counts: "frames" executed, "dropped", "collisions".
         plugged: Whether the host's adapter is there.
         plugs: How often it has been pulled out or put in.
@@ -102,7 +103,7 @@ class Bus:
         self.name, self.devices, self.language, self.schedule = name, devices, language, schedule
         self.timing = timing or Timing()
         self.faults = faults or Faults()
-        self.heard = 0.0
+        self.heard = self.began = 0.0
         self.counts = {"frames": 0, "dropped": 0, "collisions": 0}
         self.plugged, self.plugs = True, 0
         self.tap: Callable[[str, int, Burst], None] | None = None
@@ -140,7 +141,7 @@ class Bus:
         if start - self._sent > FORGET:
             self.language.reset()
         burst = Burst(start, BITS / self._baud, bytearray(data))
-        self._sent = burst.end
+        self._sent, self.began = burst.end, start
         self._collide(burst)
         if self.tap is not None:
             self.tap(">", self._baud, burst)
@@ -181,7 +182,8 @@ class Bus:
 
     def listeners(self, identifier: int) -> list[Device]:
         """Return who hears the host and has this id, or has it as a shadow."""
-        return [d for d in self._by_id.get(identifier, ()) if self.hears(d)]
+        found = self._by_id.get(identifier)
+        return [device for device in found if self.hears(device)] if found else []
 
     def everybody(self) -> list[Device]:
         """Return who hears the host."""
@@ -189,7 +191,8 @@ class Bus:
 
     def hears(self, device: Device) -> bool:
         """Whether a device understands what the host sends now."""
-        same = abs(device.baud - self._baud) <= BAUD_TOLERANCE * self._baud
+        mine, its = self._baud, device.baud
+        same = its == mine or abs(its - mine) <= BAUD_TOLERANCE * mine
         return same and device.listens(self.schedule.now)
 
     def answer(self, data: bytes, baud: int, identifier: int) -> float:
