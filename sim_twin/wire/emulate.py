@@ -29,6 +29,7 @@ CHUNK_TIME = 0.0006  # s of bytes that go out together in the middle of an answe
 QUIET = 0.00015  # s without anything due, that a step of the physics may take
 SPIN = 0.00008  # s before the ends of an answer that are not slept through
 HOP = 0.000025  # s that a pseudo-terminal takes each way, which the wire does not have
+SLIP = 0.1  # s behind the wall, from which time stands still instead
 IDLE = 0.002  # s; the longest sleep
 PR_SET_TIMERSLACK = 29
 
@@ -99,11 +100,16 @@ class Emulator:
     Args:
         world: The world.
         journal: Called with the time and the number of driven motors whenever that changes.
+
+    Attributes:
+        outlets: The plugs.
+        slipped: By how much time has stood still because the machine was too slow, s.
     """
 
     def __init__(self, world: World, journal: Journal | None = None) -> None:
         self.world, self.journal = world, journal
         self.outlets: list[Outlet] = []
+        self.slipped = 0.0
         self._wake_read, self._wake_write = os.pipe()
         self._running = True
         self._driven = -1
@@ -130,7 +136,11 @@ class Emulator:
                 schedule.now = now
             more = schedule.next <= now + AHEAD
             due = self._send(now, more)
-            if more or self._step(now, due):
+            if more:
+                continue
+            if self._step(now, due):
+                self._wait(0.0, start)
+                start += self._slip(now)
                 continue
             step = self.world.physics_time + self.world.physics.timestep
             wake = min(due, schedule.next - MARGIN, max(step, now + QUIET), now + IDLE)
@@ -175,6 +185,17 @@ class Emulator:
                 self._driven = driven
                 self.journal(now, driven)
         return True
+
+    def _slip(self, now: float) -> float:
+        """Return by how much time has to stand still, s: who is far behind does not catch up.
+
+        It would have no time to listen, and its servos would rush.
+        """
+        late = now - self.world.physics_time
+        if late < SLIP:
+            return 0.0
+        self.slipped += late
+        return late
 
     def _wait(self, seconds: float, start: float) -> None:
         """Sleep until something comes, or for some time."""
