@@ -36,6 +36,7 @@ class RobotDescription:
         model_path: Its MJCF.
         timestep: Physics step of the MJCF, s.
         rate_hz: Rate of the control loop, Hz.
+        model_latency: From the start of a step to its plan acting, where time is the wall's, s.
         base: Body with the free joint.
         torso: Body whose z axis is the robot's "up".
         joints: The joints.
@@ -60,6 +61,7 @@ class RobotDescription:
     model_path: Path
     timestep: float
     rate_hz: float
+    model_latency: float
     base: str
     torso: str
     joints: Joints
@@ -158,6 +160,7 @@ def _describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDes
         model_path=folder / robot.model,
         timestep=model.opt.timestep,
         rate_hz=robot.rate_hz,
+        model_latency=robot.model_latency,
         base=robot.base,
         torso=robot.torso,
         joints=joints,
