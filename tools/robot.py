@@ -5,23 +5,28 @@ with Robot.open("op3") as robot:              # its twin
 """
 
 from collections.abc import Callable
+from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, field, replace
 from types import TracebackType
 from typing import Self
 
 from control.balancer import Balancer
 from control.loop import LoopReport, Until, run_loop
+from control.planner import Planner
 from control.play import GraphPlayer, PoseHolder
+from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
 from hal.errors import UnknownNameError, UsageError, WindupError
 from hal.guard import GuardedBackend, SafetyLimits
 from hal.observation import Observation
 from robots import RobotDescription, load_robot
-from sim_twin.backend import TwinBackend
+from sim_twin.backend import TwinBackend, TwinClock
 from sim_twin.push import Push
 from sim_twin.rollouts import RolloutPredictor
 from sim_twin.twin import Twin
 from tools.build import WalkOptions, build_walk, find_gait
+from tools.plan_process import ProcessPlanner
+from tools.plan_worker import Task
 from tools.report import WalkReport
 
 START_SECONDS = 1.0
@@ -172,15 +177,32 @@ class Robot:
         if speed is not None:
             options = replace(options, speed=speed)
         self.predictor.stopwatch = Stopwatch()
-        walker = build_walk(self.description, options, self.predictor)
-        self.start_at(walker.gait.file.start)
-        report = WalkReport(self, walker, options, steps)
-        try:
-            self.run(walker, until=_walk_end(walker, steps, on_step), rollouts=True)
-        except KeyboardInterrupt:
-            self.loop.reason = "interrupted"
-            self.backend.stop()
+        with ExitStack() as stack:
+            planner = self._plan_aside(options, stack)
+            walker = build_walk(self.description, options, self.predictor, planner=planner)
+            self.start_at(walker.gait.file.start)
+            report = WalkReport(self, walker, options, steps)
+            try:
+                self.run(walker, until=_walk_end(walker, steps, on_step), rollouts=not self.paced)
+            except KeyboardInterrupt:
+                self.loop.reason = "interrupted"
+                self.backend.stop()
         return report
+
+    def _plan_aside(self, options: WalkOptions, stack: ExitStack) -> Planner | None:
+        """Return a planner in a process of its own, where time is the wall's; it is ready."""
+        if not self.paced or options.open_loop:
+            return None
+        build_walk(self.description, options, self.predictor)  # what cannot be is said here
+        task = Task(
+            robot=self.description.folder,
+            options=options,
+            delay=self.predictor.delay,
+            latency=self.description.model_latency,
+            period=self.period,
+        )
+        planner = ProcessPlanner(task, self.predictor.stopwatch)
+        return stack.enter_context(planner).wait_ready()
 
     def run(
         self,
@@ -209,14 +231,17 @@ class Robot:
 
         self.loop = LoopReport()
         try:
-            run_loop(
-                self.backend,
-                controller,
-                period=self.period,
-                until=end,
-                rollouts=self.predictor.stopwatch if rollouts else None,
-                report=self.loop,
-            )
+            with punctual() if self.paced else nullcontext():
+                if isinstance(self.backend.clock, TwinClock):
+                    self.backend.clock.align()
+                run_loop(
+                    self.backend,
+                    controller,
+                    period=self.period,
+                    until=end,
+                    rollouts=self.predictor.stopwatch if rollouts else None,
+                    report=self.loop,
+                )
         except WindupError as error:
             self.loop.reason = str(error)
             if error.exit_status != 2:
