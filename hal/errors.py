@@ -60,6 +60,10 @@ class DivergedError(WindupError):
     """The twin's physics left the numbers; the simulation cannot go on."""
 
 
+class PlannerError(WindupError):
+    """The process that plans steps could not start, failed, or has died."""
+
+
 class HardwareError(WindupError):
     """A port, a bus or a servo failed."""
 

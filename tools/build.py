@@ -53,9 +53,21 @@ def body_of(robot: RobotDescription) -> Body:
 
 
 def build_walk(
-    robot: RobotDescription, options: WalkOptions, predictor: Predictor | None
+    robot: RobotDescription,
+    options: WalkOptions,
+    predictor: Predictor | None,
+    *,
+    planner: Planner | None = None,
+    latency: float = 0.0,
 ) -> Balancer:
     """Return the controller that walks `robot` as `options` say.
+
+    Args:
+        robot: The robot.
+        options: How to walk.
+        predictor: Plays rollouts in the controller's own time.
+        planner: Plans the steps instead.
+        latency: From the start of a step to its scalings acting, where the predictor plays, s.
 
     Raises:
         UsageError: The options do not fit the gait.
@@ -75,8 +87,9 @@ def build_walk(
     if torso_servo is not None:
         variables = [_on_the_pelvis(variable) for variable in variables]
     body = body_of(robot)
-    planner: Planner | None = None
-    if predictor is not None and not options.open_loop:
+    if options.open_loop:
+        planner = None
+    elif planner is None and predictor is not None:
         planner = StepPlanner(
             gait=gait,
             joints=robot.joints,
@@ -88,6 +101,7 @@ def build_walk(
             predictor=predictor,
             torso_servo=torso_servo,
             horizon=balance.horizon,
+            latency=latency,
         )
     heading = None if options.open_loop else gait.file.heading
     return Balancer(

@@ -5,7 +5,7 @@ with Robot.open("op3") as robot:              # its twin
 """
 
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import ExitStack, nullcontext, suppress
 from dataclasses import dataclass, field, replace
 from types import TracebackType
 from typing import Self
@@ -14,16 +14,21 @@ import numpy as np
 
 from control.balancer import Balancer
 from control.loop import LoopReport, Until, run_loop
+from control.planner import Planner
 from control.play import GraphPlayer, PoseHolder
+from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
 from hal.errors import ControllerError, HardwareError, UnknownNameError, UsageError, WindupError
 from hal.guard import GuardedBackend
 from hal.observation import BaseState, Observation
 from robots import RobotDescription, load_robot
+from sim_twin.backend import TwinClock
 from sim_twin.push import Push
 from sim_twin.rollouts import RolloutPredictor
 from sim_twin.twin import Twin
 from tools.build import WalkOptions, build_walk, find_gait
+from tools.plan_process import ProcessPlanner
+from tools.plan_worker import Task
 from tools.report import WalkReport
 from tools.stack import Stack, State, twin_stack, wire_stack
 
@@ -246,13 +251,30 @@ class Robot:
         if speed is not None:
             options = replace(options, speed=speed)
         self.predictor.stopwatch = Stopwatch()
-        walker = build_walk(self.description, options, self.predictor)
-        self.start_at(walker.gait.file.start)
-        report = WalkReport(self, walker, options, steps)
-        with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far it got
-            self.run(walker, until=_walk_end(walker, steps, on_step), rollouts=True)
+        with ExitStack() as stack:
+            planner = self._plan_aside(options, stack)
+            walker = build_walk(self.description, options, self.predictor, planner=planner)
+            self.start_at(walker.gait.file.start)
+            report = WalkReport(self, walker, options, steps)
+            with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far
+                self.run(walker, until=_walk_end(walker, steps, on_step), rollouts=not self.paced)
         report.loop = self.loop
         return report
+
+    def _plan_aside(self, options: WalkOptions, stack: ExitStack) -> Planner | None:
+        """Return a planner in a process of its own, where time is the wall's; it is ready."""
+        if not self.paced or options.open_loop:
+            return None
+        build_walk(self.description, options, self.predictor)  # what cannot be is said here
+        task = Task(
+            robot=self.description.folder,
+            options=options,
+            delay=self.predictor.delay,
+            latency=self.description.model_latency,
+            period=self.period,
+        )
+        planner = ProcessPlanner(task, self.predictor.stopwatch)
+        return stack.enter_context(planner).wait_ready()
 
     def run(
         self,
@@ -283,15 +305,18 @@ class Robot:
 
         self.loop = LoopReport()
         try:
-            run_loop(
-                self.backend,
-                controller,
-                period=self.period,
-                until=end,
-                estimator=self.stack.estimator,
-                rollouts=self.predictor.stopwatch if rollouts else None,
-                report=self.loop,
-            )
+            with punctual() if self.paced else nullcontext():
+                if isinstance(self.backend.clock, TwinClock):
+                    self.backend.clock.align()
+                run_loop(
+                    self.backend,
+                    controller,
+                    period=self.period,
+                    until=end,
+                    estimator=self.stack.estimator,
+                    rollouts=self.predictor.stopwatch if rollouts else None,
+                    report=self.loop,
+                )
         except WindupError as error:
             self.loop.reason = str(error)
             self._stop_after_error()

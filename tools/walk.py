@@ -72,7 +72,7 @@ class Walk(Common):
         ) as robot:
             trace = Trace(robot.description.contacts)
             robot.watch = trace.add if self.plot and show else None
-            with _progress(show) as progress:
+            with _progress(show and not self.realtime) as progress:
                 report = self._walk(robot, progress)
         if show:
             console.print(_line(report))
@@ -118,6 +118,7 @@ class Walk(Common):
 
 
 def _progress(show: bool) -> Progress:
+    """Return a progress bar; it draws from a thread, so a loop on the wall's time has none."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
