@@ -8,6 +8,7 @@ import tyro
 
 from hal.errors import WindupError
 from tools.bench import Bench
+from tools.health import Health
 from tools.output import console, error_record, write_json
 from tools.play import Play
 from tools.robots_list import Robots
@@ -16,6 +17,7 @@ from tools.walk import Walk
 Command = (
     Annotated[Walk, tyro.conf.subcommand("walk")]
     | Annotated[Play, tyro.conf.subcommand("play")]
+    | Annotated[Health, tyro.conf.subcommand("health")]
     | Annotated[Robots, tyro.conf.subcommand("robots")]
     | Annotated[Bench, tyro.conf.subcommand("bench")]
 )

@@ -4,6 +4,7 @@ with Robot.open("op3") as robot:              # its twin
     report = robot.walk(speed=0.2, steps=40)
 """
 
+import logging
 from collections.abc import Callable
 from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, field, replace
@@ -12,21 +13,20 @@ from typing import Self
 
 from control.balancer import Balancer
 from control.loop import LoopReport, Until, run_loop
-from control.planner import Planner
 from control.play import GraphPlayer, PoseHolder
 from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
-from hal.errors import UnknownNameError, UsageError, WindupError
+from hal.errors import TelemetryError, UnknownNameError, UsageError, WindupError
 from hal.guard import GuardedBackend, SafetyLimits
 from hal.observation import Observation
+from hal.telemetry import TelemetryWriter
 from robots import RobotDescription, load_robot
 from sim_twin.backend import TwinBackend, TwinClock
 from sim_twin.push import Push
 from sim_twin.rollouts import RolloutPredictor
 from sim_twin.twin import Twin
 from tools.build import WalkOptions, build_walk, find_gait
-from tools.plan_process import ProcessPlanner
-from tools.plan_worker import Task
+from tools.plan_process import plan_aside
 from tools.report import WalkReport
 
 START_SECONDS = 1.0
@@ -50,6 +50,7 @@ class Robot:
         seed: Seed of everything random.
         paced: Simulated time is held back to real time.
         loop: Report of the last run.
+        telemetry: Where everybody else can read how it goes, once it runs.
         watch: Called with every observation, for whoever draws or logs.
     """
 
@@ -63,6 +64,7 @@ class Robot:
     paced: bool = False
     loop: LoopReport = field(default_factory=LoopReport)
     watch: Watch | None = None
+    telemetry: TelemetryWriter | None = field(default=None, init=False)
 
     @classmethod
     def open(
@@ -122,6 +124,8 @@ class Robot:
         trace: TracebackType | None,
     ) -> None:
         self.backend.disconnect()
+        if self.telemetry is not None:
+            self.telemetry.close()
 
     @property
     def fallen(self) -> bool:
@@ -178,8 +182,10 @@ class Robot:
             options = replace(options, speed=speed)
         self.predictor.stopwatch = Stopwatch()
         with ExitStack() as stack:
-            planner = self._plan_aside(options, stack)
-            walker = build_walk(self.description, options, self.predictor, planner=planner)
+            walker = build_walk(self.description, options, self.predictor)
+            if self.paced and walker.planner is not None:
+                aside = plan_aside(self.description, options, self.predictor, self.period)
+                walker.planner = stack.enter_context(aside).wait_ready()
             self.start_at(walker.gait.file.start)
             report = WalkReport(self, walker, options, steps)
             try:
@@ -188,21 +194,6 @@ class Robot:
                 self.loop.reason = "interrupted"
                 self.backend.stop()
         return report
-
-    def _plan_aside(self, options: WalkOptions, stack: ExitStack) -> Planner | None:
-        """Return a planner in a process of its own, where time is the wall's; it is ready."""
-        if not self.paced or options.open_loop:
-            return None
-        build_walk(self.description, options, self.predictor)  # what cannot be is said here
-        task = Task(
-            robot=self.description.folder,
-            options=options,
-            delay=self.predictor.delay,
-            latency=self.description.model_latency,
-            period=self.period,
-        )
-        planner = ProcessPlanner(task, self.predictor.stopwatch)
-        return stack.enter_context(planner).wait_ready()
 
     def run(
         self,
@@ -230,6 +221,7 @@ class Robot:
             return "done" if over else None
 
         self.loop = LoopReport()
+        self._publish()
         try:
             with punctual() if self.paced else nullcontext():
                 if isinstance(self.backend.clock, TwinClock):
@@ -241,13 +233,30 @@ class Robot:
                     until=end,
                     rollouts=self.predictor.stopwatch if rollouts else None,
                     report=self.loop,
+                    recorder=self.telemetry,
                 )
         except WindupError as error:
             self.loop.reason = str(error)
             if error.exit_status != 2:
                 self._stop_after_error()
             raise
+        except BaseException as error:
+            self.loop.reason = type(error).__name__
+            raise
+        finally:
+            if self.telemetry is not None:
+                self.telemetry.end(self.loop.reason)
         return self.loop
+
+    def _publish(self) -> None:
+        """Say to everybody that a run begins; a robot runs without them all the same."""
+        try:
+            self.telemetry = self.telemetry or TelemetryWriter(
+                self.description.name, self.backend, self.description.contacts, 1.0 / self.period
+            )
+            self.telemetry.begin()
+        except TelemetryError as error:
+            logging.getLogger(__name__).warning("no telemetry: %s", error)
 
     def _stop_after_error(self) -> None:
         """Carry out the stop policy; a twin that has diverged can no longer do it."""
