@@ -21,11 +21,12 @@ from hal.servo_line import REGISTERS, ServoLine
 from hal.servo_model import ServoMount
 from hal.servo_settings import assert_settings
 from hal.servo_torque import ServoTorque
-from hal.servos.x_series_registers import hardware_errors
+from hal.servos.x_series_registers import HARDWARE_ERRORS, hardware_errors
 from hal.units import Units
 from hal.wiring import check_mounts, check_servos, row_groups
 
 LARGEST_GAIN = 16383
+ERROR_KINDS = ("no answer", "corrupt", "resynchronised", "watchdog")
 ATTEMPTS = 5
 
 
@@ -79,6 +80,7 @@ class ServoBackend:
         self.clock: Clock = WallClock()
         self.lines: list[ServoLine] = []
         self._torque: list[ServoTorque] = []
+        self.alert_kinds = (*HARDWARE_ERRORS.values(), "unknown")
         self.alerts: dict[str, tuple[str, ...]] = {}
         self.clamps: Counter[str] = Counter({"goal": 0, "gain": 0})
         self.watchdog_trips = 0
@@ -181,6 +183,15 @@ class ServoBackend:
         real[0] = self.units.angle(inside)
         real[3:] = self._realised
         return JointCommand(real)
+
+    def bus_errors(self) -> Mapping[str, int]:
+        """Return kind of error to how often it has happened, over all buses."""
+        counts = dict.fromkeys(ERROR_KINDS, 0)
+        for line in self.lines:
+            for kind in ERROR_KINDS[:-1]:
+                counts[kind] += line.bus.exchange.errors[kind]
+        counts["watchdog"] = self.watchdog_trips
+        return counts
 
     def set_torque(self, on: bool) -> Mask:
         """Switch all torque, on at the present pose only; (n,) bool read back.

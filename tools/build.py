@@ -57,7 +57,6 @@ def build_walk(
     options: WalkOptions,
     predictor: Predictor | None,
     *,
-    planner: Planner | None = None,
     latency: float = 0.0,
 ) -> Balancer:
     """Return the controller that walks `robot` as `options` say.
@@ -66,7 +65,6 @@ def build_walk(
         robot: The robot.
         options: How to walk.
         predictor: Plays rollouts in the controller's own time.
-        planner: Plans the steps instead.
         latency: From the start of a step to its scalings acting, where the predictor plays, s.
 
     Raises:
@@ -87,9 +85,8 @@ def build_walk(
     if torso_servo is not None:
         variables = [_on_the_pelvis(variable) for variable in variables]
     body = body_of(robot)
-    if options.open_loop:
-        planner = None
-    elif planner is None and predictor is not None:
+    planner: Planner | None = None
+    if predictor is not None and not options.open_loop:
         planner = StepPlanner(
             gait=gait,
             joints=robot.joints,

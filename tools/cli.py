@@ -12,6 +12,7 @@ import tyro
 
 from hal.errors import UsageError, WindupError
 from tools.bench import Bench
+from tools.health import Health
 from tools.options import Common
 from tools.output import check_writable, console, error_record, write_json
 from tools.play import Play
@@ -27,6 +28,7 @@ Command = (
     | Annotated[Stand, tyro.conf.subcommand("stand")]
     | Annotated[Stop, tyro.conf.subcommand("stop")]
     | Annotated[Scan, tyro.conf.subcommand("scan")]
+    | Annotated[Health, tyro.conf.subcommand("health")]
     | Annotated[Robots, tyro.conf.subcommand("robots")]
     | Annotated[Bench, tyro.conf.subcommand("bench")]
 )

@@ -15,6 +15,9 @@ from control.planner import StepRequest
 from hal.controller import Stopwatch
 from hal.errors import PlannerError
 from hal.joints import Array
+from robots import RobotDescription
+from sim_twin.rollouts import RolloutPredictor
+from tools.build import WalkOptions
 from tools.plan_worker import LARGEST, Answer, Question, Task
 
 PATIENCE = 60.0
@@ -151,6 +154,14 @@ class ProcessPlanner:
             f"the process that plans steps has died ({how}); was it killed, or is memory short? "
             "run again, or with `--open-loop`"
         )
+
+
+def plan_aside(
+    robot: RobotDescription, options: WalkOptions, predictor: RolloutPredictor, period: float
+) -> ProcessPlanner:
+    """Return a process that plans what `predictor` would have played; its stopwatch counts."""
+    task = Task(robot.folder, options, predictor.delay, robot.model_latency, period)
+    return ProcessPlanner(task, predictor.stopwatch)
 
 
 def _start(descriptor: int) -> subprocess.Popen[bytes]:

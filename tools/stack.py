@@ -35,6 +35,7 @@ class Stack:
         wired: There is a port with servos between us and the joints.
         may_arm: Torque may be switched on.
         world: Name of the emulated world to forget at the end, or "".
+        port: URL of the port, as the user gave it.
     """
 
     backend: GuardedBackend
@@ -44,6 +45,7 @@ class Stack:
     wired: bool = False
     may_arm: bool = True
     world: str = ""
+    port: str | None = None
 
     def close(self) -> None:
         """Disconnect."""
@@ -97,7 +99,7 @@ def wire_stack(
         UsageError: The port does not fit the robot.
         HardwareError: Something on the bus is not as the robot's file says.
     """
-    emulated = port.startswith(TWIN)
+    given, emulated = port, port.startswith(TWIN)
     world = ""
     if emulated:
         port, world = _in_a_world(robot, port)
@@ -116,7 +118,7 @@ def wire_stack(
         backend.disconnect()
         raise
     delay = robot.drive.wire_delay
-    return Stack(backend, twin, estimator, delay, True, arm or emulated, world)
+    return Stack(backend, twin, estimator, delay, True, arm or emulated, world, given)
 
 
 def limp(robot: RobotDescription, port: str) -> Mask:
