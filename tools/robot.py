@@ -10,7 +10,7 @@ from types import TracebackType
 from typing import Self
 
 from control.balancer import Balancer
-from control.loop import LoopReport, Until, run_loop
+from control.loop import Estimator, LoopReport, Until, run_loop
 from control.play import GraphPlayer, PoseHolder
 from hal.controller import Controller, Stopwatch
 from hal.errors import UnknownNameError, UsageError, WindupError
@@ -18,10 +18,12 @@ from hal.guard import GuardedBackend, SafetyLimits
 from hal.observation import Observation
 from robots import RobotDescription, load_robot
 from sim_twin.backend import TwinBackend
+from sim_twin.imu_errors import OPENCR, ImuErrors
 from sim_twin.push import Push
 from sim_twin.rollouts import RolloutPredictor
 from sim_twin.twin import Twin
-from tools.build import WalkOptions, build_walk, find_gait
+from tools.build import WalkOptions, build_estimator, build_walk, find_gait
+from tools.options import State
 from tools.report import WalkReport
 
 START_SECONDS = 1.0
@@ -46,6 +48,7 @@ class Robot:
         paced: Simulated time is held back to real time.
         loop: Report of the last run.
         watch: Called with every observation, for whoever draws or logs.
+        estimator: Fills in the base state from the sensors; None where it is the twin's truth.
     """
 
     description: RobotDescription
@@ -58,6 +61,7 @@ class Robot:
     paced: bool = False
     loop: LoopReport = field(default_factory=LoopReport)
     watch: Watch | None = None
+    estimator: Estimator | None = None
 
     @classmethod
     def open(
@@ -69,6 +73,7 @@ class Robot:
         seed: int = 0,
         noise: float = 0.0,
         delay: float | None = None,
+        state: State = "true",
     ) -> Self:
         """Return a robot, connected and configured. Nothing moves.
 
@@ -79,6 +84,8 @@ class Robot:
             seed: Seed of everything random.
             noise: Standard deviation of noise on the start pose, degrees.
             delay: Delay of the servos, s; the robot's own by default.
+            state: Where the base state comes from: the twin's truth, or an estimate from sensors
+                with the errors of real ones.
 
         Raises:
             WindupError: The robot's files or these options cannot be.
@@ -87,8 +94,10 @@ class Robot:
         steps = description.physics_steps(rate)
         _check_delay(delay, description)
         twin = Twin(description, delay=delay)
+        true = state == "true"
+        errors = None if true else ImuErrors(OPENCR, twin.timestep, seed)
         backend = GuardedBackend(
-            TwinBackend(twin, paced=realtime),
+            TwinBackend(twin, paced=realtime, true_base=true, imu_errors=errors),
             SafetyLimits.of(description.joints),
             description.stop,
             description.crouch,
@@ -105,6 +114,7 @@ class Robot:
             noise=noise,
             seed=seed,
             paced=realtime,
+            estimator=None if true else build_estimator(description),
         )
 
     def __enter__(self) -> Self:
@@ -214,6 +224,7 @@ class Robot:
                 controller,
                 period=self.period,
                 until=end,
+                estimator=self.estimator,
                 rollouts=self.predictor.stopwatch if rollouts else None,
                 report=self.loop,
             )

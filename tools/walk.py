@@ -68,6 +68,7 @@ class Walk(Common):
             seed=seed,
             noise=self.noise,
             delay=self.delay,
+            state=self.state,
         ) as robot:
             trace = Trace(robot.description.contacts)
             robot.watch = trace.add if self.plot and show else None

@@ -1,0 +1,74 @@
+"""What a real IMU does to the twin's true motion: a low-pass filter, noise, bias, and counts."""
+
+from dataclasses import dataclass
+from math import pi, radians
+
+import numpy as np
+
+from hal.imu.opencr import ACCELERATION, GYRO
+from hal.joints import Array
+
+
+@dataclass(frozen=True)
+class ImuFigures:
+    """Figures of an IMU, gyro and accelerometer; the biases are standard deviations.
+
+    Attributes:
+        cutoff: Of its low-pass filter, taken as one of first order, Hz.
+        noise: Densities, rad/s and m/s2 in a root of hertz.
+        bias: rad/s and m/s2, on each axis.
+        unit: One count, rad/s and m/s2.
+    """
+
+    cutoff: float
+    noise: tuple[float, float]
+    bias: tuple[float, float]
+    unit: tuple[float, float]
+
+    @property
+    def lag(self) -> float:
+        """Delay of the filter, s."""
+        return 1.0 / (2.0 * pi * self.cutoff)
+
+
+OPENCR = ImuFigures(
+    cutoff=41.0,  # MPU9250, as OpenCR's firmware sets it
+    noise=(radians(0.01), 300e-6 * 9.80665),  # its data sheet
+    bias=(radians(0.3), 0.05),  # our guess of what the calibration at rest leaves
+    unit=(GYRO, ACCELERATION),
+)
+
+
+class ImuErrors:
+    """Turns true motion into samples.
+
+    Args:
+        figures: The IMU.
+        timestep: Time between two calls of `feel`, s.
+        seed: Seed of its noise and biases.
+
+    Attributes:
+        bias: (6,) rad/s and m/s2.
+    """
+
+    def __init__(self, figures: ImuFigures, timestep: float, seed: int = 0) -> None:
+        self._random = np.random.default_rng(seed)
+        self._follow = 1.0 - np.exp(-timestep / figures.lag)
+        bandwidth = 0.5 * pi * figures.cutoff
+        self._noise = np.repeat(figures.noise, 3) * bandwidth**0.5
+        self._unit = np.repeat(figures.unit, 3)
+        self.bias = self._random.normal(size=6) * np.repeat(figures.bias, 3)
+        self._state: Array | None = None
+
+    def feel(self, motion: Array) -> None:
+        """Take the true rates and accelerations (6,) of one time step."""
+        if self._state is None:
+            self._state = motion.copy()
+        else:
+            self._state += self._follow * (motion - self._state)
+
+    def sample(self, motion: Array) -> Array:
+        """Return what the IMU says (6,); `motion` (6,) is the true one, before any `feel`."""
+        felt = motion if self._state is None else self._state
+        noisy = felt + self.bias + self._noise * self._random.normal(size=6)
+        return np.rint(noisy / self._unit) * self._unit
