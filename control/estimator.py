@@ -8,8 +8,6 @@ rollouts begin from here, and a sole under the floor would kick them off it. The
 integral of the velocity.
 """
 
-from dataclasses import replace
-
 import mujoco
 import numpy as np
 
@@ -20,7 +18,7 @@ from control.soles import cross
 from control.tilt_filter import GRAVITY, ImuNoise, TiltFilter
 from hal.errors import StateMissingError
 from hal.joints import Array
-from hal.observation import BaseState, ImuState, JointState, Observation
+from hal.observation import BaseState, ImuState, Observation
 
 STALE = 0.02  # age of an IMU sample that doubles its noise, s
 LONGEST = 0.1  # longest time bridged with one sample, s
@@ -91,9 +89,9 @@ class BaseEstimator:
         rate = rate - self._filter.bias
         shares = self._stand(observation.contacts, imu, rate, passed)
         base = self._base(rate, bool(shares.any()), passed)
-        if self.load.sensed(observation.contacts):
-            return replace(observation, base=base)
-        return replace(observation, base=base, contacts=self.load.forces(shares))
+        sensed = self.load.sensed(observation.contacts)
+        contacts = observation.contacts if sensed else self.load.forces(shares)
+        return Observation(observation.time, joints, imu, contacts, base)
 
     def _carry(self, time: float, youngest: float, imu: ImuState) -> tuple[float, Array]:
         """Integrate the IMU; return the joints' time that has passed, s, and the gyro (3,)."""

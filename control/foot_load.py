@@ -58,4 +58,6 @@ class FootLoad:
         heights = self.soles.heights
         touching = (heights - heights.min() < TOUCH) & (shares > 0.0) & (self.soles.sensor >= 0)
         force = np.maximum(self.weight * shares, 2.0 * self.contacts.threshold)[touching]
-        return np.bincount(self.soles.sensor[touching], force, self._sensors)
+        return np.asarray(
+            np.bincount(self.soles.sensor[touching], force, self._sensors), dtype=np.float64
+        )

@@ -4,13 +4,17 @@ The ground under a foot gives way by millimetres at each impact, so a sole that 
 good witness of horizontal motion and a bad one of vertical motion. Its height over the floor is
 good in the mean. A second-order observer with natural frequency w joins both::
 
-    dz / dt = v + 2 d w (h - z)        dv / dt = a + w^2 (h - z)
+    dz / dt = v + 2 d w (h - z)    dv / dt = a + w^2 (h - z) + c    dc / dt = w^2 (h - z) / T
+
+The correction c is what the accelerometer is wrong by, and the tilt of a still robot adds to it.
 """
 
 FREQUENCY = 10.0
 """w, rad/s."""
 DAMPING = 0.7
 """d."""
+LEARNING = 1.0
+"""T, s."""
 
 
 class HeightFilter:
@@ -22,6 +26,7 @@ class HeightFilter:
 
     def __init__(self) -> None:
         self.height: float | None = None
+        self._correction = 0.0
 
     def measure(self, height: float, velocity: float, dt: float) -> float:
         """Return the corrected vertical velocity, m/s.
@@ -35,7 +40,9 @@ class HeightFilter:
             self.height = height
         error = height - self.height
         self.height += (velocity + 2.0 * DAMPING * FREQUENCY * error) * dt
-        return velocity + FREQUENCY**2 * error * dt
+        pull = FREQUENCY**2 * error
+        self._correction += pull * dt / LEARNING
+        return velocity + (pull + self._correction) * dt
 
     def fly(self, lowest: float, velocity: float, dt: float) -> float:
         """Return the height, m, of a robot with no foot down; no sole is under the floor."""

@@ -8,6 +8,8 @@ import numpy as np
 from control.soles import Soles, cross
 from hal.joints import Array
 
+ONES = np.ones(3)
+
 
 @dataclass(frozen=True)
 class FootNoise:
@@ -21,7 +23,7 @@ class FootNoise:
 
     velocity: float = 0.04
     rolling: float = 2.0
-    turning: float = 0.02
+    turning: float = 0.005
 
 
 class Odometry(NamedTuple):
@@ -55,21 +57,19 @@ def leg_odometry(
         imu: (3,) m, place of the IMU in the base.
         noise: How still soles are.
     """
-    by_foot = soles.members * shares
-    share = by_foot.sum(axis=1)
-    if share.sum() <= 0.0:
+    share = soles.members @ shares
+    if not share.any():
         return None
-    flow = soles.velocity + cross(rate, soles.position - imu)
+    place, flow = soles.flow(shares)
+    flow += cross(rate, place - share[:, None] * imu)
     turning = soles.rotation + rate
-    rolling = 1.0 + (turning * turning).sum(axis=1) / noise.rolling**2
-    # Each foot's flow is by_foot @ flow / share, its information share / (velocity^2 rolling).
-    information = float((share / rolling).sum())
-    velocity = -((1.0 / rolling) @ (by_foot @ flow)) / information
-    foot = int(share.argmax())
-    still = soles.rotation[foot]
+    # Each foot's velocity is flow / share, its information share / rolling.
+    believed = 1.0 / (1.0 + (turning * turning) @ ONES / noise.rolling**2)
+    information = float(believed @ share)
+    still = soles.rotation[share.argmax()]
     return Odometry(
-        velocity,
+        (believed @ flow) / -information,
         noise.velocity / information**0.5,
         -still,
-        noise.turning + 0.5 * float((still @ still) ** 0.5),
+        noise.turning + 0.5 * float(still @ still) ** 0.5,
     )

@@ -5,10 +5,13 @@ from itertools import product
 
 import mujoco
 import numpy as np
+import numpy.typing as npt
 
 from hal.contacts import ContactSensors
 from hal.errors import UsageError
 from hal.joints import Array
+
+Indices = npt.NDArray[np.intp]
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 GEOM = mujoco.mjtGeom
@@ -30,7 +33,6 @@ class Soles:
         sensor: (p,) index of each point's contact sensor, -1 where the foot has none.
         members: (feet, p) 1 where a point belongs to a foot.
         position: (p, 3) m from the base; the points where the ground is.
-        velocity: (p, 3) m/s against the base, seen from it.
         rotation: (feet, 3) rad/s of the feet against the base, seen from it.
         heights: (p,) m above the base's origin, along the world's vertical.
     """
@@ -50,12 +52,12 @@ class Soles:
             points += [point for point, _ in found]
             radii += [radius for _, radius in found]
             foot += [index] * len(found)
-        self._local, self._radius = np.array(points), np.array(radii)
+        self._local, self._radius = np.array(points)[:, :, None], np.array(radii)[:, None]
         self.foot = np.array(foot, dtype=np.intp)
+        self._of_point = self._bodies[self.foot]
         self.members = (self.foot == np.arange(len(feet))[:, None]).astype(float)
         self.sensor = self._nearest(contacts)
-        self.position = np.zeros_like(self._local)
-        self.velocity = np.zeros_like(self._local)
+        self.position = np.zeros((len(foot), 3))
         self.rotation = np.zeros((len(feet), 3))
         self.heights = np.zeros(len(foot))
 
@@ -67,16 +69,27 @@ class Soles:
         mujoco.mj_kinematics(self._model, data)
         mujoco.mj_comPos(self._model, data)
         mujoco.mj_comVel(self._model, data)
-        frames = data.xmat[self._bodies].reshape(-1, 3, 3)[self.foot]
-        turned = (frames @ self._local[:, :, None])[:, :, 0]
-        self.position = data.xpos[self._bodies][self.foot] + turned - self._radius[:, None] * up
+        frames = data.xmat[self._bodies].reshape(-1, 3, 3)
+        turned = (frames[self.foot] @ self._local)[:, :, 0]
+        self.position = turned + data.xpos[self._of_point] - self._radius * up
         self.heights = self.position @ up
         twist = data.cvel[self._bodies]
         self.rotation = twist[:, :3]
-        arm = self.position - data.subtree_com[self._root]
-        self.velocity = twist[self.foot, 3:] + cross(self.rotation[self.foot], arm)
+        self._pivot = data.subtree_com[self._root]
+        self._linear = twist[:, 3:]
 
-    def _nearest(self, contacts: ContactSensors) -> Array:
+    def flow(self, weights: Array) -> tuple[Array, Array]:
+        """Return the sums of each foot's positions and velocities under `weights` (p,).
+
+        Returns:
+            (feet, 3) m and (feet, 3) m/s against the base, seen from it.
+        """
+        place = (self.members * weights) @ self.position
+        share = (self.members @ weights)[:, None]
+        arm = place - share * self._pivot
+        return place, share * self._linear + cross(self.rotation, arm)
+
+    def _nearest(self, contacts: ContactSensors) -> Indices:
         """Return (p,) index of the nearest sensor of the same foot, -1 without one."""
         model, data = self._model, mujoco.MjData(self._model)
         mujoco.mj_kinematics(model, data)
@@ -87,7 +100,7 @@ class Soles:
             sites = data.site_xpos[[int(model.sensor(name).objid[0]) for name in names]]
             mine = np.flatnonzero(self.foot == row)
             body = self._bodies[row]
-            places = data.xpos[body] + self._local[mine] @ data.xmat[body].reshape(3, 3).T
+            places = data.xpos[body] + self._local[mine, :, 0] @ data.xmat[body].reshape(3, 3).T
             away = np.linalg.norm(places[:, None] - sites[None], axis=2)
             order = np.array([contacts.names.index(name) for name in names])
             nearest[mine] = order[away.argmin(axis=1)]
@@ -95,11 +108,13 @@ class Soles:
 
 
 def cross(a: Array, b: Array) -> Array:
-    """Return a x b (..., 3); NumPy's own takes ten times as long for so few."""
-    c = np.empty(np.broadcast_shapes(a.shape, b.shape))
-    c[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
-    c[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
-    c[..., 2] = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    """Return a x b in the shape (..., 3) of b; NumPy's own takes ten times as long for so few."""
+    c = np.empty(b.shape)
+    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
+    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
+    c[..., 0] = ay * bz - az * by
+    c[..., 1] = az * bx - ax * bz
+    c[..., 2] = ax * by - ay * bx
     return c
 
 

@@ -60,6 +60,7 @@ class TiltFilter:
     def __init__(self, noise: ImuNoise | None = None) -> None:
         self.noise = noise or ImuNoise()
         self.bias = np.zeros(3)
+        self._dt = 0.0
         self.start(np.array([0.0, 0.0, 1.0]))
 
     def start(self, up: Array) -> None:
@@ -96,14 +97,11 @@ class TiltFilter:
         self._look()
         self.velocity = self.velocity + 0.5 * ((before + self.frame) @ boost)
         self.velocity[2] -= GRAVITY * dt
-        fall = GRAVITY * dt
-        step = np.array([[1.0, 0.0, -dt], [fall, 1.0, -0.5 * fall * dt], [0.0, 0.0, 1.0]])
-        noise, spread = self.noise, dt * doubt * doubt
-        p = step @ self._covariance @ step.T
-        p[0, 0] += noise.gyro**2 * spread
-        p[1, 1] += noise.acceleration**2 * spread
-        p[2, 2] += noise.drift**2 * dt
-        self._yaw_variance += noise.drift**2 * dt
+        if dt != self._dt:
+            self._prepare(dt)
+        p = self._step @ self._covariance @ self._step.T
+        p += self._spread * doubt * doubt
+        self._yaw_variance += self.noise.drift**2 * dt
         self._covariance = p
 
     def measure_velocity(self, velocity: Array, deviation: float) -> None:
@@ -131,6 +129,13 @@ class TiltFilter:
         up = self.frame[2]
         self.bias = self.bias + gain * float((bias - self.bias) @ up) * up
         self._yaw_variance *= 1.0 - gain
+
+    def _prepare(self, dt: float) -> None:
+        """Work out what `dt` s do to the errors."""
+        noise, fall = self.noise, GRAVITY * dt
+        self._dt = dt
+        self._step = np.array([[1.0, 0.0, -dt], [fall, 1.0, -0.5 * fall * dt], [0.0, 0.0, 1.0]])
+        self._spread = np.diag(np.square([noise.gyro, noise.acceleration, noise.drift])) * dt
 
     def _correct(self, row: int, deviation: float, axis: Array, along: Array) -> None:
         """Correct all by an error seen in state `row`: as a rotation and as a velocity."""

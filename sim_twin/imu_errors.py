@@ -39,6 +39,30 @@ OPENCR = ImuFigures(
 )
 
 
+class LowPass:
+    """A low-pass filter of first order, for as many signals as come.
+
+    Args:
+        lag: Its time constant, s.
+        timestep: Time between two calls of `follow`, s.
+    """
+
+    def __init__(self, lag: float, timestep: float) -> None:
+        self._gain = 1.0 - np.exp(-timestep / lag)
+        self._value: Array | None = None
+
+    def follow(self, signal: Array) -> None:
+        """Let one time step pass with `signal`."""
+        if self._value is None:
+            self._value = np.array(signal)
+        else:
+            self._value += self._gain * (signal - self._value)
+
+    def value(self, signal: Array) -> Array:
+        """Return the filtered signal; before the first step that is `signal`."""
+        return np.array(signal if self._value is None else self._value)
+
+
 class ImuErrors:
     """Turns true motion into samples.
 
@@ -53,22 +77,17 @@ class ImuErrors:
 
     def __init__(self, figures: ImuFigures, timestep: float, seed: int = 0) -> None:
         self._random = np.random.default_rng(seed)
-        self._follow = 1.0 - np.exp(-timestep / figures.lag)
+        self._filter = LowPass(figures.lag, timestep)
         bandwidth = 0.5 * pi * figures.cutoff
         self._noise = np.repeat(figures.noise, 3) * bandwidth**0.5
         self._unit = np.repeat(figures.unit, 3)
         self.bias = self._random.normal(size=6) * np.repeat(figures.bias, 3)
-        self._state: Array | None = None
 
     def feel(self, motion: Array) -> None:
         """Take the true rates and accelerations (6,) of one time step."""
-        if self._state is None:
-            self._state = motion.copy()
-        else:
-            self._state += self._follow * (motion - self._state)
+        self._filter.follow(motion)
 
     def sample(self, motion: Array) -> Array:
         """Return what the IMU says (6,); `motion` (6,) is the true one, before any `feel`."""
-        felt = motion if self._state is None else self._state
-        noisy = felt + self.bias + self._noise * self._random.normal(size=6)
-        return np.rint(noisy / self._unit) * self._unit
+        noise = self._noise * self._random.normal(size=6)
+        return np.rint((self._filter.value(motion) + self.bias + noise) / self._unit) * self._unit

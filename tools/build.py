@@ -68,7 +68,8 @@ def build_estimator(robot: RobotDescription, *, switches: bool = True) -> BaseEs
     """
     if robot.imu is None or not robot.feet:
         raise StateMissingError(
-            f"the base of {robot.name} cannot be estimated: robot.toml needs an [imu] and a [[foot]]"
+            f"the base of {robot.name} cannot be estimated; "
+            "give it an [imu] and a [[foot]] in robot.toml"
         )
     model = robot.spec().compile()
     soles = Soles(model, [foot.body for foot in robot.feet], robot.contacts)

@@ -8,6 +8,7 @@ import tyro
 
 from hal.errors import WindupError
 from tools.bench import Bench
+from tools.estimate import Estimate
 from tools.output import console, error_record, write_json
 from tools.play import Play
 from tools.robots_list import Robots
@@ -17,6 +18,7 @@ Command = (
     Annotated[Walk, tyro.conf.subcommand("walk")]
     | Annotated[Play, tyro.conf.subcommand("play")]
     | Annotated[Robots, tyro.conf.subcommand("robots")]
+    | Annotated[Estimate, tyro.conf.subcommand("estimate")]
     | Annotated[Bench, tyro.conf.subcommand("bench")]
 )
 
