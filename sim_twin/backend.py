@@ -9,6 +9,7 @@ from hal.clock import sleep_until
 from hal.command import JointCommand
 from hal.joints import Joints, Mask
 from hal.observation import Observation
+from sim_twin.imu_errors import ImuErrors
 from sim_twin.sensors import Sensors
 from sim_twin.servo_motor import ServoDrive, TorqueDrive
 from sim_twin.twin import Twin
@@ -60,6 +61,7 @@ class TwinBackend:
         paced: See `TwinClock`.
         sensor_delay: Age of everything that is read, s; the robot's own by default.
         true_base: Put the true base state into observations.
+        imu_errors: What the IMU makes of the motion; by default it is perfect.
     """
 
     def __init__(
@@ -69,12 +71,13 @@ class TwinBackend:
         paced: bool = False,
         sensor_delay: float | None = None,
         true_base: bool = True,
+        imu_errors: ImuErrors | None = None,
     ) -> None:
         self.twin = twin
         self.clock = TwinClock(twin, paced=paced)
         self.joints: Joints = twin.robot.joints
         delay = twin.robot.drive.sensor_delay if sensor_delay is None else sensor_delay
-        self.sensors = Sensors(twin, delay=delay, true_base=true_base)
+        self.sensors = Sensors(twin, delay=delay, true_base=true_base, imu_errors=imu_errors)
         self._drive: ServoDrive | TorqueDrive = (
             ServoDrive(twin.model, twin.robot, twin.supply)
             if twin.robot.drive.kind == "servo"

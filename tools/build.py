@@ -9,16 +9,21 @@ import numpy as np
 from control.balancer import Balancer
 from control.body import Body
 from control.course import Course
+from control.estimator import BaseEstimator
+from control.foot_load import FootLoad
 from control.gait import Gait, load_gait
 from control.gait_file import Balance, Sampling
 from control.planner import Planner, StepPlanner
 from control.regulation import RegulationVariable, regulation_variables
+from control.soles import Soles
 from control.speed import SpeedControl
 from control.step_model import StepModel
+from control.tilt_filter import GRAVITY
 from control.torso_servo import TorsoServo
 from hal.controller import Predictor
-from hal.errors import UnknownNameError, UsageError
+from hal.errors import StateMissingError, UnknownNameError, UsageError
 from robots import RobotDescription
+from sim_twin.imu_errors import OPENCR
 
 
 @dataclass(frozen=True)
@@ -50,6 +55,28 @@ def body_of(robot: RobotDescription) -> Body:
     """Return the kinematics of a robot."""
     soles = [foot.site for foot in robot.feet]
     return Body(robot.spec().compile(), robot.base, robot.torso, soles)
+
+
+def build_estimator(robot: RobotDescription, *, switches: bool = True) -> BaseEstimator:
+    """Return what estimates the base of `robot` from its sensors.
+
+    Args:
+        robot: The robot.
+        switches: Its contact sensors exist; without them the soles' heights tell who stands.
+
+    Raises:
+        StateMissingError: The robot has no IMU or no feet.
+    """
+    if robot.imu is None or not robot.feet:
+        raise StateMissingError(
+            f"the base of {robot.name} cannot be estimated; "
+            "give it an [imu] and a [[foot]] in robot.toml"
+        )
+    model = robot.spec().compile()
+    soles = Soles(model, [foot.body for foot in robot.feet], robot.contacts)
+    weight = float(model.body_subtreemass[model.body(robot.base).id]) * GRAVITY
+    load = FootLoad(soles, robot.contacts, weight, sensed=switches)
+    return BaseEstimator(load, model.site(robot.imu.site).pos.copy(), lag=OPENCR.lag)
 
 
 def build_walk(

@@ -12,6 +12,7 @@ import tyro
 
 from hal.errors import UsageError, WindupError
 from tools.bench import Bench
+from tools.estimate import Estimate
 from tools.health import Health
 from tools.options import Common
 from tools.output import check_writable, console, error_record, write_json
@@ -30,6 +31,7 @@ Command = (
     | Annotated[Scan, tyro.conf.subcommand("scan")]
     | Annotated[Health, tyro.conf.subcommand("health")]
     | Annotated[Robots, tyro.conf.subcommand("robots")]
+    | Annotated[Estimate, tyro.conf.subcommand("estimate")]
     | Annotated[Bench, tyro.conf.subcommand("bench")]
 )
 

@@ -84,7 +84,9 @@ class Robot(Session):
         wired = description.wire_rate_hz if port is not None else None
         steps = description.physics_steps(rate or wired)
         if port is None:
-            stack = twin_stack(description, state=state or "true", paced=realtime, delay=delay)
+            stack = twin_stack(
+                description, state=state or "true", paced=realtime, delay=delay, seed=seed
+            )
         else:
             stack = wire_stack(
                 description, port, state=state or "estimated", arm=arm, noise=noise, seed=seed
