@@ -3,6 +3,8 @@ from hypothesis import settings
 
 from robots import RobotDescription, load_robot
 
+pytest_plugins = ["pytester"]
+
 # The same examples on every machine, and no clock in them.
 settings.register_profile("windup", deadline=None, database=None, derandomize=True, max_examples=40)
 settings.load_profile("windup")

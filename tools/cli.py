@@ -12,6 +12,7 @@ import tyro
 
 from hal.errors import UsageError, WindupError
 from tools.bench import Bench
+from tools.emulate import Emulate
 from tools.estimate import Estimate
 from tools.health import Health
 from tools.options import Common
@@ -29,6 +30,7 @@ Command = (
     | Annotated[Stand, tyro.conf.subcommand("stand")]
     | Annotated[Stop, tyro.conf.subcommand("stop")]
     | Annotated[Scan, tyro.conf.subcommand("scan")]
+    | Annotated[Emulate, tyro.conf.subcommand("emulate")]
     | Annotated[Health, tyro.conf.subcommand("health")]
     | Annotated[Robots, tyro.conf.subcommand("robots")]
     | Annotated[Estimate, tyro.conf.subcommand("estimate")]

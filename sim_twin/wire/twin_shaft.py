@@ -22,7 +22,6 @@ from hal.servo_model import ServoMount
 from sim_twin.imu_errors import OPENCR, LowPass
 from sim_twin.servo_motor import KD, KP, VMAX
 from sim_twin.twin import Twin
-from sim_twin.wire.x_series import CENTRE
 
 FAR = 1e6  # rad
 SOFT = 1e-6  # N m/rad
@@ -41,7 +40,7 @@ class TwinShaft:
         self._data, self._joint = twin.data, joint
         self._turn = mount.sign * mount.ratio  # rad of the horn for one of the joint
         per_rad = mount.model.counts_per_rev / (2.0 * math.pi)
-        self._zero = (mount.zero - CENTRE) / per_rad
+        self._zero = (mount.zero - mount.model.middle) / per_rad
         self._prm = twin.model.actuator_gainprm[joint]
         self._range = twin.model.actuator_forcerange[joint]
         self._limited = twin.model.actuator_forcelimited
