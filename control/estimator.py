@@ -14,13 +14,13 @@ import numpy as np
 from control.foot_load import FootLoad
 from control.height_filter import HeightFilter
 from control.leg_odometry import FootNoise, leg_odometry
-from control.soles import cross
+from control.soles import spin
 from control.tilt_filter import GRAVITY, ImuNoise, TiltFilter
 from hal.errors import StateMissingError
 from hal.joints import Array
 from hal.observation import BaseState, ImuState, Observation
 
-STALE = 0.02  # age of an IMU sample that doubles its noise, s
+STALE = 0.02  # age of an IMU sample, beside the joints', that doubles its noise, s
 LONGEST = 0.1  # longest time bridged with one sample, s
 PATIENCE = 0.25  # time without a foot down that halves the confidence, s
 AIRBORNE = 1.0  # standard deviation of the velocity of a robot long without a foot down, m/s
@@ -74,6 +74,8 @@ class BaseEstimator:
     def update(self, observation: Observation, dt: float) -> Observation:
         """Return `observation` with its base, and with contacts; see `control.loop.Estimator`.
 
+        Times and ages come from the observation, so that late and lost ticks do no harm.
+
         Raises:
             StateMissingError: The observation has no IMU.
         """
@@ -112,7 +114,7 @@ class BaseEstimator:
         now, then = half + lead, half - before
         turn = now * imu.angular_velocity + then * old.angular_velocity
         boost = now * imu.acceleration + then * old.acceleration
-        self._filter.predict(turn, boost, passed, 1.0 + imu.age / STALE)
+        self._filter.predict(turn, boost, passed, 1.0 + max(lead - self.lag, 0.0) / STALE)
         ahead = min(self.lag / passed, 1.0)
         return passed, (1.0 + ahead) * imu.angular_velocity - ahead * old.angular_velocity
 
@@ -138,7 +140,7 @@ class BaseEstimator:
 
     def _base(self, rate: Array, standing: bool, passed: float) -> BaseState:
         state, soles = self._filter, self.soles
-        offset = state.frame @ cross(rate, self._imu)
+        offset = state.frame @ (spin(rate) @ self._imu)
         lowest = -float((soles.position @ state.frame[2]).min())
         up = float(state.velocity[2] - offset[2])
         if standing:

@@ -55,9 +55,10 @@ class FootLoad:
 
     def forces(self, shares: Array) -> Array:
         """Return (k,) N: what contact sensors would say where there are none."""
-        heights = self.soles.heights
-        touching = (heights - heights.min() < TOUCH) & (shares > 0.0) & (self.soles.sensor >= 0)
-        force = np.maximum(self.weight * shares, 2.0 * self.contacts.threshold)[touching]
-        return np.asarray(
-            np.bincount(self.soles.sensor[touching], force, self._sensors), dtype=np.float64
-        )
+        heights, sensor = self.soles.heights, self.soles.sensor
+        near = (heights - heights.min() < TOUCH) & (shares > 0.0) & (sensor >= 0)
+        force = np.zeros(self._sensors)
+        force[sensor[near]] = 2.0 * self.contacts.threshold
+        known = sensor >= 0
+        load = np.bincount(sensor[known], self.weight * shares[known], self._sensors)
+        return np.where(force > 0.0, np.maximum(force, load), 0.0)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from control.soles import Soles, cross
+from control.soles import Soles, spin
 from hal.joints import Array
 
 ONES = np.ones(3)
@@ -61,7 +61,7 @@ def leg_odometry(
     if not share.any():
         return None
     place, flow = soles.flow(shares)
-    flow += cross(rate, place - share[:, None] * imu)
+    flow += (place - share[:, None] * imu) @ spin(rate).T
     turning = soles.rotation + rate
     # Each foot's velocity is flow / share, its information share / rolling.
     believed = 1.0 / (1.0 + (turning * turning) @ ONES / noise.rolling**2)

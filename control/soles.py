@@ -107,6 +107,12 @@ class Soles:
         return nearest
 
 
+def spin(rate: Array) -> Array:
+    """Return the matrix (3, 3) that turns x into rate x x, for one `rate` (3,)."""
+    x, y, z = rate.tolist()
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
 def cross(a: Array, b: Array) -> Array:
     """Return a x b in the shape (..., 3) of b; NumPy's own takes ten times as long for so few."""
     c = np.empty(b.shape)
