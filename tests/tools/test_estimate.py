@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -38,7 +39,8 @@ def test_op3_walks_on_its_own_sensors(
     from tools.build import build_estimator
 
     with Robot.open("op3", rate=rate, delay=delay, noise=0.2, state="estimated") as robot:
-        robot.estimator = build_estimator(robot.description, switches=switches)
+        estimator = build_estimator(robot.description, switches=switches)
+        robot.stack = replace(robot.stack, estimator=estimator)
         report = robot.walk(steps=30)
     assert report.done
     assert report.speed is not None and report.speed > 0.15
