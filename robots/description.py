@@ -184,7 +184,7 @@ def _mount(entry: JointEntry) -> ServoMount | None:
     if entry.servo is None or entry.bus is None or entry.id is None:
         return None
     model = servo_model(entry.servo)
-    zero = model.counts_per_rev // 2 if entry.zero is None else entry.zero
+    zero = model.middle if entry.zero is None else entry.zero
     return ServoMount(model, entry.bus, entry.id, entry.sign, zero, entry.ratio)
 
 
