@@ -88,13 +88,17 @@ class Bus:
         Raises:
             HardwareError: It reads back as something else.
         """
-        with self._unlocked(id, register):
-            self._link.write(id, register.address, register.encode(counts))
+        self.command(id, register, counts, unlock=register.area == "eeprom")
         if (now := self.read(id, register)) != counts:
             raise HardwareError(
                 f"id {id} on {self.port.url}: {register.name} was set to {counts} "
                 f"and reads back as {now}"
             )
+
+    def command(self, id: int, register: Register, counts: int, unlock: bool = False) -> None:
+        """Write what does not read back; `unlock` opens an EEPROM that has a lock."""
+        with self._unlocked(id, unlock):
+            self._link.write(id, register.address, register.encode(counts))
 
     def sync_read(
         self, ids: Sequence[int], register: Register, fast: bool = False
@@ -161,7 +165,7 @@ class Bus:
         if self._answers(new):
             raise UsageError(f"id {new} on {self.port.url} is taken; two servos cannot share it")
         register = self.family.registers["id"]
-        with self._unlocked(id, register, new):
+        with self._unlocked(id, after=new):
             self._link.write(id, register.address, bytes([new]))
         self._link.ping(new)
 
@@ -172,7 +176,7 @@ class Bus:
             UsageError: No servo of the family has this rate.
         """
         register, code = self.family.registers["baud_rate"], self.family.baud_code(baud)
-        with self._unlocked(id, register):
+        with self._unlocked(id):
             self._link.write(id, register.address, bytes([code]))
             self.port.baud = baud
         self._link.ping(id)
@@ -190,10 +194,10 @@ class Bus:
         ]
 
     @contextlib.contextmanager
-    def _unlocked(self, id: int, register: Register, after: int | None = None) -> Iterator[None]:
+    def _unlocked(self, id: int, unlock: bool = True, after: int | None = None) -> Iterator[None]:
         """Open the EEPROM of a Feetech servo for a write, and close it under the id `after`."""
-        lock = self.family.registers.get("lock") if register.area == "eeprom" else None
-        if lock is None:
+        lock = self.family.registers.get("lock")
+        if lock is None or not unlock:
             yield
             return
         self._link.write(id, lock.address, bytes([0]))

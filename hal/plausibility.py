@@ -26,7 +26,7 @@ class Plausibility:
         velocity_unit: (n,) counts a second of one unit of the velocity register.
 
     Attributes:
-        rejected: How many readings have been refused.
+        rejected: How many readings have been refused, first ones apart.
     """
 
     def __init__(self, last: Array, speed: Array, velocity_unit: Array) -> None:
@@ -55,7 +55,7 @@ class Plausibility:
             self._seen |= taken
             self._known |= good
             self._all_known = bool(self._known.all())
-        self.rejected += int(np.count_nonzero(valid)) - int(np.count_nonzero(good))
+        self.rejected += int(np.count_nonzero(valid)) - int(np.count_nonzero(taken))
         np.copyto(self._position, position, where=taken)
         np.copyto(self._when, now, where=taken)
         return good

@@ -47,9 +47,10 @@ class Register:
     def decode(self, data: bytes) -> int:
         """Return the counts that `data` spells."""
         raw = int.from_bytes(data, self.order, signed=self.signed)
-        if self.sign_bit is None or not raw >> self.sign_bit & 1:
+        if self.sign_bit is None:
             return raw
-        return -(raw & (1 << self.sign_bit) - 1)
+        magnitude = raw & (1 << self.sign_bit) - 1
+        return -magnitude if raw >> self.sign_bit & 1 else magnitude
 
     def encode(self, counts: int) -> bytes:
         """Return the bytes of `counts`.

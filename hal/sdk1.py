@@ -3,7 +3,9 @@
 Both run on `SdkPort`: our port, our clock, input discarded before each request (feetech-servo-sdk
 flushes output instead). What is left alone in feetech-servo-sdk: everything that turns bytes into
 words, because its byte order is one global of the process; and its grouped reads, which mix old
-and new values after a failure. Here it carries bytes, one servo at a time.
+and new values after a failure. Both SDKs return the checksum as data where an answer is too short,
+and dynamixel-sdk 4.1.0 cannot do a bulk read in protocol 1 (TypeError). Here they carry whole
+packets, one servo at a time.
 """
 
 from typing import Any
@@ -50,10 +52,11 @@ class Protocol1Link(Link):
         """Return `size` bytes at `address`."""
 
         def call() -> tuple[bytes, int, int]:
-            data, result, error = self._packets.readTxRx(self._port, id, address, size)
-            if result == COMM_SUCCESS and len(data) != size:
+            request = [0, 0, id, 4, int(Instruction.READ), address, size, 0]
+            packet, result, error = self._packets.txRxPacket(self._port, request)
+            if result == COMM_SUCCESS and packet[3] != size + 2:
                 result = COMM_RX_CORRUPT
-            return bytes(data), result, error
+            return bytes(packet or b"")[5:-1], result, error
 
         data, _ = self._ask(id, call)
         return bytes(data)

@@ -140,11 +140,9 @@ class ServoLine:
         errors = read.error[: len(self.ids)]
         complete = read.complete
         if self.check is not None:
-            sound = int(np.count_nonzero(valid))
             valid = self.check.accept(position, velocity, valid, self.bus.port.clock.now())
-            if rejected := sound - int(np.count_nonzero(valid)):
-                complete = False
-                self.bus.exchange.errors["implausible"] += rejected
+            complete = bool(valid.all())
+            self.bus.exchange.errors["implausible"] = self.check.rejected
         rows: Rows = self._where
         if not complete:
             rows = self.rows[valid]
