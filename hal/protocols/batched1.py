@@ -19,6 +19,8 @@ FRAME_SUM = 0xFD
 """Sum of the bytes of any whole frame, modulo 256."""
 _ID, _ERROR, _PARAMS = 2, 4, 5
 """Places in a status frame."""
+_FIRST = 8
+"""Place of the first value in a sync write."""
 
 
 class StatusRead(CyclicRead):
@@ -53,14 +55,23 @@ class StatusRead(CyclicRead):
         return bool((sums == FRAME_SUM).all())
 
     def _statuses(self, stream: bytes) -> list[Status]:
-        """Return the good replies of those who were asked; two under one id are none.
+        """Return the replies to believe: good, from who was asked, once each, and in order.
 
-        A servo answers once. If two frames bear one id, a wrong id has passed the checksum, or
-        two servos have it: nobody knows which to believe.
+        A servo answers once, in its turn. Two frames with one id, or one out of its turn, mean
+        that a wrong id or a late reply has passed the checksum.
         """
         found = list(protocol1.salvage(stream, self._sizes))
         often = Counter(item.id for item in found)
-        return [item for item in found if often[item.id] == 1]
+        return self._in_turn([item for item in found if often[item.id] == 1])
+
+    def _in_turn(self, items: list[Status]) -> list[Status]:
+        """Return the longest run of `items` whose rows rise."""
+        best: list[list[Status]] = []
+        for item in items:
+            row = self._rows[item.id]
+            before = [run for run in best if self._rows[run[-1].id] < row]
+            best.append([*max(before, key=len, default=[]), item])
+        return max(best, key=len, default=[])
 
 
 class ChainRead(CyclicRead):
@@ -125,35 +136,26 @@ class GoalWrite:
 
     def __init__(self, ids: Sequence[int], register: Register, longest: int) -> None:
         self.ids, self.register = tuple(ids), register
-        zero = dict.fromkeys(ids, bytes(register.size))
-        self._raw = protocol1.split_sync_write(zero, register.address, register.size, longest)
-        self._data: Bytes = np.frombuffer(bytearray(b"".join(self._raw)), np.uint8)
-        ends = np.cumsum([len(raw) for raw in self._raw])
-        self._cuts = list(zip([0, *ends[:-1].tolist()], ends.tolist(), strict=True))
-        self._checks = (ends - 1).tolist()
         self.values: npt.NDArray[np.int64] = np.zeros(len(self.ids), dtype=np.int64)
+        zero = dict.fromkeys(ids, bytes(register.size))
+        frames = protocol1.split_sync_write(zero, register.address, register.size, longest)
+        self._parts: list[tuple[bytearray, npt.NDArray[np.int64], slice]] = []
         row = 0
-        self._views = []
-        for start, end in self._cuts:
-            count = (end - start - 8) // (register.size + 1)
+        for raw in frames:
+            frame, width = bytearray(raw), register.size + 1
+            count = (len(frame) - _FIRST) // width
             view: npt.NDArray[np.int64] = np.ndarray(
-                (count,), register.dtype, self._data.data, start + 8, (register.size + 1,)
+                (count,), register.dtype, frame, _FIRST, (width,)
             )
-            self._views.append((view, slice(row, row + count)))
+            self._parts.append((frame, view, slice(row, row + count)))
             row += count
 
     def frames(self) -> list[bytes]:
         """Return the frames for the present `values`."""
-        data, register = self._data, self.register
-        values = self.values
-        if register.sign_bit is not None:
-            values = np.where(values < 0, -values | 1 << register.sign_bit, values)
-        frames = []
-        for (view, rows), (start, end), check in zip(
-            self._views, self._cuts, self._checks, strict=True
-        ):
+        values, bit = self.values, self.register.sign_bit
+        if bit is not None and values.min() < 0:
+            values = np.where(values < 0, -values | 1 << bit, values)
+        for frame, view, rows in self._parts:
             view[...] = values[rows]
-            data[check] = 0
-            data[check] = FRAME_SUM - int(data[start:check].sum()) & 0xFF
-            frames.append(data[start:end].tobytes())
-        return frames
+            frame[-1] = ~sum(frame[2:-1]) & 0xFF
+        return [bytes(frame) for frame, _, _ in self._parts]

@@ -2,6 +2,7 @@ import pytest
 
 from hal.bus import Bus
 from hal.errors import HardwareError, UsageError
+from hal.exchange import TURNAROUND
 from hal.families import DYNAMIXEL_1, FEETECH_SCS, FEETECH_STS
 from hal.feetech import set_middle
 from hal.protocols.protocol1 import Instruction
@@ -133,3 +134,21 @@ def test_a_write_to_31_servos_is_split_where_the_makers_sdk_fails() -> None:
     bus.sync_write(register, dict.fromkeys(range(1, 101), 300))
     assert len(serial.requests) == 2 and max(map(len, serial.requests)) <= 250
     assert all(serial.show(id, "goal_position") == 300 for id in range(1, 32))
+
+
+def test_a_cycle_of_20_sts_takes_its_time_on_the_wire_and_a_missing_one_4_ms() -> None:
+    ids = list(range(1, 21))
+    serial, port = fake_port1(dict.fromkeys(ids, STS))
+    serial.latency = port.latency = 1e-3
+    bus = Bus(port, FEETECH_STS)
+    bus.exchange.turnaround = TURNAROUND
+    read = FEETECH_STS.dialect.read([FEETECH_STS.state.span(id) for id in ids])
+    wire = (len(read.request) + read.length) * 10.0 / 1e6
+    for dead in (None, 7, 20):
+        serial.silent = set() if dead is None else {dead}
+        start = port.clock.now()
+        bus.exchange.request(read)
+        valid = bus.exchange.collect()
+        taken = port.clock.now() - start
+        assert [id for id, has in zip(ids, valid, strict=True) if not has] == sorted(serial.silent)
+        assert taken == pytest.approx(wire) if dead is None else taken <= wire + 4e-3
