@@ -30,8 +30,10 @@ class Exchange:
     Attributes:
         port: The port.
         errors: Kind of error to how often it happened: "no answer" and "corrupt" count servos,
-            "resynchronised" counts answers that the fast check turned down, "implausible" counts
+            "resynchronised" counts answers in which something was lost, "implausible" counts
             servos whose good frame said what cannot be.
+        stuffed: Answers that were longer than plain and all there: data that looked like a header
+            was stuffed, or noise came with them, which is no error.
         cycles: Answers collected.
         turnaround: What each servo takes before it answers, s; `TURNAROUND` once its return
             delay has been set to 0.
@@ -41,6 +43,7 @@ class Exchange:
         self.port = port
         self.errors: Counter[str] = Counter()
         self.cycles = 0
+        self.stuffed = 0
         self.turnaround = UNSET_TURNAROUND
         self._wire_free = 0.0
         self._deadline = 0.0
@@ -106,7 +109,6 @@ class Exchange:
 
     def _resynchronise(self, read: CyclicRead, stream: bytes) -> None:
         """Wait for what stuffing, noise or a lost byte has moved back, and keep what is good."""
-        self.errors["resynchronised"] += 1
         while not read.complete and self.port.clock.now() < self._deadline:
             more = self.port.read(max(1, read.length - len(stream)), self._deadline)
             if not more:
@@ -116,7 +118,10 @@ class Exchange:
                 break
             read.decode(stream)
         lost = int((~read.valid).sum())
-        if lost:
+        if not lost:
+            self.stuffed += 1
+        else:
+            self.errors["resynchronised"] += 1
             kind = "corrupt" if len(stream) > read.answered() else "no answer"
             self.errors[kind] += lost
 

@@ -115,8 +115,8 @@ class Link(ABC):
     timed_out: int = COMM_RX_TIMEOUT
     """What the SDK returns when nothing came."""
 
-    def __init__(self, port: Port) -> None:
-        self._port = SdkPort(port)
+    def __init__(self, port: Port, packets: Any) -> None:
+        self._port, self._packets = SdkPort(port), packets
 
     @abstractmethod
     def ping(self, id: int, attempts: int = ATTEMPTS) -> int:
@@ -126,9 +126,16 @@ class Link(ABC):
     def read(self, id: int, address: int, size: int) -> bytes:
         """Return `size` bytes at `address`."""
 
-    @abstractmethod
     def write(self, id: int, address: int, data: bytes) -> None:
         """Write `data` at `address`; the servo has answered when this returns."""
+        value = list(data)
+        self._ask(
+            id,
+            lambda: (
+                None,
+                *self._packets.writeTxRx(self._port, id, address, len(value), value),
+            ),
+        )
 
     @abstractmethod
     def reboot(self, id: int) -> None:
@@ -174,8 +181,7 @@ class DynamixelLink(Link):
     """Protocol 2, through dynamixel-sdk."""
 
     def __init__(self, port: Port) -> None:
-        super().__init__(port)
-        self._packets = SdkPackets()
+        super().__init__(port, SdkPackets())
 
     def ping(self, id: int, attempts: int = ATTEMPTS) -> int:
         """Return the model number of servo `id`."""
@@ -186,17 +192,6 @@ class DynamixelLink(Link):
         """Return `size` bytes at `address`."""
         data, _ = self._ask(id, lambda: self._packets.readTxRx(self._port, id, address, size))
         return bytes(data)
-
-    def write(self, id: int, address: int, data: bytes) -> None:
-        """Write `data` at `address`; the servo has answered when this returns."""
-        value = list(data)
-        self._ask(
-            id,
-            lambda: (
-                None,
-                *self._packets.writeTxRx(self._port, id, address, len(value), value),
-            ),
-        )
 
     def reboot(self, id: int) -> None:
         """Restart a servo; it is deaf for some 100 ms."""

@@ -39,8 +39,8 @@ class Protocol1Link(Link):
     """
 
     def __init__(self, port: Port, packets: Any, model_number: Register) -> None:
-        super().__init__(port)
-        self._packets, self._model_number = packets, model_number
+        super().__init__(port, packets)
+        self._model_number = model_number
 
     def ping(self, id: int, attempts: int = ATTEMPTS) -> int:
         """Return the model number of servo `id`; the answer to a ping does not hold it."""
@@ -60,17 +60,6 @@ class Protocol1Link(Link):
 
         data, _ = self._ask(id, call)
         return bytes(data)
-
-    def write(self, id: int, address: int, data: bytes) -> None:
-        """Write `data` at `address`; the servo has answered when this returns."""
-        value = list(data)
-        self._ask(
-            id,
-            lambda: (
-                None,
-                *self._packets.writeTxRx(self._port, id, address, len(value), value),
-            ),
-        )
 
     def reboot(self, id: int) -> None:
         """There is no such instruction in protocol 1."""

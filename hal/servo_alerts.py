@@ -7,9 +7,14 @@ import numpy.typing as npt
 
 from hal.bus import Bus
 from hal.errors import HardwareError
+from hal.families import family_of
 from hal.joints import Joints
 from hal.servo_line import ServoLine
 from hal.servo_link import ServoLink
+from hal.servo_model import ServoMount
+
+UNKNOWN = "unknown"
+ERROR_KINDS = ("no answer", "corrupt", "resynchronised", "implausible")
 
 
 class ServoAlerts:
@@ -18,10 +23,14 @@ class ServoAlerts:
     Attributes:
         errors: (n,) error bytes of the last answers.
         now: Joint name to what is wrong.
+        kinds: All that can be wrong.
     """
 
-    def __init__(self, joints: Joints) -> None:
+    def __init__(self, joints: Joints, mounts: Sequence[ServoMount]) -> None:
         self._joints = joints
+        families = dict.fromkeys(family_of(mount.model.name) for mount in mounts)
+        found = [what for family in families for what in family.errors.values()]
+        self.kinds = (*dict.fromkeys(found), UNKNOWN)
         self.errors: npt.NDArray[np.uint8] = np.zeros(len(joints), dtype=np.uint8)
         self._mask = np.zeros_like(self.errors)
         self.now: dict[str, tuple[str, ...]] = {}
@@ -54,4 +63,15 @@ def _explain(bus: Bus, id: int, error: int) -> tuple[str, ...]:
             bits = bus.read(id, family.registers["hardware_error"])
         except HardwareError:
             bits = 0
-    return family.explain(bits) or ("unknown",)
+    return family.explain(bits) or (UNKNOWN,)
+
+
+def count_errors(links: Sequence[ServoLink], watchdog_trips: int) -> dict[str, int]:
+    """Return kind of error to how often it has happened; the kinds are always the same."""
+    counts = dict.fromkeys(ERROR_KINDS, 0)
+    for link in links:
+        for kind in ERROR_KINDS:
+            counts[kind] += link.bus.exchange.errors[kind]
+    counts["unplugged"] = sum(link.losses for link in links)
+    counts["watchdog"] = watchdog_trips
+    return counts

@@ -9,7 +9,7 @@ from hal.backend import Clock
 from hal.clock import WallClock
 from hal.command import JointCommand, shifted_goal
 from hal.coupling import Coupling, Couplings
-from hal.errors import HardwareError, UsageError
+from hal.errors import HardwareError
 from hal.exchange import TURNAROUND
 from hal.imu.opencr import OpenCr
 from hal.imu.source import ImuSource
@@ -17,13 +17,13 @@ from hal.joints import Array, Joints, Mask
 from hal.observation import ImuState, JointState, Observation
 from hal.open_port import open_port
 from hal.port import Port
-from hal.servo_alerts import ServoAlerts
+from hal.servo_alerts import ServoAlerts, count_errors
 from hal.servo_line import ServoLine
 from hal.servo_link import BusPort, ImuLink, ServoLink
 from hal.servo_model import ServoMount
-from hal.servo_setup import names_of, one_clock, read_health, set_up
+from hal.servo_setup import lines_of, names_of, open_links, read_health, set_up
 from hal.units import Units
-from hal.wiring import build_line, check_mounts, row_groups
+from hal.wiring import check_mounts
 
 __all__ = ["BusPort", "ServoBackend"]
 
@@ -79,7 +79,7 @@ class ServoBackend:
         self.clock: Clock = WallClock()
         self.links: list[ServoLink] = []
         self._imu_link: ImuLink | None = None
-        self._alerts = ServoAlerts(joints)
+        self._alerts = ServoAlerts(joints, self.mounts)
         self.clamps: Counter[str] = Counter({"goal": 0, "gain": 0})
         self.watchdog_trips = 0
         n = len(joints)
@@ -99,6 +99,11 @@ class ServoBackend:
         return [link.line for link in self.links]
 
     @property
+    def alert_kinds(self) -> tuple[str, ...]:
+        """All that a servo of this robot can complain of."""
+        return self._alerts.kinds
+
+    @property
     def alerts(self) -> dict[str, tuple[str, ...]]:
         """Joint name to the hardware errors that its servo signals."""
         return self._alerts.now
@@ -116,22 +121,10 @@ class ServoBackend:
             UsageError: Some ports live on the wall's time and some in a virtual world.
         """
         self.disconnect()
-        try:
-            for name, rows in row_groups(self.mounts).items():
-                build = build_line(name, rows, self.mounts, self.units, self.board)
-                where = self._ports[name]
-                self.links.append(ServoLink(where, self._opener, build, self._watchdog))
-            if self.imu is not None:
-                self._imu_link = ImuLink(self.imu, self._opener)
-        except BaseException:
-            self.disconnect()
-            raise
-        clocks = [link.clock for link in (*self.links, self._imu_link) if link is not None]
-        try:
-            self.clock = one_clock(clocks)
-        except UsageError:
-            self.disconnect()
-            raise
+        build = lines_of(self.mounts, self.units, self.board)
+        self.links, self._imu_link, self.clock = open_links(
+            build, self._ports, self.imu, self._watchdog, self._opener
+        )
         self._alerts.watch(self.lines)
 
     def configure(self) -> None:
@@ -199,6 +192,10 @@ class ServoBackend:
         real[0] = self._couplings.joints(angle) if self._couplings else angle
         real[3:] = self._realised
         return JointCommand(real)
+
+    def bus_errors(self) -> Mapping[str, int]:
+        """Return kind of error to how often it has happened, over all buses."""
+        return count_errors(self.links, self.watchdog_trips)
 
     def set_torque(self, on: bool) -> Mask:
         """Switch all torque, on at the present pose only; (n,) bool read back.

@@ -1,6 +1,6 @@
 """What happens once, between opening the ports of a robot and the first tick of its loop."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -8,12 +8,21 @@ from hal.backend import Clock
 from hal.bus import Bus
 from hal.clock import WallClock
 from hal.errors import UsageError
+from hal.families import family_of
 from hal.imu.opencr import POWER, POWER_UP_TIME, OpenCr
+from hal.imu.source import ImuSource
 from hal.joints import Array, Joints, Mask
+from hal.plausibility import Plausibility
+from hal.port import Port
+from hal.replug import Opener
 from hal.servo_line import ServoLine
+from hal.servo_link import BusPort, ImuLink, ServoLink
 from hal.servo_model import ServoMount
 from hal.servo_settings import assert_settings
-from hal.wiring import check_servos
+from hal.units import Units
+from hal.wiring import check_servos, row_groups
+
+BuildLine = Callable[[Port], ServoLine]
 
 
 def one_clock(clocks: Sequence[Clock]) -> Clock:
@@ -28,6 +37,52 @@ def one_clock(clocks: Sequence[Clock]) -> Clock:
         if clock is not first and not (wall and isinstance(clock, WallClock)):
             raise UsageError("the buses of one robot have to live in one world, on one clock")
     return first
+
+
+def lines_of(
+    mounts: Sequence[ServoMount], units: Units, board: OpenCr | None
+) -> dict[str, BuildLine]:
+    """Return bus name to what makes its line from its port."""
+
+    def build(name: str, rows: list[int]) -> BuildLine:
+        here = [mounts[row] for row in rows]
+        family = family_of(here[0].model.name)
+        check = None
+        if family.dialect.weak:
+            check = Plausibility(units.last[rows], units.speed[rows], units.speed_unit[rows])
+        ours = board if board is not None and board.bus == name else None
+        return lambda port: ServoLine(Bus(port, family), here, rows, ours, check)
+
+    return {name: build(name, rows) for name, rows in row_groups(mounts).items()}
+
+
+def open_links(
+    lines: Mapping[str, BuildLine],
+    ports: Mapping[str, BusPort],
+    imu: ImuSource | None,
+    watchdog: float,
+    opener: Opener,
+) -> tuple[list[ServoLink], ImuLink | None, Clock]:
+    """Return the open buses, the IMU's port if it has one, and the clock they live on.
+
+    Raises:
+        PortError: One cannot be opened; the others are closed again.
+        UsageError: They do not live on one clock.
+    """
+    links: list[ServoLink] = []
+    beside: ImuLink | None = None
+    try:
+        for name, build in lines.items():
+            links.append(ServoLink(ports[name], opener, build, watchdog))
+        if imu is not None:
+            beside = ImuLink(imu, opener)
+        clocks = [link.clock for link in (*links, beside) if link is not None]
+        return links, beside, one_clock(clocks)
+    except BaseException:
+        for link in (*links, beside):
+            if link is not None:
+                link.close()
+        raise
 
 
 def set_up(

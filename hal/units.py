@@ -28,6 +28,7 @@ class Units:
         offset: (3, n) counts at which each of them is 0.
         last: (n,) largest count of the encoder.
         speed: (n,) counts a second of the servo without load.
+        speed_unit: (n,) counts a second of one unit of its velocity.
         stiffness: (n,) N m/rad at the joint for one unit of the P register.
         damping: (n,) N m s/rad at the joint that the motor has by itself.
     """
@@ -42,6 +43,7 @@ class Units:
         motors = [mount.model.motor(supply) for mount in mounts]
         self.speed: Array = np.array([m.no_load_speed for m in motors]) * per_turn / (2.0 * pi)
         velocity = np.array([_velocity_per_count(mount) for mount in mounts])
+        self.speed_unit: Array = velocity * per_turn / (2.0 * pi)
         torque = np.array([_torque_per_count(mount, mounts) for mount in mounts])
         self.scale: Array = np.stack(
             [1.0 / self.counts_per_rad, sign * velocity / ratio, sign * ratio * torque]

@@ -1,6 +1,6 @@
 """Is the robot wired as its file says? One message names everything that is not."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import combinations
 
 import numpy as np
@@ -17,9 +17,6 @@ from hal.errors import (
 from hal.families import DYNAMIXEL_X, Family, family_of
 from hal.imu.opencr import OpenCr
 from hal.joints import Joints
-from hal.plausibility import Plausibility
-from hal.port import Port
-from hal.servo_line import ServoLine
 from hal.servo_model import ServoMount
 from hal.servo_settings import Setting, differences
 from hal.units import Units
@@ -140,26 +137,6 @@ def _short(error: HardwareError) -> str:
 def _sentence(url: str, problems: list[str]) -> str:
     count = f"{len(problems)} thing{'s' if len(problems) > 1 else ''}"
     return f"{url}: {count} not as wired: {'; '.join(problems)}; run `windup scan {url}`"
-
-
-def build_line(
-    name: str,
-    rows: Sequence[int],
-    mounts: Sequence[ServoMount],
-    units: Units,
-    board: OpenCr | None,
-) -> Callable[[Port], ServoLine]:
-    """Return what makes the line of the bus `name`, with the joints `rows`, from its port."""
-    here = [mounts[row] for row in rows]
-    family = family_of(here[0].model.name)
-    velocity = np.array([family.table(mount.model.name)["present_velocity"].unit for mount in here])
-    per_turn = np.array([mount.model.counts_per_rev for mount in here])
-    check = None
-    if family.dialect.weak:
-        unit = velocity * per_turn / (2.0 * np.pi)
-        check = Plausibility(units.last[rows], units.speed[rows], unit)
-    ours = board if board is not None and board.bus == name else None
-    return lambda port: ServoLine(Bus(port, family), here, rows, ours, check)
 
 
 def row_groups(mounts: Sequence[ServoMount]) -> dict[str, list[int]]:

@@ -3,13 +3,18 @@
 import logging
 import signal
 import sys
+from contextlib import suppress
+from pathlib import Path
 from typing import Annotated
 
 import mujoco
 import tyro
 
-from hal.errors import WindupError
+from hal.errors import UsageError, WindupError
 from tools.bench import Bench
+from tools.estimate import Estimate
+from tools.health import Health
+from tools.options import Common
 from tools.output import check_writable, console, error_record, write_json
 from tools.play import Play
 from tools.robots_list import Robots
@@ -24,7 +29,9 @@ Command = (
     | Annotated[Stand, tyro.conf.subcommand("stand")]
     | Annotated[Stop, tyro.conf.subcommand("stop")]
     | Annotated[Scan, tyro.conf.subcommand("scan")]
+    | Annotated[Health, tyro.conf.subcommand("health")]
     | Annotated[Robots, tyro.conf.subcommand("robots")]
+    | Annotated[Estimate, tyro.conf.subcommand("estimate")]
     | Annotated[Bench, tyro.conf.subcommand("bench")]
 )
 
@@ -51,6 +58,8 @@ def run(arguments: list[str] | None = None) -> int:
             args=arguments,
             config=(tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes),
         )
+        if isinstance(command, Common):
+            command.check()
         check_writable(getattr(command, "json", None), getattr(command, "plot", None))
         return int(command.run())
     except WindupError as error:
@@ -60,12 +69,24 @@ def run(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         console.print("windup: interrupted")
         return 130
+    except SystemExit as parsed:
+        status = parsed.code if isinstance(parsed.code, int) else 2
+        if status != 0:
+            _write_unparsed(sys.argv[1:] if arguments is None else arguments)
+        return status
+
+
+def _write_unparsed(arguments: list[str]) -> None:
+    """Tell programs that their command line could not be understood."""
+    if "--json" in arguments[:-1]:
+        target = Path(arguments[arguments.index("--json") + 1])
+        message = f"the command line cannot be understood: {' '.join(arguments)}"
+        with suppress(OSError):
+            write_json(target, arguments[0], error_record(UsageError(message)))
 
 
 def _write_error(command: object, error: WindupError) -> None:
     """Tell programs too, where they asked for JSON."""
-    try:
+    with suppress(OSError):  # the error may be about this very file
         target = getattr(command, "json", None)
         write_json(target, type(command).__name__.lower(), error_record(error))
-    except OSError:
-        return  # the error was about this very file

@@ -80,7 +80,7 @@ class WalkReport:
             "steps_requested": self.requested,
             "steps": walker.steps,
             "fell": self.fell,
-            "fell_at_step": walker.steps if self.fell else None,
+            "fell_at_step": walker.steps + 1 if self.fell else None,
             "reason": loop.reason,
             "distance_m": float(end[0]),
             "lateral_m": float(end[1]),
@@ -92,6 +92,7 @@ class WalkReport:
             "rollout_time_s": watch.seconds,
             "tick_ms": loop.tick_ms(),
             "missed": loop.missed if robot.paced else None,
+            "late_plans": walker.late if robot.paced else None,
             "clamps": {name: count for name, count in robot.backend.clamps.items() if count},
             "regulation": self.regulation(),
         }
@@ -103,10 +104,9 @@ class WalkReport:
         rows = []
         for column, variable in enumerate(self.walker.regulation):
             row: dict[str, Any] = {"name": variable.name, "unit": variable.unit}
-            if records:
-                row["target"] = float(records[-1].target[column])
-                row["mean"] = float(values[:, column].mean())
-                row["sd"] = float(values[:, column].std())
+            row["target"] = float(records[-1].target[column]) if records else None
+            row["mean"] = float(values[:, column].mean()) if records else None
+            row["sd"] = float(values[:, column].std()) if records else None
             rows.append(row)
         return rows
 

@@ -38,8 +38,6 @@ class Walk(Common):
     """Keep the torso upright by its own servo, where the gait has one."""
     open_loop: bool = False
     """Play the bare pose graph, without balance."""
-    noise: float = 0.0
-    """Standard deviation of noise on the start pose, degrees."""
     delay: float | None = None
     """Delay of the servos, s."""
 
@@ -74,7 +72,7 @@ class Walk(Common):
         ) as robot:
             trace = Trace(robot.description.contacts)
             robot.watch = trace.add if self.plot and show else None
-            with _progress(show) as progress:
+            with _progress(show and not self.realtime) as progress:
                 report = self._walk(robot, progress)
         if show:
             console.print(_line(report))
@@ -120,6 +118,7 @@ class Walk(Common):
 
 
 def _progress(show: bool) -> Progress:
+    """Return a progress bar; it draws from a thread, so a loop on the wall's time has none."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
