@@ -73,15 +73,17 @@ class Backend(Protocol):
 
 @runtime_checkable
 class BusHealth(Protocol):
-    """What a backend on a bus can say about the bus and its servos; a twin has neither.
+    """What a backend on a bus can say about the bus and its servos; a twin has neither."""
 
-    Attributes:
-        alert_kinds: All that a servo can complain of.
-        alerts: Joint name to what its servo complains of.
-    """
+    @property
+    def alert_kinds(self) -> tuple[str, ...]:
+        """All that a servo can complain of."""
+        ...
 
-    alert_kinds: tuple[str, ...]
-    alerts: dict[str, tuple[str, ...]]
+    @property
+    def alerts(self) -> dict[str, tuple[str, ...]]:
+        """Joint name to what its servo complains of."""
+        ...
 
     def bus_errors(self) -> Mapping[str, int]:
         """Return kind of error to how often it has happened; the kinds are always the same."""
