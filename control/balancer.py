@@ -48,7 +48,7 @@ class Balancer:
         course: Heading hold, or None.
         torso_servo: The torso servo, or None.
         records: Finished steps.
-        late: Steps whose answer never came.
+        late: Steps whose answer came too late to act in time, or never.
     """
 
     gait: Gait
@@ -89,6 +89,7 @@ class Balancer:
         self._tracker = PoseTracker(self.gait, self.contacts, scale, None, self.torso_servo)
         self._start: StepStart | None = None
         self._asked = False
+        self._kept: dict[int, Array] = {}
         self._turned = 0.0
         self.speed.reset()
         self.records.clear()
@@ -128,12 +129,23 @@ class Balancer:
             self._tracker.rescale(scale[None])
             return
         self.late += self._asked
-        self._asked = True
         flight = RolloutStart(observation, np.array(self._sent), dt)
-        before = self._tracker.scale[0]
-        self.planner.ask(
-            StepRequest(flight, self._tracker.now, start.stance, scale, before, self._target)
-        )
+        before = self._before(start.stance)
+        self._tracker.rescale(before[None])
+        request = StepRequest(flight, self._tracker.now, start.stance, scale, before, self._target)
+        self._asked, self._late_from = True, request.due(self.planner.latency) + dt
+        self.planner.ask(request)
+
+    def _before(self, stance: int) -> Array:
+        """Return the scalings (p,) until the answer comes: this step's, with the old K.
+
+        The old K is the last one of the same side: what a lean to the left needs, a lean to the
+        right does not.
+        """
+        scale = self._scale.copy()
+        if stance in self._kept:
+            scale[self._columns] += self._kept[stance]
+        return scale
 
     def _take_answer(self, time: float) -> None:
         """Put the planner's scalings into force, if they have come."""
@@ -142,8 +154,11 @@ class Balancer:
         if answer is None:
             return
         self._asked = False
+        self.late += time >= self._late_from
         scale = self._scale.copy()
         scale[self._columns] += answer
+        assert self._start is not None
+        self._kept[self._start.stance] = answer
         self._tracker.rescale(scale[None])
 
     def _end_step(self, time: float, end: Outcomes, start: StepStart) -> None:

@@ -60,6 +60,16 @@ class DivergedError(WindupError):
     """The twin's physics left the numbers; the simulation cannot go on."""
 
 
+class PlannerError(WindupError):
+    """The process that plans steps could not start, failed, or has died."""
+
+
+class TelemetryError(WindupError):
+    """A telemetry ring that cannot be made, is not there, or is of another version."""
+
+    exit_status = 2
+
+
 class HardwareError(WindupError):
     """A port, a bus or a servo failed."""
 

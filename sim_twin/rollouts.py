@@ -30,6 +30,9 @@ class RolloutPredictor:
         delay: From a state being sensed to its command acting, s; the robot's own by default.
         supply: Voltage of the servos, V; the robot's own by default.
         threads: Threads that share the rollouts.
+
+    Attributes:
+        delay: From a state being sensed to its command acting, s.
     """
 
     def __init__(
@@ -43,6 +46,7 @@ class RolloutPredictor:
         self.robot = robot
         if delay is None:
             delay = robot.drive.command_delay + robot.drive.sensor_delay
+        self.delay = delay
         self.model = build_model(robot, delay=delay, supply=supply, bare=True)
         self.threads = threads
         self.stopwatch = Stopwatch()

@@ -30,6 +30,11 @@ class Recorder:
     planner: StepPlanner
     requests: list[StepRequest] = field(default_factory=list)
 
+    @property
+    def latency(self) -> float:
+        """The planner's latency, s."""
+        return self.planner.latency
+
     def reset(self) -> None:
         """Forget all steps."""
         self.planner.reset()

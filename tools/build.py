@@ -9,16 +9,21 @@ import numpy as np
 from control.balancer import Balancer
 from control.body import Body
 from control.course import Course
+from control.estimator import BaseEstimator
+from control.foot_load import FootLoad
 from control.gait import Gait, load_gait
 from control.gait_file import Balance, Sampling
 from control.planner import Planner, StepPlanner
 from control.regulation import RegulationVariable, regulation_variables
+from control.soles import Soles
 from control.speed import SpeedControl
 from control.step_model import StepModel
+from control.tilt_filter import GRAVITY
 from control.torso_servo import TorsoServo
 from hal.controller import Predictor
-from hal.errors import UnknownNameError, UsageError
+from hal.errors import StateMissingError, UnknownNameError, UsageError
 from robots import RobotDescription
+from sim_twin.imu_errors import OPENCR
 
 
 @dataclass(frozen=True)
@@ -52,10 +57,42 @@ def body_of(robot: RobotDescription) -> Body:
     return Body(robot.spec().compile(), robot.base, robot.torso, soles)
 
 
+def build_estimator(robot: RobotDescription, *, switches: bool = True) -> BaseEstimator:
+    """Return what estimates the base of `robot` from its sensors.
+
+    Args:
+        robot: The robot.
+        switches: Its contact sensors exist; without them the soles' heights tell who stands.
+
+    Raises:
+        StateMissingError: The robot has no IMU or no feet.
+    """
+    if robot.imu is None or not robot.feet:
+        raise StateMissingError(
+            f"the base of {robot.name} cannot be estimated; "
+            "give it an [imu] and a [[foot]] in robot.toml"
+        )
+    model = robot.spec().compile()
+    soles = Soles(model, [foot.body for foot in robot.feet], robot.contacts)
+    weight = float(model.body_subtreemass[model.body(robot.base).id]) * GRAVITY
+    load = FootLoad(soles, robot.contacts, weight, sensed=switches)
+    return BaseEstimator(load, model.site(robot.imu.site).pos.copy(), lag=OPENCR.lag)
+
+
 def build_walk(
-    robot: RobotDescription, options: WalkOptions, predictor: Predictor | None
+    robot: RobotDescription,
+    options: WalkOptions,
+    predictor: Predictor | None,
+    *,
+    latency: float = 0.0,
 ) -> Balancer:
     """Return the controller that walks `robot` as `options` say.
+
+    Args:
+        robot: The robot.
+        options: How to walk.
+        predictor: Plays rollouts in the controller's own time.
+        latency: From the start of a step to its scalings acting, where the predictor plays, s.
 
     Raises:
         UsageError: The options do not fit the gait.
@@ -88,6 +125,7 @@ def build_walk(
             predictor=predictor,
             torso_servo=torso_servo,
             horizon=balance.horizon,
+            latency=latency,
         )
     heading = None if options.open_loop else gait.file.heading
     return Balancer(

@@ -13,6 +13,8 @@ import tyro
 from hal.errors import UsageError, WindupError
 from tools.bench import Bench
 from tools.emulate import Emulate
+from tools.estimate import Estimate
+from tools.health import Health
 from tools.options import Common
 from tools.output import check_writable, console, error_record, write_json
 from tools.play import Play
@@ -29,7 +31,9 @@ Command = (
     | Annotated[Stop, tyro.conf.subcommand("stop")]
     | Annotated[Scan, tyro.conf.subcommand("scan")]
     | Annotated[Emulate, tyro.conf.subcommand("emulate")]
+    | Annotated[Health, tyro.conf.subcommand("health")]
     | Annotated[Robots, tyro.conf.subcommand("robots")]
+    | Annotated[Estimate, tyro.conf.subcommand("estimate")]
     | Annotated[Bench, tyro.conf.subcommand("bench")]
 )
 

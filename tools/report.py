@@ -92,6 +92,7 @@ class WalkReport:
             "rollout_time_s": watch.seconds,
             "tick_ms": loop.tick_ms(),
             "missed": loop.missed if robot.paced else None,
+            "late_plans": walker.late if robot.paced else None,
             "clamps": {name: count for name, count in robot.backend.clamps.items() if count},
             "regulation": self.regulation(),
         }

@@ -5,65 +5,50 @@ with Robot.open("op3") as robot:              # its twin
 """
 
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field, replace
 from types import TracebackType
 from typing import Self
 
-import numpy as np
-
 from control.balancer import Balancer
-from control.loop import LoopReport, Until, run_loop
+from control.loop import LoopReport, Until
 from control.play import GraphPlayer, PoseHolder
-from hal.controller import Controller, Stopwatch
-from hal.errors import ControllerError, HardwareError, UnknownNameError, UsageError, WindupError
-from hal.guard import GuardedBackend
-from hal.observation import BaseState, Observation
-from robots import RobotDescription, load_robot
+from hal.controller import Stopwatch
+from hal.errors import (
+    UnknownNameError,
+    UsageError,
+)
+from hal.observation import Observation
+from robots import load_robot
 from sim_twin.push import Push
 from sim_twin.rollouts import RolloutPredictor
 from sim_twin.twin import Twin
 from tools.build import WalkOptions, build_walk, find_gait
+from tools.plan_process import plan_aside
 from tools.report import WalkReport
-from tools.stack import Stack, State, twin_stack, wire_stack
+from tools.session import Session
+from tools.stack import State, twin_stack, wire_stack
 
 START_SECONDS = 1.0
 REST_SECONDS = 1.5
 PLAY_SECONDS = 5.0
-# Called once a tick with the observation and the controller.
-Watch = Callable[[Observation], None]
 # Called at the end of a step with its number and its speed, m/s.
 OnStep = Callable[[int, float], None]
 
 
 @dataclass
-class Robot:
+class Robot(Session):
     """A robot that can be run; open one with `Robot.open`.
 
     Attributes:
-        description: What robot it is.
-        stack: Its backend and what belongs to it.
         predictor: Plays rollouts of it.
-        period: Period of the control loop, s.
         noise: Noise of the start pose, degrees.
         seed: Seed of everything random.
-        paced: Its time is real time.
-        loop: Report of the last run.
-        watch: Called with every observation, for whoever draws or logs.
-        base: Base state last seen: the truth on a twin, an estimate on a robot.
     """
 
-    description: RobotDescription
-    stack: Stack
-    predictor: RolloutPredictor
-    period: float
+    predictor: RolloutPredictor = field(kw_only=True)
     noise: float = 0.0
     seed: int = 0
-    paced: bool = False
-    loop: LoopReport = field(default_factory=LoopReport)
-    watch: Watch | None = None
-    base: BaseState | None = None
-    _armed: bool = False
 
     @classmethod
     def open(
@@ -99,7 +84,9 @@ class Robot:
         wired = description.wire_rate_hz if port is not None else None
         steps = description.physics_steps(rate or wired)
         if port is None:
-            stack = twin_stack(description, state=state or "true", paced=realtime, delay=delay)
+            stack = twin_stack(
+                description, state=state or "true", paced=realtime, delay=delay, seed=seed
+            )
         else:
             stack = wire_stack(
                 description, port, state=state or "estimated", arm=arm, noise=noise, seed=seed
@@ -124,17 +111,12 @@ class Robot:
         trace: TracebackType | None,
     ) -> None:
         try:
-            if self._armed and error is None and not self.fallen:
+            if self.armed and error is None and not self.fallen:
                 self.rest()
-            elif self._armed:
+            elif self.armed:
                 self.stop()
         finally:
-            self.stack.close()
-
-    @property
-    def backend(self) -> GuardedBackend:
-        """The guarded backend."""
-        return self.stack.backend
+            self.close()
 
     @property
     def twin(self) -> Twin:
@@ -146,18 +128,6 @@ class Robot:
         if self.stack.twin is None:
             raise UsageError("only a twin can do that; leave --port away")
         return self.stack.twin
-
-    @property
-    def fallen(self) -> bool:
-        """True when the robot has fallen."""
-        if self.stack.twin is not None:
-            return self.stack.twin.fallen
-        if self.base is None:
-            return False
-        fall = self.description.fall
-        _, x, y, _ = self.base.orientation
-        tilted = 1.0 - 2.0 * (x * x + y * y) < np.cos(fall.tilt)
-        return bool(self.base.position[2] < fall.height or tilted)
 
     def push(
         self, impulse: float, direction: float = 0.0, *, duration: float = 0.1, delay: float = 0.0
@@ -173,38 +143,12 @@ class Robot:
         start = self.twin.time + delay
         self.twin.push(Push.impulse(self.description.torso, impulse, direction, start, duration))
 
-    def arm(self) -> None:
-        """Switch the torque on at the present pose, where there are servos to switch.
-
-        Raises:
-            UsageError: The port is real and `arm` was not given; nothing has moved.
-            HardwareError: A servo did not take it; all torque is off again.
-        """
-        if self._armed or not self.stack.wired:
-            return
-        if not self.stack.may_arm:
-            raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
-        self._armed = True
-        on = self.backend.set_torque(True)
-        if not on.all():
-            names = ", ".join(np.array(self.description.joints.names)[~on])
-            raise HardwareError(f"torque does not come on at {names}; run `windup scan`")
-
     def rest(self) -> None:
         """Crouch, if the robot has a pose for it, and switch the torque off."""
         crouch = self.description.crouch
         if crouch is not None:
             self.run(PoseHolder(self.description.joints, crouch, REST_SECONDS), REST_SECONDS + 0.3)
         self.stop(limp=True)
-
-    def stop(self, *, limp: bool = False) -> None:
-        """Carry out the stop policy at once; with `limp`, just switch the torque off.
-
-        Raises:
-            HardwareError: Torque was told to go off and a joint read back on.
-        """
-        on = self.backend.stop("limp" if limp else None)
-        self._armed = bool(on.any())
 
     def stand(self, seconds: float = 2.0) -> LoopReport:
         """Hold the stance for `seconds` s of the robot's time."""
@@ -246,72 +190,18 @@ class Robot:
         if speed is not None:
             options = replace(options, speed=speed)
         self.predictor.stopwatch = Stopwatch()
-        walker = build_walk(self.description, options, self.predictor)
-        self.start_at(walker.gait.file.start)
-        report = WalkReport(self, walker, options, steps)
-        with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far it got
-            self.run(walker, until=_walk_end(walker, steps, on_step), rollouts=True)
+        stopwatch = None if self.paced else self.predictor.stopwatch
+        with ExitStack() as stack:
+            walker = build_walk(self.description, options, self.predictor)
+            if self.paced and walker.planner is not None:
+                aside = plan_aside(self.description, options, self.predictor, self.period)
+                walker.planner = stack.enter_context(aside).wait_ready()
+            self.start_at(walker.gait.file.start)
+            report = WalkReport(self, walker, options, steps)
+            with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far
+                self.run(walker, until=_walk_end(walker, steps, on_step), rollouts=stopwatch)
         report.loop = self.loop
         return report
-
-    def run(
-        self,
-        controller: Controller,
-        seconds: float | None = None,
-        *,
-        until: Until | None = None,
-        rollouts: bool = False,
-    ) -> LoopReport:
-        """Run a controller until the time is over, `until` gives a reason, or the robot falls.
-
-        Raises:
-            WindupError: From the guard, the backend or the controller; the stop policy has run.
-        """
-        self.arm()
-        begin = self.backend.clock.now()
-
-        def end(observation: Observation) -> str | None:
-            self.base = observation.base
-            if self.watch is not None:
-                self.watch(observation)
-            if self.fallen:
-                return "fell"
-            if until is not None and (reason := until(observation)) is not None:
-                return reason
-            over = seconds is not None and observation.time >= begin + seconds - 1e-9
-            return "done" if over else None
-
-        self.loop = LoopReport()
-        try:
-            run_loop(
-                self.backend,
-                controller,
-                period=self.period,
-                until=end,
-                estimator=self.stack.estimator,
-                rollouts=self.predictor.stopwatch if rollouts else None,
-                report=self.loop,
-            )
-        except WindupError as error:
-            self.loop.reason = str(error)
-            self._stop_after_error()
-            raise
-        except KeyboardInterrupt:
-            self.loop.reason = "interrupted"
-            self._stop_after_error()
-            raise
-        except Exception as error:
-            self.loop.reason = f"the controller failed: {type(error).__name__}: {error}"
-            self._stop_after_error()
-            raise ControllerError(self.loop.reason) from error
-        return self.loop
-
-    def _stop_after_error(self) -> None:
-        """Carry out the stop policy; a twin that has diverged can no longer do it."""
-        try:
-            self.stop()
-        except WindupError as error:
-            self.loop.reason += f"; and the stop failed: {error}"
 
     def start_at(self, name: str | None) -> None:
         """Put a fresh twin into a start pose, with noise; let anything else move there."""

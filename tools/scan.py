@@ -11,8 +11,6 @@ from hal.bus import Bus, Found
 from hal.errors import HardwareError
 from hal.open_port import open_port
 from hal.registers import Register
-from hal.servo_line import REGISTERS
-from hal.servos.x_series_registers import hardware_errors
 from robots import load_robot
 from tools.output import console, write_json
 
@@ -78,9 +76,9 @@ def _describe(bus: Bus, servo: Found, expected: dict[int, str]) -> dict[str, Any
     before = bus.port.baud
     bus.port.baud = servo.baud
     try:
-        volts = _read(bus, servo.id, REGISTERS["present_voltage"])
-        heat = _read(bus, servo.id, REGISTERS["present_temperature"])
-        error = _read(bus, servo.id, REGISTERS["hardware_error"])
+        volts = _read(bus, servo.id, bus.family.registers["present_voltage"])
+        heat = _read(bus, servo.id, bus.family.registers["present_temperature"])
+        error = _read(bus, servo.id, bus.family.registers["hardware_error"])
     finally:
         bus.port.baud = before
     return {
@@ -90,7 +88,7 @@ def _describe(bus: Bus, servo: Found, expected: dict[int, str]) -> dict[str, Any
         "baud": servo.baud,
         "voltage_v": None if volts is None else round(0.1 * volts, 1),
         "temperature_c": heat,
-        "error": "" if not error else ", ".join(hardware_errors(error)),
+        "error": "" if not error else ", ".join(bus.family.explain(error)),
         "joint": expected.get(servo.id, ""),
     }
 

@@ -15,8 +15,10 @@ from hal.observation import Observation
 from hal.servo_backend import BusPort, ServoBackend
 from robots import RobotDescription
 from sim_twin.backend import TwinBackend
+from sim_twin.imu_errors import OPENCR, ImuErrors
 from sim_twin.sensors import Sensors
 from sim_twin.twin import Twin
+from tools.build import build_estimator
 
 State = Literal["true", "estimated"]
 TWIN = "twin://"
@@ -35,6 +37,7 @@ class Stack:
         wired: There is a port with servos between us and the joints.
         may_arm: Torque may be switched on.
         world: Name of the emulated world to forget at the end, or "".
+        port: URL of the port, as the user gave it.
     """
 
     backend: GuardedBackend
@@ -44,6 +47,7 @@ class Stack:
     wired: bool = False
     may_arm: bool = True
     world: str = ""
+    port: str | None = None
 
     def close(self) -> None:
         """Disconnect."""
@@ -68,16 +72,21 @@ class Truth:
         return replace(observation, base=true.base, contacts=true.contacts)
 
 
-def twin_stack(robot: RobotDescription, *, state: State, paced: bool, delay: float | None) -> Stack:
-    """Return a stack on a twin of `robot`.
+def twin_stack(
+    robot: RobotDescription, *, state: State, paced: bool, delay: float | None, seed: int
+) -> Stack:
+    """Return a stack on a twin of `robot`; where its state is estimated, its IMU is a real one.
 
     Raises:
         UsageError: The delay is negative, or no whole number of physics steps.
     """
     _check_delay(delay, robot)
     twin = Twin(robot, delay=delay)
-    backend = _guarded(TwinBackend(twin, paced=paced, true_base=state == "true"), robot)
-    return Stack(backend, twin, None, twin.delay + robot.drive.sensor_delay)
+    true = state == "true"
+    errors = None if true else ImuErrors(OPENCR, twin.timestep, seed)
+    estimator = None if true else build_estimator(robot)
+    backend = _guarded(TwinBackend(twin, paced=paced, true_base=true, imu_errors=errors), robot)
+    return Stack(backend, twin, estimator, twin.delay + robot.drive.sensor_delay)
 
 
 def wire_stack(
@@ -97,26 +106,32 @@ def wire_stack(
         UsageError: The port does not fit the robot.
         HardwareError: Something on the bus is not as the robot's file says.
     """
-    emulated = port.startswith(TWIN)
+    given, emulated = port, port.startswith(TWIN)
     world = ""
     if emulated:
         port, world = _in_a_world(robot, port)
     backend = _guarded(_servo_backend(robot, port), robot)
     backend.connect()
     twin = _twin_behind(world) if emulated else None
-    estimator: Estimator | None = None
     try:
+        estimator = _estimator(robot, twin, state)
         if twin is not None:
             twin.reset(noise=noise, seed=seed)
-            estimator = Truth(Sensors(twin)) if state == "true" else None
-        elif state == "true":
-            raise UsageError("--state true needs a twin; a robot has `--state estimated`")
         backend.configure()
     except BaseException:
         backend.disconnect()
         raise
     delay = robot.drive.wire_delay
-    return Stack(backend, twin, estimator, delay, True, arm or emulated, world)
+    return Stack(backend, twin, estimator, delay, True, arm or emulated, world, given)
+
+
+def _estimator(robot: RobotDescription, twin: Twin | None, state: State) -> Estimator:
+    """Return what fills in the base state behind a port; no servo bus carries foot switches."""
+    if state == "estimated":
+        return build_estimator(robot, switches=False)
+    if twin is None:
+        raise UsageError("--state true needs a twin; a robot has `--state estimated`")
+    return Truth(Sensors(twin))
 
 
 def limp(robot: RobotDescription, port: str) -> Mask:

@@ -72,7 +72,7 @@ class Walk(Common):
         ) as robot:
             trace = Trace(robot.description.contacts)
             robot.watch = trace.add if self.plot and show else None
-            with _progress(show) as progress:
+            with _progress(show and not self.realtime) as progress:
                 report = self._walk(robot, progress)
         if show:
             console.print(_line(report))
@@ -118,6 +118,7 @@ class Walk(Common):
 
 
 def _progress(show: bool) -> Progress:
+    """Return a progress bar; it draws from a thread, so a loop on the wall's time has none."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -133,7 +134,9 @@ def _update(progress: Progress, bar: Any, robot: Robot) -> Callable[[int, float]
     """Return what moves the progress bar at the end of a step."""
 
     def update(steps: int, speed: float) -> None:
-        lean = np.degrees(np.arccos(np.clip(robot.twin.up[2], -1.0, 1.0)))
+        assert robot.base is not None, "a walk has a base state"
+        _, x, y, _ = robot.base.orientation
+        lean = np.degrees(np.arccos(np.clip(1.0 - 2.0 * (x * x + y * y), -1.0, 1.0)))
         progress.update(
             bar, completed=steps, speed=f"{speed:5.2f} m/s", lean=f"lean {lean:4.1f} deg"
         )

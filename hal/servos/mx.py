@@ -27,9 +27,7 @@ MX_106 = (Row.of(11.1, 8.0, 41, 4.8), Row.of(12.0, 8.4, 45, 5.2), Row.of(14.8, 1
 
 # name, model number, rows, duty per rad and P, default P, armature kg m2, friction N m
 MX = (
-    ServoModel(
-        "AX-12A", 12, AX_12A, AX_GAIN, 32, 0.003, 0.0226, AX_COUNTS_PER_REV, 1.0, 1024
-    ),
+    ServoModel("AX-12A", 12, AX_12A, AX_GAIN, 32, 0.003, 0.0226, AX_COUNTS_PER_REV, 1.0, 1024),
     ServoModel("MX-28", 29, MX_28, GAIN, 32, 0.005, 0.0377, pwm_limit=MAX_DUTY),
     ServoModel("MX-64", 310, MX_64, GAIN, 32, 0.01195, 0.0904, pwm_limit=MAX_DUTY),
     ServoModel("MX-106", 320, MX_106, GAIN, 32, 0.0266, 0.1035, pwm_limit=MAX_DUTY),

@@ -32,6 +32,7 @@ HOP = 0.000025  # s that a pseudo-terminal takes each way, which the wire does n
 SLIP = 0.1  # s behind the wall, from which time stands still instead
 IDLE = 0.002  # s; the longest sleep
 PR_SET_TIMERSLACK = 29
+PRIORITY = 10  # among real-time processes; servos do not wait for other programs
 
 Journal = Callable[[float, int], None]
 
@@ -244,6 +245,8 @@ def _be_punctual() -> None:
     """Ask the kernel for exact sleeps, and Python not to tidy up in the middle of an answer."""
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 1)
+    with contextlib.suppress(OSError, AttributeError):
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(PRIORITY))
     gc.collect()
     gc.freeze()
     gc.disable()

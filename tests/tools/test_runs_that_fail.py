@@ -86,8 +86,8 @@ def test_a_controller_that_crashes_stops_the_robot_too() -> None:
 
 def test_nan_in_mid_walk_is_status_1(windup: Windup, monkeypatch: pytest.MonkeyPatch) -> None:
 
-    def build(*arguments: Any) -> Any:
-        walker = build_walk(*arguments)
+    def build(*arguments: Any, **named: Any) -> Any:
+        walker = build_walk(*arguments, **named)
         step = walker.step
 
         def broken(observation: Observation, dt: float) -> JointCommand:

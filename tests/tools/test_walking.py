@@ -30,6 +30,7 @@ KEYS = {
     "missed",
     "regulation",
     "clamps",  # more than was asked for: each clamp that happened, and how often
+    "late_plans",  # and the steps whose plan came too late, null unless paced
 }
 
 
