@@ -3,7 +3,7 @@
 import logging
 import signal
 import sys
-from typing import Annotated
+from typing import Annotated, Any
 
 import mujoco
 import tyro
@@ -12,10 +12,12 @@ from hal.errors import WindupError
 from tools.bench import Bench
 from tools.output import check_writable, console, error_record, write_json
 from tools.play import Play
+from tools.reproduce import Reproduce
 from tools.robots_list import Robots
 from tools.scan import Scan
 from tools.stand import Stand
 from tools.stop import Stop
+from tools.sweep import Sweep, separate
 from tools.walk import Walk
 
 Command = (
@@ -26,6 +28,8 @@ Command = (
     | Annotated[Scan, tyro.conf.subcommand("scan")]
     | Annotated[Robots, tyro.conf.subcommand("robots")]
     | Annotated[Bench, tyro.conf.subcommand("bench")]
+    | Annotated[Sweep, tyro.conf.subcommand("sweep")]
+    | Annotated[Reproduce, tyro.conf.subcommand("reproduce")]
 )
 
 
@@ -44,13 +48,7 @@ def run(arguments: list[str] | None = None) -> int:
     # A robot has to be let go on SIGTERM as on Ctrl-C.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        command = tyro.cli(
-            Command,
-            prog="windup",
-            description="Controllers for small servo humanoids: on the robot, and on its twin.",
-            args=arguments,
-            config=(tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes),
-        )
+        command = parse(separate(arguments))
         check_writable(getattr(command, "json", None), getattr(command, "plot", None))
         return int(command.run())
     except WindupError as error:
@@ -60,6 +58,17 @@ def run(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         console.print("windup: interrupted")
         return 130
+
+
+def parse(arguments: list[str]) -> Any:
+    """Return the command that the arguments mean; exits with status 2 if they mean none."""
+    return tyro.cli(
+        Command,
+        prog="windup",
+        description="Controllers for small servo humanoids: on the robot, and on its twin.",
+        args=arguments,
+        config=(tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes),
+    )
 
 
 def _write_error(command: object, error: WindupError) -> None:
