@@ -44,9 +44,9 @@ class Reproduce:
         entries = reproduce(study, figures, folder, quick=self.quick, jobs=self.jobs)
         for entry in entries:
             console.print(
-                f"{entry.figure.name:>5}  {entry.agreed} of {len(entry.claims)} agree  "
-                f"{entry.figure.title}",
+                f"{entry.figure.name:>5}  {entry.count:<22}  {entry.figure.title}",
                 markup=False,
+                soft_wrap=True,
             )
         console.print(f"report: {folder / 'report.html'}", markup=False)
         write_json(self.json, "reproduce", record(study, entries, quick=self.quick))

@@ -37,18 +37,29 @@ class Claim:
         theirs: What the paper says, in our words.
         ours: What our data say.
         criterion: What would agree.
-        agrees: Whether they do; computed from the data.
+        agrees: Whether they do, computed from the data; None where these are too few to tell.
+        own: Not the paper's statement, but a mark that we have set ourselves.
     """
 
     theirs: str
     ours: str
     criterion: str
-    agrees: bool
+    agrees: bool | None
+    own: bool = False
 
     @property
-    def verdict(self) -> str:
-        """One sentence: agree or differ, and why."""
-        return f"{'agree' if self.agrees else 'differ'}: {self.ours} ({self.criterion})"
+    def word(self) -> str:
+        """The verdict in a word."""
+        if self.agrees is None:
+            return "open"
+        if self.own:
+            return "reached" if self.agrees else "missed"
+        return "agree" if self.agrees else "differ"
+
+    @property
+    def reason(self) -> str:
+        """Why: what was found, and what would agree."""
+        return f"{self.ours} ({self.criterion})"
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,8 @@ body { font: 15px/1.5 sans-serif; max-width: 1060px; margin: 2em auto; padding: 
 table { border-collapse: collapse; margin: 1em 0 } caption { text-align: left; color: #555 }
 th, td { border: 1px solid #ccc; padding: .25em .6em; text-align: left; vertical-align: top }
 th { background: #f3f3f3 } img { max-width: 100% } section { margin-top: 3em }
-.agree { color: #1a7f37; font-weight: bold } .differ { color: #b35900; font-weight: bold }
+.agree, .reached { color: #1a7f37; font-weight: bold }
+.differ, .missed { color: #b35900; font-weight: bold }
 .theirs { border-left: 4px solid #ccc; padding-left: 1em; color: #444 }
 """
 
@@ -38,9 +39,11 @@ class Entry:
     runs: int
 
     @property
-    def agreed(self) -> int:
-        """How many claims agree."""
-        return sum(claim.agrees for claim in self.claims)
+    def count(self) -> str:
+        """How many of the paper's statements agree, for people."""
+        theirs = [claim.word for claim in self.claims if not claim.own]
+        text = f"{theirs.count('agree')} of {len(theirs)} agree"
+        return text + (f", {theirs.count('open')} open" if "open" in theirs else "")
 
 
 def page(study: Study, entries: list[Entry], *, quick: bool) -> str:
@@ -66,16 +69,11 @@ def _overview(entries: list[Entry]) -> str:
         [
             f"<a href='#f{escape(entry.figure.name)}'>{escape(entry.figure.name)}</a>",
             escape(entry.figure.title),
-            _count(entry),
+            entry.count,
         ]
         for entry in entries
     ]
-    return _table("", ["figure", "what it shows", "statements that agree"], rows)
-
-
-def _count(entry: Entry) -> str:
-    word = "agree" if entry.agreed == len(entry.claims) else "differ"
-    return f"<span class='{word}'>{entry.agreed} of {len(entry.claims)}</span>"
+    return _table("", ["figure", "what it shows", "its statements"], rows)
 
 
 def _section(entry: Entry) -> str:
@@ -83,9 +81,9 @@ def _section(entry: Entry) -> str:
     image = b64encode(entry.png).decode()
     claims = [
         [
-            escape(claim.theirs),
-            escape(f"{claim.ours} ({claim.criterion})"),
-            _word(claim),
+            ("<i>our own mark:</i> " if claim.own else "") + escape(claim.theirs),
+            escape(claim.reason),
+            f"<span class='{claim.word}'>{claim.word}</span>",
         ]
         for claim in entry.claims
     ]
@@ -104,11 +102,6 @@ def _section(entry: Entry) -> str:
             f"<p>From {entry.runs} runs.</p></section>",
         ]
     )
-
-
-def _word(claim: Claim) -> str:
-    word = "agree" if claim.agrees else "differ"
-    return f"<span class='{word}'>{word}</span>"
 
 
 def _missing(study: Study) -> str:

@@ -82,6 +82,7 @@ def record(study: Study, entries: list[Entry], *, quick: bool) -> dict[str, Any]
                         "ours": claim.ours,
                         "criterion": claim.criterion,
                         "agrees": claim.agrees,
+                        "own": claim.own,
                     }
                     for claim in entry.claims
                 ],
