@@ -32,7 +32,8 @@ LASZLO = Study(
     setting="The thesis' human of 19 joints on its base graph (appendix C), balanced as the thesis "
     "does it: stance hip pitch and roll once a step, two samples each. No heading is held, as in "
     "the thesis. Unlike there, every run begins with 0.2 degrees of noise on the start pose, "
-    "and ranges come from several seeds.",
+    "and ranges come from several seeds. Turns are by the gait's own turning perturbation, which "
+    "may differ from the thesis' (Fig. 5.5).",
     figures=(
         *open_loop.FIGURES,
         *responses.FIGURES,
