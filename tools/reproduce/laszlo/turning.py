@@ -128,8 +128,8 @@ def claims_servo(results: Results) -> list[Claim]:
         Claim(
             "with the torso servo circles are tighter",
             f"{tight:.1f} m, without it {other:.1f} m",
-            "smaller",
-            tight < other,
+            "smaller by a tenth or more",
+            tight < 0.9 * other,
         ),
     ]
 
