@@ -12,7 +12,7 @@ class JointState:
     Attributes:
         position: rad.
         velocity: rad/s.
-        torque: N m, from motor current.
+        torque: N m, from motor current; NaN where a servo measures none (a load is no torque).
         voltage: Supply, V.
         temperature: Motor, degrees C.
         age: Seconds since the servo last answered.

@@ -112,7 +112,7 @@ def wire_stack(
     world = ""
     if emulated:
         port, world = _in_a_world(robot, port)
-    backend = _guarded(_servo_backend(robot, port), robot)
+    backend = _guarded(servo_backend(robot, port), robot)
     backend.connect()
     twin = _twin_behind(world) if emulated else None
     try:
@@ -140,7 +140,7 @@ def limp(robot: RobotDescription, port: str) -> Mask:
     """Switch all torque of `robot` off, whatever state it is in; (n,) bool of what is still on."""
     if port.startswith(TWIN):
         port, _ = _in_a_world(robot, port)
-    backend = _servo_backend(robot, port)
+    backend = servo_backend(robot, port)
     backend.connect()
     try:
         return backend.set_torque(False)
@@ -148,7 +148,12 @@ def limp(robot: RobotDescription, port: str) -> Mask:
         backend.disconnect()
 
 
-def _servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
+def servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
+    """Return the servos of `robot` on a port, not yet connected.
+
+    Raises:
+        UsageError: The port does not fit the robot.
+    """
     mounts = [servo for servo in robot.servos if servo is not None]
     if len(mounts) < len(robot.joints):
         raise UsageError(f"{robot.name} has no servos on a wire; leave --port away")
