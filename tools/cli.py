@@ -5,7 +5,7 @@ import signal
 import sys
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import mujoco
 import tyro
@@ -18,10 +18,12 @@ from tools.health import Health
 from tools.options import Common
 from tools.output import check_writable, console, error_record, write_json
 from tools.play import Play
+from tools.reproduce import Reproduce
 from tools.robots_list import Robots
 from tools.scan import Scan
 from tools.stand import Stand
 from tools.stop import Stop
+from tools.sweep import Sweep, separate
 from tools.walk import Walk
 
 Command = (
@@ -35,6 +37,8 @@ Command = (
     | Annotated[Robots, tyro.conf.subcommand("robots")]
     | Annotated[Estimate, tyro.conf.subcommand("estimate")]
     | Annotated[Bench, tyro.conf.subcommand("bench")]
+    | Annotated[Sweep, tyro.conf.subcommand("sweep")]
+    | Annotated[Reproduce, tyro.conf.subcommand("reproduce")]
 )
 
 
@@ -53,13 +57,7 @@ def run(arguments: list[str] | None = None) -> int:
     # A robot has to be let go on SIGTERM as on Ctrl-C.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        command = tyro.cli(
-            Command,
-            prog="windup",
-            description="Controllers for small servo humanoids: on the robot, and on its twin.",
-            args=arguments,
-            config=(tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes),
-        )
+        command = parse(separate(arguments))
         if isinstance(command, Common):
             command.check()
         check_writable(getattr(command, "json", None), getattr(command, "plot", None))
@@ -85,6 +83,17 @@ def _write_unparsed(arguments: list[str]) -> None:
         message = f"the command line cannot be understood: {' '.join(arguments)}"
         with suppress(OSError):
             write_json(target, arguments[0], error_record(UsageError(message)))
+
+
+def parse(arguments: list[str]) -> Any:
+    """Return the command that the arguments mean; exits with status 2 if they mean none."""
+    return tyro.cli(
+        Command,
+        prog="windup",
+        description="Controllers for small servo humanoids: on the robot, and on its twin.",
+        args=arguments,
+        config=(tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes),
+    )
 
 
 def _write_error(command: object, error: WindupError) -> None:

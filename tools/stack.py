@@ -9,6 +9,7 @@ import sim_twin.wire as wire
 from control.loop import Estimator
 from hal.errors import UsageError
 from hal.guard import GuardedBackend, SafetyLimits
+from hal.imu.bno08x_rvc import Bno08xRvc
 from hal.imu.opencr import OpenCr
 from hal.joints import Mask
 from hal.observation import Observation
@@ -22,6 +23,7 @@ from tools.build import build_estimator
 
 State = Literal["true", "estimated"]
 TWIN = "twin://"
+IMU = "imu"  # name of the port of an IMU that is on no servo bus
 _worlds = count()
 
 
@@ -151,37 +153,44 @@ def _servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
     if len(mounts) < len(robot.joints):
         raise UsageError(f"{robot.name} has no servos on a wire; leave --port away")
     bauds = {bus.name: bus.baud for bus in robot.buses}
-    ports = {name: BusPort(url, bauds[name]) for name, url in _urls(robot, port).items()}
-    board = OpenCr(robot.buses[0].name) if robot.imu is not None else None
+    urls = _urls(robot, port)
+    imu = urls.pop(IMU, None)
+    # An OP3's IMU hangs on the servo bus; other robots have theirs on a port of its own.
+    on_the_bus = robot.imu is not None and robot.buses[0].protocol == "dynamixel2"
     return ServoBackend(
         robot.joints,
         mounts,
-        ports,
+        {name: BusPort(url, bauds[name]) for name, url in urls.items()},
         supply=robot.drive.supply,
-        board=board,
+        board=OpenCr(robot.buses[0].name) if on_the_bus else None,
+        imu=Bno08xRvc(imu) if imu is not None else None,
         contacts=len(robot.contacts.names),
     )
 
 
 def _urls(robot: RobotDescription, port: str) -> dict[str, str]:
-    """Return the URL of each bus.
+    """Return the URL of each bus, and of the IMU where it has a port of its own.
 
     Raises:
         UsageError: A bus has none, or a name is no bus of the robot.
     """
     names = [bus.name for bus in robot.buses]
+    apart = robot.imu is not None and robot.buses[0].protocol != "dynamixel2"
     first, equals, _ = port.partition("=")
-    if not (equals and first in names):
-        if port.startswith(TWIN) and len(names) > 1:
-            return {name: f"{port}{'&' if '?' in port else '?'}bus={name}" for name in names}
-        if len(names) > 1:
-            wanted = ",".join(f"{name}=URL" for name in names)
-            raise UsageError(f"{robot.name} has several buses; give --port {wanted}")
-        return {names[0]: port}
-    given = dict(part.partition("=")[::2] for part in port.split(","))
-    if set(given) != set(names):
-        raise UsageError(f"--port names {', '.join(given)}; the buses are {', '.join(names)}")
-    return given
+    if equals and first in names:
+        given = dict(part.partition("=")[::2] for part in port.split(","))
+        if set(given) - {IMU} != set(names):
+            raise UsageError(f"--port names {', '.join(given)}; the buses are {', '.join(names)}")
+        return given
+    if port.startswith(TWIN):
+        also = [*names, IMU] if apart else names
+        if len(also) == 1:
+            return {names[0]: port}
+        return {name: f"{port}{'&' if '?' in port else '?'}bus={name}" for name in also}
+    if len(names) > 1:
+        wanted = ",".join(f"{name}=URL" for name in names)
+        raise UsageError(f"{robot.name} has several buses; give --port {wanted}")
+    return {names[0]: port}
 
 
 def _in_a_world(robot: RobotDescription, port: str) -> tuple[str, str]:

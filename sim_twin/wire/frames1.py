@@ -14,6 +14,7 @@ SMALLEST: Final = 2  # instruction and checksum
 STATUS_BYTES: Final = 6  # of a status around its data
 ID_AT: Final = 2
 LENGTH_AT: Final = 3
+MOST: Final = 253  # parameters; the length byte counts two more
 
 
 def checksum(data: bytes | bytearray) -> int:
@@ -28,9 +29,14 @@ def checksum(data: bytes | bytearray) -> int:
 def encode(identifier: int, instruction: int, parameters: bytes = b"") -> bytes:
     """Return an instruction frame; a status, where `instruction` is an error byte.
 
+    More parameters than the length byte can say are left out: a servo that is asked for 254 bytes
+    answers without data.
+
     >>> encode(1, 1).hex(" ")
     'ff ff 01 02 01 fb'
     """
+    if len(parameters) > MOST:
+        parameters = b""
     body = bytes((identifier, len(parameters) + 2, instruction)) + parameters
     return HEADER + body + bytes((~sum(body) & 0xFF,))
 
