@@ -123,7 +123,10 @@ def _robot(address: Address, robot: RobotDescription) -> World:
         shop.imu(source)
     if twin is None:
         return shop.world(Bench(shafts, robot.timestep), supply)
-    return shop.world(TwinPhysics(twin, held=address.hold == "yes"), supply, (twin,))
+    physics = TwinPhysics(twin, held=address.hold == "yes")
+    if isinstance(source, TwinImu):
+        source.held = lambda: physics.held
+    return shop.world(physics, supply, (twin,))
 
 
 def _loose_shaft(name: str, supply: float) -> InertiaShaft:

@@ -23,6 +23,7 @@ PING, READ, WRITE, REG_WRITE, ACTION, RESET, REBOOT = 0x01, 0x02, 0x03, 0x04, 0x
 SYNC_READ, SYNC_WRITE, BULK_READ = 0x82, 0x83, 0x92
 WRITES = 2  # return level from which everything is answered
 CHECKSUM_ERROR, INSTRUCTION_ERROR = 0x10, 0x40  # bits of a Dynamixel's error byte
+LONGEST_READ = 244  # bytes; an answer of 250 is the longest
 IDENTITY_END = 8  # below lie id and baud rate
 PING_SLOT = 0.001  # s for each id of a broadcast ping, assumed: SDKs allow three times as much
 
@@ -120,6 +121,8 @@ class Protocol1:
         """Let a device do an instruction; return error byte and data, None where it is mute."""
         now, instruction, parameters = bus.schedule.now, frame.instruction, frame.parameters
         if instruction == READ and len(parameters) == 2:
+            if parameters[1] > LONGEST_READ:
+                return None
             device.sample()
             return device.read(parameters[0], parameters[1], now)
         if instruction == WRITE and len(parameters) > 1:
@@ -169,7 +172,8 @@ def _later(
 
 
 def _take(turns: list[Turn], bus: Bus) -> None:
-    take_turns(turns, Round(bus, encode, STATUS_BYTES))
+    if all(turn.size <= LONGEST_READ for turn in turns):
+        take_turns(turns, Round(bus, encode, STATUS_BYTES))
 
 
 def _sync(parameters: bytes) -> list[Turn]:

@@ -13,6 +13,7 @@ The controller of a dcmotor asks for a torque, ``kp (ctrl - q) - kd dq``, and dr
 """
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -107,6 +108,10 @@ class TwinImu:
     """The IMU of a twin, behind the low-pass filter of an OpenCR's; a source for `OpenCr`.
 
     Without the filter a host that samples at 125 Hz would miss half of every impact.
+
+    Attributes:
+        held: Says whether hands hold the robot; it is at rest then, whatever the physics make of
+            limp joints before the hands put them back.
     """
 
     def __init__(self, twin: Twin) -> None:
@@ -115,7 +120,10 @@ class TwinImu:
             raise ValueError(f"robot {twin.robot.name!r} has no IMU")
         gyro = int(twin.model.sensor(imu.gyro).adr[0])
         acceleration = int(twin.model.sensor(imu.accelerometer).adr[0])
+        self.held: Callable[[], bool] = lambda: False
         self._data = twin.data.sensordata
+        self._site = twin.data.site(imu.site).xmat.reshape(3, 3)
+        self._gravity = -twin.model.opt.gravity
         self._places = np.r_[gyro : gyro + 3, acceleration : acceleration + 3]
         self._filter = LowPass(OPENCR.lag, twin.timestep)
         self._base = twin.data.qpos
@@ -124,12 +132,12 @@ class TwinImu:
     @property
     def angular_velocity(self) -> Array:
         """(3,) rad/s."""
-        return self._filter.value(self._data[self._places])[:3]
+        return self._filter.value(self._felt())[:3]
 
     @property
     def acceleration(self) -> Array:
         """(3,) m/s2."""
-        return self._filter.value(self._data[self._places])[3:]
+        return self._filter.value(self._felt())[3:]
 
     @property
     def orientation(self) -> Array:
@@ -137,7 +145,13 @@ class TwinImu:
         return np.asarray(self._base[3:7])
 
     def _feel(self) -> None:
-        self._filter.follow(self._data[self._places])
+        self._filter.follow(self._felt())
+
+    def _felt(self) -> Array:
+        """Return (6,): angular velocity, rad/s, and acceleration, m/s2, before the filter."""
+        if self.held():
+            return np.concatenate([np.zeros(3), self._gravity @ self._site])
+        return np.asarray(self._data[self._places])
 
 
 @dataclass
