@@ -74,6 +74,8 @@ class GuardedBackend:
     def __post_init__(self) -> None:
         self.clamped_joints = np.zeros(len(self.backend.joints))
         self._buffer = np.empty_like(self.limits.lower)
+        # Where a limit is infinite, clamping does not show that a value is.
+        self._unlimited = not np.isfinite([self.limits.lower, self.limits.upper]).all()
         # Bound once: these run on every tick.
         self._write: Callable[[JointCommand], JointCommand] = self.backend.write
         self._collect: Callable[[], Observation] = self.backend.collect
@@ -143,7 +145,7 @@ class GuardedBackend:
                 f"a command of shape {block.shape} for {len(self.joints)} joints; "
                 f"it has to be {self._buffer.shape}"
             )
-        if not isfinite(block.sum()):
+        if self._unlimited and not isfinite(block.sum()):
             self._refuse(block)
         np.maximum(block, self.limits.lower, out=self._buffer)
         np.minimum(self._buffer, self.limits.upper, out=self._buffer)
@@ -198,7 +200,8 @@ class GuardedBackend:
             )
 
     def _count(self, block: Array) -> None:
-        """Count the clamps of `block`."""
+        """Count the clamps of `block`, unless it is to be refused."""
+        self._refuse(block)
         changed = self._buffer != block
         for row in np.flatnonzero(changed.any(axis=1)):
             self.clamps[FIELDS[row]] += 1

@@ -1,8 +1,8 @@
 """What the twin's sensors say: encoder counts, contact forces, the IMU, and how late they are."""
 
 from collections import deque
-from dataclasses import dataclass
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,8 +14,7 @@ from sim_twin.twin import Twin
 AMBIENT = 25.0
 
 
-@dataclass(frozen=True, slots=True)
-class Snapshot:
+class Snapshot(NamedTuple):
     """The raw state at one instant; see MuJoCo for the layouts."""
 
     time: float
@@ -62,7 +61,7 @@ class Sensors:
         self._voltage = _constant(n, twin.supply)
         self._temperature = _constant(n, AMBIENT)
         self._age = _constant(n, delay)
-        data = twin.data
+        self._data = data = twin.data
         self._views = (data.qpos, data.qvel, data.actuator_force, data.sensordata)
         self._line: deque[Snapshot] = deque()
         if delay > 0.0:
@@ -99,7 +98,7 @@ class Sensors:
         sensors = sensors.copy()
         if self._errors is not None:
             sensors[self._motion] = self._errors.sample(sensors[self._motion])
-        return Snapshot(self.twin.time, qpos.copy(), qvel.copy(), force.copy(), sensors)
+        return Snapshot(self._data.time, qpos.copy(), qvel.copy(), force.copy(), sensors)
 
     def _record(self) -> None:
         if self._errors is not None:
