@@ -6,14 +6,17 @@ from hal.errors import ConfigError
 from robots import RobotDescription, load_robot
 from robots.mirror import mirror_map
 
+ROBOTS = ["op3", "human", "human12", "robobird", "duck"]
+CROOKED = {"duck": 4e-3}  # its legs are not quite mirror images; m
 
-@pytest.mark.parametrize("name", ["op3", "human"])
+
+@pytest.mark.parametrize("name", ROBOTS)
 def test_a_mirrored_pose_is_the_mirror_image_in_space(name: str) -> None:
     robot = load_robot(name)
     pose = np.random.default_rng(1).uniform(-0.3, 0.3, len(robot.joints))
     left, right = feet_and_com(robot, pose), feet_and_com(robot, robot.mirror(pose))
     flip = np.array([1.0, -1.0, 1.0])
-    np.testing.assert_allclose(right[[1, 0]], left[:2] * flip, atol=1e-9)
+    np.testing.assert_allclose(right[[1, 0]], left[:2] * flip, atol=CROOKED.get(name, 1e-9))
     np.testing.assert_allclose(right[2], left[2] * flip, atol=2e-3)  # op3 is not quite symmetric
 
 
@@ -27,7 +30,7 @@ def feet_and_com(robot: RobotDescription, pose: np.ndarray) -> np.ndarray:
     return np.array([*feet, data.subtree_com[1]])
 
 
-@pytest.mark.parametrize("name", ["op3", "human"])
+@pytest.mark.parametrize("name", ROBOTS)
 def test_mirroring_twice_changes_nothing(name: str) -> None:
     robot = load_robot(name)
     pose = np.random.default_rng(2).uniform(-1, 1, (3, len(robot.joints)))
