@@ -15,6 +15,7 @@ import numpy as np
 
 from hal.errors import WindupError
 from hal.observation import Observation
+from tools.output import console
 from tools.robot import Robot
 
 ENDS = ("SIGINT", "SIGTERM", "exception", "SIGKILL")
@@ -39,6 +40,7 @@ def measure_stops(name: str, moments: int = 20, seed: int = 0) -> dict[str, Any]
             "off_within_0.25_s": sum(t <= 0.25 for t in times),
             "longest_s": round(max(times), 3),
         }
+        console.print(f"{end}: {result[end]}")
     return result
 
 
