@@ -19,6 +19,7 @@ from tools.output import console
 from tools.robot import Robot
 
 ENDS = ("SIGINT", "SIGTERM", "exception", "SIGKILL")
+WALKING = "walking"
 PATIENCE = 60.0  # s until a walk has to be under way
 LONGEST = 3.0  # s of walking before the end, at most
 
@@ -90,9 +91,12 @@ def _end_one(name: str, end: str, after: float) -> float:
             journal.wait_for(None, PATIENCE)
             if not told.poll(PATIENCE):
                 raise WindupError("the walk did not begin")
-            told.recv()
+            if (said := told.recv()) != WALKING:
+                raise WindupError(f"the walk did not begin: {said}")
             ended = _end(walker, end, after, told)
             off = journal.wait_for(0, 10.0)
+            if off < ended - 0.05:
+                raise WindupError("the motors were off before the end; the walk had fallen?")
             walker.join(10.0)
             return max(off - ended, 0.0)
         finally:
@@ -126,22 +130,24 @@ def _emulate(name: str, path: Path, pipe: Connection) -> None:
 
 
 def _walk(name: str, path: Path, crash_after: float | None, tell: Connection) -> None:
-    """Walk until the end; tell when the walk begins, and when it crashes."""
+    """Walk until the end; tell when the first step is done, and when it crashes."""
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     began: list[float] = []
 
+    def first_step(number: int, speed: float) -> None:
+        if number == 1:
+            began.append(time.monotonic())
+            tell.send(WALKING)
+
     def watch(observation: Observation) -> None:
-        if not began:
-            began.append(observation.time)
-            tell.send("walking")
-        if crash_after is not None and observation.time > began[0] + crash_after:
+        if crash_after is not None and began and time.monotonic() > began[0] + crash_after:
             tell.send(time.monotonic())
             raise ZeroDivisionError("a bug of the controller's own")
 
-    with (
-        suppress(WindupError, KeyboardInterrupt),
-        Robot.open(name, port=str(path), arm=True) as robot,
-    ):
-        robot.stand(0.5)
-        robot.watch = watch
-        robot.walk(steps=1000)
+    try:
+        with suppress(KeyboardInterrupt), Robot.open(name, port=str(path), arm=True) as robot:
+            robot.stand(0.5)
+            robot.watch = watch
+            robot.walk(steps=1000, on_step=first_step)
+    except WindupError as error:
+        tell.send(str(error))

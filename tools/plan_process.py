@@ -3,6 +3,7 @@
 import contextlib
 import os
 import pickle
+import select
 import socket
 import subprocess
 import sys
@@ -56,6 +57,10 @@ class ProcessPlanner:
     def latency(self) -> float:
         """From the start of a step to its scalings acting, s."""
         return self.task.latency
+
+    def ready(self) -> bool:
+        """Return True when `wait_ready` would not wait."""
+        return bool(select.select([self._link], [], [], 0.0)[0])
 
     def wait_ready(self, patience: float = PATIENCE) -> Self:
         """Return when the process has built everything: before the run, never in it.

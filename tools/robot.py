@@ -24,7 +24,7 @@ from sim_twin.push import Push
 from sim_twin.rollouts import RolloutPredictor
 from sim_twin.twin import Twin
 from tools.build import WalkOptions, build_walk, find_gait
-from tools.plan_process import plan_aside
+from tools.plan_process import ProcessPlanner, plan_aside
 from tools.report import WalkReport
 from tools.session import Session
 from tools.stack import State, twin_stack, wire_stack
@@ -195,13 +195,21 @@ class Robot(Session):
             walker = build_walk(self.description, options, self.predictor)
             if self.paced and walker.planner is not None:
                 aside = plan_aside(self.description, options, self.predictor, self.period)
-                walker.planner = stack.enter_context(aside).wait_ready()
+                walker.planner = self._when_ready(stack.enter_context(aside))
             self.start_at(walker.gait.file.start)
             report = WalkReport(self, walker, options, steps)
             with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far
                 self.run(walker, until=_walk_end(walker, steps, on_step), rollouts=stopwatch)
         report.loop = self.loop
         return report
+
+    def _when_ready(self, planner: ProcessPlanner) -> ProcessPlanner:
+        """Wait for a planner; hold the pose meanwhile, or the servos' watchdogs would let it go."""
+        if self.armed:
+            pose = self.backend.read().joints.position
+            holder = PoseHolder(self.description.joints, pose, ramp=0.0)
+            self.run(holder, until=lambda _: "ready" if planner.ready() else None)
+        return planner.wait_ready()
 
     def start_at(self, name: str | None) -> None:
         """Put a fresh twin into a start pose, with noise; let anything else move there."""
