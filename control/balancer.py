@@ -11,13 +11,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from control.body import Body
-from control.course import Course
 from control.gait import Gait
 from control.planner import Planner, StepRequest
 from control.policy import policy_input
 from control.pose_tracker import PoseTracker
 from control.regulation import RegulationVariable
-from control.speed import SpeedControl
+from control.steering import Steering
 from control.step_record import StepRecord, StepStart
 from control.torso_servo import TorsoServo
 from hal.command import JointCommand
@@ -42,10 +41,9 @@ class Balancer:
         regulation: The r regulation variables.
         perturbations: Names of the r perturbations that control them.
         planner: Chooses their scalings, or None for open loop.
+        steering: Speed, side, course and style.
         targets: Targets by name of the regulation variable.
-        fixed_targets: Targets that win over the speed table, by name.
-        speed: Speed table and feedback.
-        course: Heading hold, or None.
+        fixed_targets: Targets that win over the steering's, by name.
         torso_servo: The torso servo, or None.
         records: Finished steps.
         late: Steps whose answer never came.
@@ -58,10 +56,9 @@ class Balancer:
     regulation: list[RegulationVariable]
     perturbations: list[str]
     planner: Planner | None
-    speed: SpeedControl
+    steering: Steering
     targets: dict[str, float] = field(default_factory=dict)
     fixed_targets: dict[str, float] = field(default_factory=dict)
-    course: Course | None = None
     torso_servo: TorsoServo | None = None
     records: list[StepRecord] = field(default_factory=list, init=False)
     late: int = field(default=0, init=False)
@@ -90,7 +87,7 @@ class Balancer:
         self._start: StepStart | None = None
         self._asked = False
         self._turned = 0.0
-        self.speed.reset()
+        self.steering.reset()
         self.records.clear()
         self.late = 0
         if self.planner is not None:
@@ -117,12 +114,9 @@ class Balancer:
         """Remember where the step begins and ask for its scalings."""
         start = StepStart(observation.time, int(self._tracker.stance()[0]), here)
         self._start = start
-        self.speed.begin_step()
-        scale = self.speed.scale()
-        if self.course is not None:
-            turn = self.gait.index(self.course.perturbation)
-            scale[turn] += self.course.scale(start.heading, start.position)
-        self._target = self._wanted()
+        self.steering.begin_step(start)
+        scale = self.steering.scale(start)
+        self._target = self._wanted(start)
         self._scale = scale
         if self.planner is None:
             self._tracker.rescale(scale[None])
@@ -147,25 +141,26 @@ class Balancer:
         self._tracker.rescale(scale[None])
 
     def _end_step(self, time: float, end: Outcomes, start: StepStart) -> None:
-        """Write down how the step went, and tell the speed feedback."""
+        """Write down how the step went, and tell the steering."""
         duration = time - start.time
         self._turned += start.turned(end)
-        speed = start.speed(end, duration)
-        self.speed.measured(speed)
-        self.records.append(
-            StepRecord(
-                time=time,
-                duration=duration,
-                position=end.base_position[0].copy(),
-                heading=self._turned,
-                speed=speed,
-                regulation=start.evaluate(end, self.regulation, self.contacts)[0],
-                target=self._target,
-                scale=self._tracker.scale[0].copy(),
-            )
+        forward, left = start.velocity(end, duration)
+        record = StepRecord(
+            time=time,
+            duration=duration,
+            position=end.base_position[0].copy(),
+            heading=self._turned,
+            speed=float(forward),
+            side=float(left),
+            regulation=start.evaluate(end, self.regulation, self.contacts)[0],
+            target=self._target,
+            scale=self._tracker.scale[0].copy(),
         )
+        self.records.append(record)
+        self.steering.end_step(record)
 
-    def _wanted(self) -> Array:
-        """Return the targets (r,) of this step."""
-        wanted = {**self.targets, **self.speed.targets(), **self.fixed_targets}
+    def _wanted(self, start: StepStart) -> Array:
+        """Return the targets (r,) of the step that begins."""
+        left = self.contacts.foot_names[1 - start.stance].startswith("l")
+        wanted = self.steering.targets(self.targets, swing_is_left=left) | self.fixed_targets
         return np.array([wanted.get(variable.name, 0.0) for variable in self.regulation])

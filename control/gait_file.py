@@ -88,13 +88,59 @@ class Speed(Record, frozen=True):
     limit: float = 0.0
 
 
+class Side(Record, frozen=True):
+    """Commanded sideways speed: scalings and targets for 1 m/s to the left, before feedback.
+
+    `scale` follows the sign of the speed, `spread` does not (to keep the legs apart). `targets`
+    are lateral: they are added in steps that swing the foot on the side that one goes to, and
+    subtracted in the others. `limit` is the largest speed, m/s; it grows by `ramp` a step.
+    """
+
+    limit: float
+    ramp: float = 1.0
+    scale: dict[str, float] = {}
+    spread: dict[str, float] = {}
+    targets: dict[str, float] = {}
+    gain: float = 0.0
+    correction: float = 0.0
+
+
+class Turn(Record, frozen=True):
+    """Commanded turning, to the heading's perturbation; `limit` is the fastest, degrees/s.
+
+    `feed` is the perturbation for each degree that one step shall turn, `spread` scalings for one
+    degree/s either way. The rate changes by `ramp` degrees/s a step. Turning on the spot may be
+    faster than at speed: `radius` is the tightest turn, m.
+    """
+
+    limit: float
+    ramp: float = 1000.0
+    feed: float = 0.0
+    spread: dict[str, float] = {}
+    radius: float = 0.0
+
+
 class Heading(Record, frozen=True):
-    """Holding a course: a perturbation scaled by heading and turn rate, degrees a degree."""
+    """Holding a course: a perturbation scaled by the error of the heading, degrees a degree."""
 
     perturbation: str
     gain: float
-    rate: float = 0.0
     limit: float = 10.0
+
+
+class Style(Record, frozen=True):
+    """A way of walking that can be had by any amount: scalings and targets for an amount of one.
+
+    Styles compose by addition, and an amount between 0 and 1 blends (section 5.4). The amount
+    changes by at most 1 / `steps` a step.
+    """
+
+    name: str
+    scale: dict[str, float] = {}
+    targets: dict[str, float] = {}
+    steps: float = 8.0
+    least: float = 0.0
+    most: float = 1.0
 
 
 class TorsoServo(Record, frozen=True):
@@ -118,5 +164,8 @@ class GaitFile(Record, frozen=True):
     perturbation: list[Perturbation] = []
     balance: Balance | None = None
     speed: Speed | None = None
+    side: Side | None = None
+    turn: Turn | None = None
     heading: Heading | None = None
+    style: list[Style] = []
     torso_servo: TorsoServo | None = None

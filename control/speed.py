@@ -35,12 +35,23 @@ class SpeedControl:
                 )
             return
         self.speed = table.default if self.speed is None else self.speed
-        slowest, fastest = table.rows[0].speed, table.rows[-1].speed
+        slowest, fastest = self.range
         if not slowest <= self.speed <= fastest:
             raise UsageError(
                 f"speed {self.speed:g} m/s is outside the range of gait {self.gait.name!r}: "
                 f"{slowest:g} .. {fastest:g} m/s"
             )
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Slowest and fastest speed of the gait, m/s; both 0 without a table."""
+        table = self.gait.file.speed
+        return (table.rows[0].speed, table.rows[-1].speed) if table is not None else (0.0, 0.0)
+
+    def command(self, speed: float | None) -> None:
+        """Aim for another speed within the gait's range, m/s; None changes nothing."""
+        if speed is not None:
+            self.speed = float(np.clip(speed, *self.range))
 
     def reset(self) -> None:
         """Begin again at rest."""

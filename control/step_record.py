@@ -22,6 +22,7 @@ class StepRecord:
         position: (3,) base position at its end, m.
         heading: Heading at its end, unwrapped from the start of the walk, rad.
         speed: Mean speed along its middle heading, m/s.
+        side: Mean speed to the left of it, m/s.
         regulation: (r,) regulation variables at its end.
         target: (r,) what they should have been.
         scale: (p,) scalings of the perturbations.
@@ -32,6 +33,7 @@ class StepRecord:
     position: Array
     heading: float
     speed: float
+    side: float
     regulation: Array
     target: Array
     scale: Array
@@ -86,8 +88,9 @@ class StepStart:
         change = float(heading(end.base_orientation)[0]) - self.heading
         return (change + np.pi) % (2.0 * np.pi) - np.pi
 
-    def speed(self, end: Outcomes, duration: float) -> float:
-        """Return the mean speed until `end` along the step's middle heading, m/s."""
+    def velocity(self, end: Outcomes, duration: float) -> Array:
+        """Return the mean velocity (2,) until `end`: along the middle heading, to its left, m/s."""
         angle = self.heading + 0.5 * self.turned(end)
+        c, s = np.cos(angle), np.sin(angle)
         way = end.base_position[0, :2] - self.position[:2]
-        return float(way @ [np.cos(angle), np.sin(angle)]) / max(duration, 1e-6)
+        return np.array([[c, s], [-s, c]]) @ way / max(duration, 1e-6)

@@ -1,6 +1,7 @@
 """Putting a walking controller together from a robot, a gait and what the user asked for."""
 
 from dataclasses import dataclass, replace
+from math import radians
 
 import msgspec
 import numpy as np
@@ -10,10 +11,14 @@ from control.body import Body
 from control.course import Course
 from control.gait import Gait, load_gait
 from control.gait_file import Balance, Sampling
+from control.guide import Guide, Steady, WalkCommand
 from control.planner import Planner, StepPlanner
 from control.regulation import RegulationVariable, regulation_variables
+from control.side import SideControl
 from control.speed import SpeedControl
+from control.steering import Steering
 from control.step_model import StepModel
+from control.style import Styling
 from control.torso_servo import TorsoServo
 from hal.controller import Predictor
 from hal.errors import UnknownNameError, UsageError
@@ -26,6 +31,10 @@ class WalkOptions:
 
     gait: str = "walk"
     speed: float | None = None
+    side: float = 0.0
+    turn: float = 0.0  # degrees/s
+    style: tuple[str, ...] = ()
+    guide: Guide | None = None  # instead of a steady speed, side and turn
     rv: tuple[str, ...] | None = None
     sampling: Sampling | None = None
     target: tuple[str, ...] = ()
@@ -88,7 +97,6 @@ def build_walk(
             torso_servo=torso_servo,
             horizon=balance.horizon,
         )
-    heading = None if options.open_loop else gait.file.heading
     return Balancer(
         gait=gait,
         joints=robot.joints,
@@ -97,12 +105,50 @@ def build_walk(
         regulation=variables,
         perturbations=names,
         planner=planner,
-        speed=SpeedControl(gait, options.speed),
+        steering=_steering(gait, options),
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
-        course=None if heading is None else Course(heading),
         torso_servo=torso_servo,
     )
+
+
+def _steering(gait: Gait, options: WalkOptions) -> Steering:
+    """Return what steers a walk; open loop it only follows the gait's own speed.
+
+    Raises:
+        UsageError: The gait cannot walk as wanted.
+    """
+    turn = gait.file.turn
+    fastest = 0.0 if turn is None else turn.limit
+    if abs(options.turn) > fastest:
+        can = f"turns at most at {fastest:g} degrees/s" if fastest else "cannot turn"
+        raise UsageError(f"turn {options.turn:g} degrees/s: gait {gait.name!r} {can}")
+    order = WalkCommand(options.speed, options.side, radians(options.turn))
+    heading = None if options.open_loop else gait.file.heading
+    return Steering(
+        gait=gait,
+        guide=options.guide or Steady(order),
+        speed=SpeedControl(gait, options.speed),
+        side=SideControl(gait, options.side),
+        style=Styling(gait, amounts(options.style)),
+        course=None if heading is None else Course(heading, turn),
+    )
+
+
+def amounts(given: tuple[str, ...]) -> dict[str, float]:
+    """Return amounts by name from "NAME=AMOUNT", or a bare NAME for an amount of one.
+
+    Raises:
+        UsageError: An amount is no number.
+    """
+    found = {}
+    for text in given:
+        name, equals, value = text.partition("=")
+        try:
+            found[name] = float(value) if equals else 1.0
+        except ValueError:
+            raise UsageError(f"--style {text}: {value!r} is no number") from None
+    return found
 
 
 def _resampled(balance: Balance, sampling: Sampling) -> Balance:

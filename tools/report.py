@@ -55,10 +55,36 @@ class WalkReport:
     @property
     def speed(self) -> float | None:
         """Mean speed along the path over steps 11 to the end, m/s; None for a shorter walk."""
+        return self._mean("speed")
+
+    @property
+    def side(self) -> float | None:
+        """Mean speed to the left of the path over whole strides from step 11 on, m/s."""
+        return self._mean("side", whole_strides=True)
+
+    @property
+    def turn(self) -> float | None:
+        """Mean turn rate over whole strides from step 11 on, rad/s."""
         records = self.walker.records[SETTLED:]
+        records = records[(len(records) + 1) % 2 :]
+        if len(records) < 3:
+            return None
+        return (records[-1].heading - records[0].heading) / (records[-1].time - records[0].time)
+
+    @property
+    def clearance(self) -> float | None:
+        """Smallest distance between the feet, mm; negative where they crossed."""
+        look = self.robot.clearance
+        return None if look is None else 1e3 * look.smallest
+
+    def _mean(self, name: str, *, whole_strides: bool = False) -> float | None:
+        """Return the mean over time of a speed in the records, m/s."""
+        records = self.walker.records[SETTLED:]
+        if whole_strides:
+            records = records[len(records) % 2 :]
         if len(records) < 2:
             return None
-        ways = [record.speed * record.duration for record in records]
+        ways = [getattr(record, name) * record.duration for record in records]
         return float(sum(ways) / sum(record.duration for record in records))
 
     def _position(self) -> Array:
@@ -86,6 +112,9 @@ class WalkReport:
             "lateral_m": float(end[1]),
             "heading_deg": float(np.degrees(records[-1].heading)) if records else 0.0,
             "speed_m_s": self.speed,
+            "side_m_s": self.side,
+            "turn_deg_s": None if self.turn is None else float(np.degrees(self.turn)),
+            "foot_clearance_mm": self.clearance,
             "sim_time_s": loop.sim_time,
             "wall_time_s": loop.wall_time,
             "rollouts": watch.count,
@@ -122,5 +151,20 @@ def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
         "speed_mean_m_s": float(np.mean(speeds)) if speeds else None,
         "speed_min_m_s": float(np.min(speeds)) if speeds else None,
         "heading_max_deg": float(np.max(headings)) if headings else None,
+        "side_mean_m_s": _mean_of(rows, "side_m_s"),
+        "turn_mean_deg_s": _mean_of(rows, "turn_deg_s"),
+        "foot_clearance_min_mm": min((clear(row) for row in rows), default=None),
+        "crossed": sum(clear(row) < 0.0 for row in rows),
         "steps_min": min(row["steps"] for row in rows),
     }
+
+
+def clear(row: dict[str, Any]) -> float:
+    """Return the smallest distance between the feet of a run, mm."""
+    value = row.get("foot_clearance_mm")
+    return float("inf") if value is None else float(value)
+
+
+def _mean_of(rows: list[dict[str, Any]], key: str) -> float | None:
+    values = [row[key] for row in rows if row.get(key) is not None]
+    return float(np.mean(values)) if values else None

@@ -19,9 +19,11 @@ from hal.errors import HardwareError, UnknownNameError, UsageError, WindupError
 from hal.guard import GuardedBackend
 from hal.observation import BaseState, Observation
 from robots import RobotDescription, load_robot
+from sim_twin.clearance import FootClearance
 from sim_twin.push import Push
 from sim_twin.rollouts import RolloutPredictor
 from sim_twin.twin import Twin
+from sim_twin.world import World
 from tools.build import WalkOptions, build_walk, find_gait
 from tools.report import WalkReport
 from tools.stack import Stack, State, twin_stack, wire_stack
@@ -49,6 +51,7 @@ class Robot:
         loop: Report of the last run.
         watch: Called with every observation, for whoever draws or logs.
         base: Base state last seen: the truth on a twin, an estimate on a robot.
+        clearance: How close the feet of a twin came in the last walk.
     """
 
     description: RobotDescription
@@ -61,6 +64,7 @@ class Robot:
     loop: LoopReport = field(default_factory=LoopReport)
     watch: Watch | None = None
     base: BaseState | None = None
+    clearance: FootClearance | None = None
     _armed: bool = False
 
     @classmethod
@@ -76,6 +80,8 @@ class Robot:
         seed: int = 0,
         noise: float = 0.0,
         delay: float | None = None,
+        world: World | None = None,
+        known_ground: bool = False,
     ) -> Self:
         """Return a robot, connected and configured. Nothing moves.
 
@@ -89,6 +95,8 @@ class Robot:
             seed: Seed of everything random.
             noise: Standard deviation of noise on the start pose, degrees.
             delay: Delay of the servos, s; the robot's own by default.
+            world: The twin's ground and how its plant differs; the controller does not know.
+            known_ground: The rollouts know the ground.
 
         Raises:
             WindupError: The robot's files, these options, or the bus cannot be.
@@ -97,7 +105,11 @@ class Robot:
         wired = description.wire_rate_hz if port is not None else None
         steps = description.physics_steps(rate or wired)
         if port is None:
-            stack = twin_stack(description, state=state or "true", paced=realtime, delay=delay)
+            stack = twin_stack(
+                description, state=state or "true", paced=realtime, delay=delay, world=world
+            )
+        elif world is not None:
+            raise UsageError("only a twin has another ground or plant; leave --port away")
         else:
             stack = wire_stack(
                 description, port, state=state or "estimated", arm=arm, noise=noise, seed=seed
@@ -105,7 +117,11 @@ class Robot:
         return cls(
             description=description,
             stack=stack,
-            predictor=RolloutPredictor(description, delay=stack.delay),
+            predictor=RolloutPredictor(
+                description,
+                delay=stack.delay,
+                ground=world.ground if world is not None and known_ground else None,
+            ),
             period=steps * description.timestep,
             noise=noise,
             seed=seed,
@@ -171,6 +187,11 @@ class Robot:
         start = self.twin.time + delay
         self.twin.push(Push.impulse(self.description.torso, impulse, direction, start, duration))
 
+    def shove(self, speed: float, direction: float = 0.0, *, delay: float = 0.0) -> None:
+        """Give a whole twin `speed` m/s toward `direction` rad, `delay` s from now."""
+        mass = float(self.twin.model.body_mass.sum())
+        self.twin.push(Push.velocity_step(speed, mass, direction, self.twin.time + delay))
+
     def arm(self) -> None:
         """Switch the torque on at the present pose, where there are servos to switch.
 
@@ -221,6 +242,7 @@ class Robot:
         steps: int = 40,
         options: WalkOptions | None = None,
         on_step: OnStep | None = None,
+        disturb: Callable[["Robot"], None] | None = None,
     ) -> WalkReport:
         """Walk a number of steps and return how it went.
 
@@ -229,6 +251,7 @@ class Robot:
             steps: How many.
             options: Everything else; `speed` wins.
             on_step: Called at the end of each step with its number and its speed, m/s.
+            disturb: Called before the first step, to arrange pushes on a twin.
 
         Raises:
             UsageError: The options do not fit the gait; nothing has moved.
@@ -241,6 +264,10 @@ class Robot:
         self.predictor.stopwatch = Stopwatch()
         walker = build_walk(self.description, options, self.predictor)
         self.start_at(walker.gait.file.start)
+        if (twin := self.stack.twin) is not None:
+            self.clearance = FootClearance(self.description, twin.model, twin.data)
+            if disturb is not None:
+                disturb(self)
         report = WalkReport(self, walker, options, steps)
         try:
             self.run(walker, until=_walk_end(walker, steps, on_step), rollouts=True)
@@ -268,6 +295,8 @@ class Robot:
 
         def end(observation: Observation) -> str | None:
             self.base = observation.base
+            if rollouts and self.clearance is not None:
+                self.clearance.look()
             if self.watch is not None:
                 self.watch(observation)
             if self.fallen:

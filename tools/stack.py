@@ -16,6 +16,7 @@ from robots import RobotDescription
 from sim_twin.backend import TwinBackend
 from sim_twin.sensors import Sensors
 from sim_twin.twin import Twin
+from sim_twin.world import World
 
 State = Literal["true", "estimated"]
 TWIN = "twin://"
@@ -67,16 +68,24 @@ class Truth:
         return replace(observation, base=true.base, contacts=true.contacts)
 
 
-def twin_stack(robot: RobotDescription, *, state: State, paced: bool, delay: float | None) -> Stack:
-    """Return a stack on a twin of `robot`.
+def twin_stack(
+    robot: RobotDescription,
+    *,
+    state: State,
+    paced: bool,
+    delay: float | None,
+    world: World | None = None,
+) -> Stack:
+    """Return a stack on a twin of `robot`; what is odd about its `world` nobody is told.
 
     Raises:
         UsageError: The delay is negative, or no whole number of physics steps.
     """
     _check_delay(delay, robot)
-    twin = Twin(robot, delay=delay)
+    twin = Twin(robot, delay=delay, world=world)
     backend = _guarded(TwinBackend(twin, paced=paced, true_base=state == "true"), robot)
-    return Stack(backend, twin, None, twin.delay + robot.drive.sensor_delay)
+    delay = robot.drive.command_delay if delay is None else delay
+    return Stack(backend, twin, None, delay + robot.drive.sensor_delay)
 
 
 def wire_stack(

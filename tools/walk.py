@@ -10,22 +10,30 @@ import numpy as np
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from hal.errors import UsageError
+from robots import load_robot
 from tools.build import WalkOptions, build_walk
 from tools.options import Common
 from tools.output import console, write_json
 from tools.plot import Trace, plot_walk
 from tools.report import WalkReport, summary
 from tools.robot import Robot
+from tools.twin_options import TwinOptions
 
 
 @dataclass(frozen=True, kw_only=True)
-class Walk(Common):
+class Walk(TwinOptions, Common):
     """Walk a robot and say how it went."""
 
     steps: int = 80
     """How many steps to walk."""
     speed: float | None = None
     """Speed, m/s; the gait's default otherwise."""
+    side: float = 0.0
+    """Sideways speed, m/s; positive to the left."""
+    turn: float = 0.0
+    """Turn rate, degrees/s; positive to the left."""
+    style: tuple[str, ...] = ()
+    """Styles and how much of them, NAME=AMOUNT; any perturbation of the gait is one too."""
     gait: str = "walk"
     """Name of the gait."""
     rv: tuple[str, ...] | None = None
@@ -71,6 +79,8 @@ class Walk(Common):
             seed=seed,
             noise=self.noise,
             delay=self.delay,
+            world=self.world(load_robot(self.robot), seed),
+            known_ground=self.known_ground,
         ) as robot:
             trace = Trace(robot.description.contacts)
             robot.watch = trace.add if self.plot and show else None
@@ -86,13 +96,19 @@ class Walk(Common):
     def _walk(self, robot: Robot, progress: Progress) -> WalkReport:
         bar = progress.add_task("walking", total=self.steps, speed="", lean="")
         return robot.walk(
-            steps=self.steps, options=self._options(), on_step=_update(progress, bar, robot)
+            steps=self.steps,
+            options=self._options(),
+            on_step=_update(progress, bar, robot),
+            disturb=self.disturb(),
         )
 
     def _options(self) -> WalkOptions:
         return WalkOptions(
             gait=self.gait,
             speed=self.speed,
+            side=self.side,
+            turn=self.turn,
+            style=self.style,
             rv=self.rv,
             sampling=self.sampling,
             target=self.target,
@@ -112,6 +128,7 @@ class Walk(Common):
 
     def _check(self) -> None:
         """Raise what is wrong with the options before any process is started."""
+        self.world(load_robot(self.robot), 0)
         with Robot.open(self.robot, rate=self.rate, delay=self.delay) as robot:
             build_walk(robot.description, self._options(), robot.predictor)
 
@@ -158,8 +175,14 @@ def _line(report: WalkReport) -> str:
     return (
         f"{result['robot']} {end}{pace}: {result['distance_m']:.2f} m forward, "
         f"{result['lateral_m']:+.2f} m to the left, heading {result['heading_deg']:+.1f} degrees, "
-        f"{ratio:.1f} x real time"
+        f"{ratio:.1f} x real time{_crossing(report)}"
     )
+
+
+def _crossing(report: WalkReport) -> str:
+    """Return a warning where the feet went through each other."""
+    clear = report.clearance
+    return f", feet cross by {-clear:.0f} mm" if clear is not None and clear < 0.0 else ""
 
 
 def _sentence(whole: dict[str, Any]) -> str:
@@ -168,4 +191,5 @@ def _sentence(whole: dict[str, Any]) -> str:
     return (
         f"{whole['walked']} of {whole['runs']} runs walked to the end{pace}, "
         f"heading within {whole['heading_max_deg']:.1f} degrees"
+        f"{', feet cross in ' + str(whole['crossed']) if whole['crossed'] else ''}"
     )
