@@ -13,6 +13,7 @@ from control.step_record import StepRecord, StepStart
 from control.style import Styling
 from hal.joints import Array
 
+QUIET = 3  # steps on the spot before the feet may stay where they are
 STEP_SECONDS = 0.3  # until one has been measured
 
 
@@ -37,10 +38,23 @@ class Steering:
     style: Styling
     course: Course | None = None
     command: WalkCommand = field(default_factory=WalkCommand, init=False)
+    _quiet: int = field(default=0, init=False)
     _duration: float = field(default=STEP_SECONDS, init=False)
+
+    @property
+    def can_rest(self) -> bool:
+        """True when the gait can step on the spot, and so come to rest."""
+        table = self.gait.file.speed
+        return table is not None and table.rows[0].speed <= 0.0 <= table.rows[-1].speed
+
+    @property
+    def resting(self) -> bool:
+        """True when it was told to stop and has stepped on the spot since."""
+        return self._quiet > QUIET
 
     def reset(self) -> None:
         """Begin again at rest."""
+        self._quiet = 0
         self.speed.reset()
         self.side.reset()
         self.style.reset()
@@ -57,6 +71,8 @@ class Steering:
         self.style.begin_step()
         if self.course is not None:
             self.course.begin_step(command, start.heading, self._duration)
+        still = command.stop and abs(self.speed.present) + abs(self.side.present) < 1e-6
+        self._quiet = self._quiet + 1 if still else 0
 
     def scale(self, start: StepStart) -> Array:
         """Return the (p,) scalings of the step before balance."""

@@ -23,6 +23,7 @@ from control.torso_servo import TorsoServo
 from hal.controller import Predictor
 from hal.errors import UnknownNameError, UsageError
 from robots import RobotDescription
+from tools.route import guide_of
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,9 @@ class WalkOptions:
     side: float = 0.0
     turn: float = 0.0  # degrees/s
     style: tuple[str, ...] = ()
-    guide: Guide | None = None  # instead of a steady speed, side and turn
+    path: str | None = None
+    to: tuple[float, float] | None = None
+    guide: Guide | None = None  # instead of all these
     rv: tuple[str, ...] | None = None
     sampling: Sampling | None = None
     target: tuple[str, ...] = ()
@@ -105,14 +108,14 @@ def build_walk(
         regulation=variables,
         perturbations=names,
         planner=planner,
-        steering=_steering(gait, options),
+        steering=_steering(robot, gait, options),
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
         torso_servo=torso_servo,
     )
 
 
-def _steering(gait: Gait, options: WalkOptions) -> Steering:
+def _steering(robot: RobotDescription, gait: Gait, options: WalkOptions) -> Steering:
     """Return what steers a walk; open loop it only follows the gait's own speed.
 
     Raises:
@@ -124,10 +127,11 @@ def _steering(gait: Gait, options: WalkOptions) -> Steering:
         can = f"turns at most at {fastest:g} degrees/s" if fastest else "cannot turn"
         raise UsageError(f"turn {options.turn:g} degrees/s: gait {gait.name!r} {can}")
     order = WalkCommand(options.speed, options.side, radians(options.turn))
+    route = guide_of(robot, gait, path=options.path, to=options.to, speed=options.speed)
     heading = None if options.open_loop else gait.file.heading
     return Steering(
         gait=gait,
-        guide=options.guide or Steady(order),
+        guide=options.guide or route or Steady(order),
         speed=SpeedControl(gait, options.speed),
         side=SideControl(gait, options.side),
         style=Styling(gait, amounts(options.style)),

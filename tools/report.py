@@ -7,6 +7,7 @@ import numpy as np
 
 from control.balancer import Balancer
 from control.loop import LoopReport
+from control.navigation import PathFollower, PointFollower
 from hal.joints import Array
 from tools.build import WalkOptions
 
@@ -44,8 +45,8 @@ class WalkReport:
 
     @property
     def done(self) -> bool:
-        """True when all steps were walked."""
-        return self.walker.steps >= self.requested and not self.fell
+        """True when the goal was reached, or all steps were walked."""
+        return self.loop.reason == "done"
 
     @property
     def path(self) -> Array:
@@ -115,6 +116,7 @@ class WalkReport:
             "side_m_s": self.side,
             "turn_deg_s": None if self.turn is None else float(np.degrees(self.turn)),
             "foot_clearance_mm": self.clearance,
+            **self.route(),
             "sim_time_s": loop.sim_time,
             "wall_time_s": loop.wall_time,
             "rollouts": watch.count,
@@ -124,6 +126,14 @@ class WalkReport:
             "clamps": {name: count for name, count in robot.backend.clamps.items() if count},
             "regulation": self.regulation(),
         }
+
+    def route(self) -> dict[str, Any]:
+        """Return whether a goal was reached and how near the corners were passed; or nothing."""
+        goal = self.walker.steering.guide
+        if not isinstance(goal, PathFollower | PointFollower) or not self.walker.records:
+            return {}
+        near = goal.passed(self.path[:, :2])
+        return {"reached": goal.done, "nearest_m": list(near), "farthest_corner_m": near.max()}
 
     def regulation(self) -> list[dict[str, Any]]:
         """Return target, mean and standard deviation of each regulation variable."""
@@ -143,7 +153,7 @@ class WalkReport:
 def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """Return what several seeds have in common."""
     speeds = [row["speed_m_s"] for row in rows if row["speed_m_s"] is not None]
-    done = [row for row in rows if row["steps"] >= row["steps_requested"] and not row["fell"]]
+    done = [row for row in rows if row["reason"] == "done"]
     headings = [abs(row["heading_deg"]) for row in rows]
     return {
         "runs": len(rows),

@@ -11,7 +11,6 @@ from typing import Self
 
 import numpy as np
 
-from control.balancer import Balancer
 from control.loop import LoopReport, Until, run_loop
 from control.play import GraphPlayer, PoseHolder
 from hal.controller import Controller, Stopwatch
@@ -27,13 +26,12 @@ from sim_twin.world import World
 from tools.build import WalkOptions, build_walk, find_gait
 from tools.report import WalkReport
 from tools.stack import Stack, State, twin_stack, wire_stack
+from tools.walk_end import OnStep, WalkEnd
 
 START_SECONDS = 1.0
 REST_SECONDS = 1.5
 # Called once a tick with the observation and the controller.
 Watch = Callable[[Observation], None]
-# Called at the end of a step with its number and its speed, m/s.
-OnStep = Callable[[int, float], None]
 
 
 @dataclass
@@ -243,6 +241,7 @@ class Robot:
         options: WalkOptions | None = None,
         on_step: OnStep | None = None,
         disturb: Callable[["Robot"], None] | None = None,
+        stand: float = 0.0,
     ) -> WalkReport:
         """Walk a number of steps and return how it went.
 
@@ -252,6 +251,7 @@ class Robot:
             options: Everything else; `speed` wins.
             on_step: Called at the end of each step with its number and its speed, m/s.
             disturb: Called before the first step, to arrange pushes on a twin.
+            stand: Then come to rest and stand for so long, s.
 
         Raises:
             UsageError: The options do not fit the gait; nothing has moved.
@@ -263,6 +263,7 @@ class Robot:
             options = replace(options, speed=speed)
         self.predictor.stopwatch = Stopwatch()
         walker = build_walk(self.description, options, self.predictor)
+        end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
         self.start_at(walker.gait.file.start)
         if (twin := self.stack.twin) is not None:
             self.clearance = FootClearance(self.description, twin.model, twin.data)
@@ -270,7 +271,11 @@ class Robot:
                 disturb(self)
         report = WalkReport(self, walker, options, steps)
         try:
-            self.run(walker, until=_walk_end(walker, steps, on_step), rollouts=True)
+            self.run(walker, until=end, rollouts=True)
+            if stand > 0.0 and self.loop.reason == "done":
+                walked, self.loop = self.loop, self.stand(stand)
+                walked.reason = self.loop.reason
+                self.loop = walked
         except KeyboardInterrupt:
             self.loop.reason = "interrupted"
             self.stop()
@@ -341,17 +346,3 @@ class Robot:
             self.twin.reset(pose, noise=self.noise, seed=self.seed)
         else:
             self.run(PoseHolder(self.description.joints, pose), START_SECONDS)
-
-
-def _walk_end(walker: Balancer, steps: int, on_step: OnStep | None) -> Until:
-    """Return what ends a walk: enough steps."""
-    seen = 0
-
-    def until(observation: Observation) -> str | None:
-        nonlocal seen
-        if on_step is not None and walker.steps > seen:
-            seen = walker.steps
-            on_step(seen, walker.records[-1].speed)
-        return "done" if walker.steps >= steps else None
-
-    return until

@@ -19,19 +19,28 @@ from tools.report import WalkReport, summary
 from tools.robot import Robot
 from tools.twin_options import TwinOptions
 
+STEPS = 80
+GOAL_STEPS = 1000
+
 
 @dataclass(frozen=True, kw_only=True)
 class Walk(TwinOptions, Common):
     """Walk a robot and say how it went."""
 
-    steps: int = 80
-    """How many steps to walk."""
+    steps: int | None = None
+    """How many steps to walk, 80 by default; or in how many to reach a goal, 1000 by default."""
     speed: float | None = None
     """Speed, m/s; the gait's default otherwise."""
     side: float = 0.0
     """Sideways speed, m/s; positive to the left."""
     turn: float = 0.0
     """Turn rate, degrees/s; positive to the left."""
+    path: str | None = None
+    """Follow a path: a CSV file of x,y waypoints, circle:RADIUS or square:SIDE, m."""
+    to: tuple[float, float] | None = None
+    """Walk to the point X Y, m, and stop."""
+    stand: float = 0.0
+    """Afterwards come to rest and stand for some seconds."""
     style: tuple[str, ...] = ()
     """Styles and how much of them, NAME=AMOUNT; any perturbation of the gait is one too."""
     gait: str = "walk"
@@ -53,12 +62,14 @@ class Walk(TwinOptions, Common):
 
     def run(self) -> int:
         """Walk; returns the exit status."""
-        if self.steps < 1:
+        if self.steps is not None and self.steps < 1:
             raise UsageError(f"--steps {self.steps}: give 1 or more")
+        if self.stand < 0.0:
+            raise UsageError(f"--stand {self.stand:g}: give 0 s or more")
         seeds = self.all_seeds
         if len(seeds) == 1 and self.seeds is None:
             result = self._one(seeds[0], show=True)
-            ok = result["steps"] >= self.steps and not result["fell"]
+            ok = result["reason"] == "done"
             write_json(self.json, "walk", result)
             return 130 if result["reason"] == "interrupted" else 0 if ok else 1
         rows = list(self._many(seeds))
@@ -93,13 +104,21 @@ class Walk(TwinOptions, Common):
                 console.print(f"picture: {self.plot}")
         return report.result()
 
+    @property
+    def _most(self) -> int:
+        """Steps to walk, or to reach the goal in."""
+        if self.steps is not None:
+            return self.steps
+        return STEPS if self.path is None and self.to is None else GOAL_STEPS
+
     def _walk(self, robot: Robot, progress: Progress) -> WalkReport:
-        bar = progress.add_task("walking", total=self.steps, speed="", lean="")
+        bar = progress.add_task("walking", total=self._most, speed="", lean="")
         return robot.walk(
-            steps=self.steps,
+            steps=self._most,
             options=self._options(),
             on_step=_update(progress, bar, robot),
             disturb=self.disturb(),
+            stand=self.stand,
         )
 
     def _options(self) -> WalkOptions:
@@ -109,6 +128,8 @@ class Walk(TwinOptions, Common):
             side=self.side,
             turn=self.turn,
             style=self.style,
+            path=self.path,
+            to=self.to,
             rv=self.rv,
             sampling=self.sampling,
             target=self.target,
