@@ -32,14 +32,23 @@ class Course:
     direction: float = 0.0
     rate: float = field(default=0.0, init=False)
     _advance: float = field(default=0.0, init=False)
+    _turning: bool = field(default=False, init=False)
+
+    @property
+    def perturbation(self) -> str:
+        """Name of the perturbation to scale: another one may turn than holds the course."""
+        other = self.turn.perturbation if self.turn is not None and self._turning else None
+        return other or self.law.perturbation
 
     def reset(self) -> None:
         """Begin again, straight ahead."""
         self.direction = self.rate = self._advance = 0.0
+        self._turning = False
 
     def begin_step(self, command: WalkCommand, heading: float, duration: float) -> None:
         """Move the wanted heading on by what one step of `duration` s turns."""
         wanted = self._wanted(command, duration)
+        self._turning = command.turn != 0.0 or self.rate != 0.0
         ramp = inf_or_radians(self.turn)
         self.rate += float(np.clip(wanted - self.rate, -ramp, ramp))
         self._advance = self.rate * duration

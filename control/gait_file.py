@@ -37,7 +37,7 @@ class Perturbation(Record, frozen=True):
 
     `pose` is added to the states of the steps that stand on `stance`; the steps on the other
     foot get the mirror image, or with `opposite` its negative, which is how one turns. `states`
-    narrows it down. `hold` changes hold times, in seconds.
+    narrows it down; entries of one name add up. `hold` changes hold times, in seconds.
     """
 
     name: str
@@ -77,11 +77,14 @@ class SpeedRow(Record, frozen=True):
 class Speed(Record, frozen=True):
     """Commanded speed: rows that are interpolated, and feedback of the measured speed.
 
-    A walk begins at the first row and gains `ramp` m/s a step.
+    A walk begins at the speed `begin` and gains `ramp` m/s a step. Without a `default` the table
+    only counts when a speed is commanded. `correct` names the target or the perturbation that the
+    feedback moves, by `gain` times the error, m/s, each step.
     """
 
-    default: float
     rows: list[SpeedRow]
+    default: float | None = None
+    begin: float = 0.0
     ramp: float = 1.0
     correct: str | None = None
     gain: float = 0.0
@@ -106,17 +109,20 @@ class Side(Record, frozen=True):
 
 
 class Turn(Record, frozen=True):
-    """Commanded turning, to the heading's perturbation; `limit` is the fastest, degrees/s.
+    """Commanded turning; `limit` is the fastest, degrees/s.
 
-    `feed` is the perturbation for each degree that one step shall turn, `spread` scalings for one
-    degree/s either way. The rate changes by `ramp` degrees/s a step. Turning on the spot may be
-    faster than at speed: `radius` is the tightest turn, m.
+    `feed` is the scaling for each degree that one step shall turn, `spread` scalings for one
+    degree/s either way. The rate changes by `ramp` degrees/s a step. `perturbation` turns where
+    that of the heading is only good for holding a course. On a path, tight turns are walked at
+    `speed` m/s, and none tighter than `radius` m.
     """
 
     limit: float
     ramp: float = 1000.0
     feed: float = 0.0
     spread: dict[str, float] = {}
+    perturbation: str | None = None
+    speed: float = 0.0
     radius: float = 0.0
 
 

@@ -35,6 +35,8 @@ class SpeedControl:
                 )
             return
         self.speed = table.default if self.speed is None else self.speed
+        if self.speed is None:
+            return
         slowest, fastest = self.range
         if not slowest <= self.speed <= fastest:
             raise UsageError(
@@ -55,7 +57,9 @@ class SpeedControl:
 
     def reset(self) -> None:
         """Begin again at rest."""
-        self.correction = self.present = 0.0
+        table = self.gait.file.speed
+        self.correction = 0.0
+        self.present = 0.0 if table is None else table.begin
 
     def begin_step(self) -> None:
         """Go one step up (or down) the ramp."""
@@ -69,6 +73,9 @@ class SpeedControl:
         scale = np.zeros(len(self.gait.perturbations))
         for name in self._names("scale"):
             scale[self.gait.index(name)] = self._at("scale", name)
+        table = self.gait.file.speed
+        if table is not None and table.correct in self.gait.perturbations:
+            scale[self.gait.index(table.correct)] += self.correction
         return scale
 
     def targets(self) -> dict[str, float]:
@@ -87,7 +94,7 @@ class SpeedControl:
             self.correction = float(np.clip(self.correction + change, -table.limit, table.limit))
 
     def _names(self, kind: str) -> list[str]:
-        rows = self.gait.file.speed.rows if self.gait.file.speed else []
+        rows = self.gait.file.speed.rows if self.gait.file.speed and self.speed is not None else []
         return sorted({name for row in rows for name in getattr(row, kind)})
 
     def _at(self, kind: str, name: str) -> float:

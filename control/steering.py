@@ -79,7 +79,7 @@ class Steering:
         scale = self.speed.scale() + self.side.scale() + self.style.scale()
         course = self.course
         if course is not None:
-            scale[self.gait.index(course.law.perturbation)] += course.scale(start.heading)
+            scale[self.gait.index(course.perturbation)] += course.scale(start.heading)
             for name, value in (course.turn.spread if course.turn else {}).items():
                 scale[self.gait.index(name)] += value * abs(float(np.degrees(course.rate)))
         return scale

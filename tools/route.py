@@ -55,8 +55,8 @@ def agility_of(gait: Gait, speed: float | None) -> Agility:
     turn, table = gait.file.turn, gait.file.speed
     if turn is None:
         raise UsageError(f"gait {gait.name!r} cannot turn; a path needs a [turn] table")
-    fast = table.default if speed is None and table is not None else speed
-    slow = table.rows[0].speed if table is not None else None
+    fast = table.default or table.begin if speed is None and table is not None else speed
+    slow = None if fast is None else min(fast, turn.speed)
     return Agility(fast, radians(turn.limit), turn.radius, slow)
 
 
