@@ -63,6 +63,7 @@ class Balance(Record, frozen=True):
     keep: float = 0.7
     regularisation: float = 1e-3
     weights: dict[str, float] = {}
+    drift: float = 0.5
     horizon: float = 1.5
 
 

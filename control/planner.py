@@ -119,7 +119,7 @@ class StepPlanner:
             values = start.evaluate(outcomes, self.regulation, self.contacts)
             return values, outcomes.fell | ~policy.done
 
-        return self.model.control(sample, request.target, request.stance)
+        return self.model.control(sample, request.target, request.stance, start.features())
 
     def policy(self, request: StepRequest, scale: Array) -> StepPolicy:
         """Return what plays the requested step with scalings (m, p)."""

@@ -83,6 +83,21 @@ class StepStart:
         columns = [variable.evaluate(end) for variable in variables]
         return np.stack(columns, axis=-1) if columns else np.zeros((len(outcomes.fell), 0))
 
+    def features(self) -> Array:
+        """Return where and how fast the centre of mass is over the stance foot, and the lean.
+
+        (7,) in the frame of the heading; velocities over omega = sqrt(g / height), so that all but
+        the lean are m. The lateral ones are positive toward the swing foot.
+        """
+        body = self.body
+        offset = body.com[0] - body.feet[0, self.stance]
+        slow = np.sqrt(max(float(offset[2]), 0.1) / 9.81)
+        c, s = np.cos(self.heading), np.sin(self.heading)
+        out = np.sign(body.feet[0, 1 - self.stance] @ [-s, c, 0.0] - body.com[0] @ [-s, c, 0.0])
+        turn = np.array([[c, s], [-s * out, c * out]])
+        flat = [offset[:2], slow * body.com_velocity[0, :2], 0.2 * body.torso[0, :2]]
+        return np.concatenate([turn @ part for part in flat] + [[offset[2]]])
+
     def turned(self, end: Outcomes) -> float:
         """Return the change of heading until `end`, rad."""
         change = float(heading(end.base_orientation)[0]) - self.heading

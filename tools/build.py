@@ -17,6 +17,7 @@ from control.regulation import RegulationVariable, regulation_variables
 from control.side import SideControl
 from control.speed import SpeedControl
 from control.steering import Steering
+from control.step_memory import Reuse, memory_of
 from control.step_model import StepModel
 from control.style import Styling
 from control.torso_servo import TorsoServo
@@ -41,6 +42,7 @@ class WalkOptions:
     rv: tuple[str, ...] | None = None
     sampling: Sampling | None = None
     target: tuple[str, ...] = ()
+    model: Reuse = "full"
     torso_servo: bool = True
     open_loop: bool = False
 
@@ -95,7 +97,7 @@ def build_walk(
             body=body,
             regulation=variables,
             perturbations=names,
-            model=_step_model(gait, balance, variables, names),
+            model=_step_model(gait, balance, variables, names, options.model),
             predictor=predictor,
             torso_servo=torso_servo,
             horizon=balance.horizon,
@@ -188,8 +190,14 @@ def _perturbations(
 
 
 def _step_model(
-    gait: Gait, balance: Balance, variables: list[RegulationVariable], names: list[str]
+    gait: Gait,
+    balance: Balance,
+    variables: list[RegulationVariable],
+    names: list[str],
+    reuse: Reuse,
 ) -> StepModel:
+    if reuse != "full" and balance.sampling != "full":
+        raise UsageError(f"--model {reuse} keeps whole Jacobians; it needs `--sampling full`")
     items = {item.name: item for item in gait.file.perturbation}
     for name in names:
         gait.index(name)
@@ -202,6 +210,8 @@ def _step_model(
         from_last=balance.from_last,
         keep=balance.keep,
         regularisation=balance.regularisation,
+        memory=memory_of(reuse),
+        drift=balance.drift,
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from control.balancer import Balancer
 from control.loop import LoopReport
 from control.navigation import PathFollower, PointFollower
+from control.planner import StepPlanner
 from hal.joints import Array
 from tools.build import WalkOptions
 
@@ -73,6 +74,12 @@ class WalkReport:
         return (records[-1].heading - records[0].heading) / (records[-1].time - records[0].time)
 
     @property
+    def counters(self) -> dict[str, int]:
+        """How often the step model was sampled, used again, retried and so on."""
+        planner = self.walker.planner
+        return dict(planner.model.counters) if isinstance(planner, StepPlanner) else {}
+
+    @property
     def clearance(self) -> float | None:
         """Smallest distance between the feet, mm; negative where they crossed."""
         look = self.robot.clearance
@@ -121,6 +128,8 @@ class WalkReport:
             "wall_time_s": loop.wall_time,
             "rollouts": watch.count,
             "rollout_time_s": watch.seconds,
+            "rollouts_a_step": watch.count / max(walker.steps, 1),
+            "step_model": self.counters,
             "tick_ms": loop.tick_ms(),
             "missed": loop.missed if robot.paced else None,
             "clamps": {name: count for name, count in robot.backend.clamps.items() if count},

@@ -49,6 +49,9 @@ class Walk(TwinOptions, Common):
     """Regulation variables, such as: up, or up.forward swing_com.lateral."""
     sampling: Literal["sp", "fl", "lf", "full"] | None = None
     """How the step model is sampled."""
+    model: Literal["full", "frozen", "library"] = "full"
+    """Sample the step model every step, or only when regulation drifts (frozen), or look it up by
+    the start of the step (library): one rollout then does."""
     target: tuple[str, ...] = ()
     """Targets of the regulation variables: VALUE for the first forward one, or NAME=VALUE."""
     torso_servo: bool = True
@@ -132,6 +135,7 @@ class Walk(TwinOptions, Common):
             to=self.to,
             rv=self.rv,
             sampling=self.sampling,
+            model=self.model,
             target=self.target,
             torso_servo=self.torso_servo,
             open_loop=self.open_loop,
