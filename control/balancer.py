@@ -16,6 +16,7 @@ from control.planner import Planner, StepRequest
 from control.policy import policy_input
 from control.pose_tracker import PoseTracker
 from control.regulation import RegulationVariable
+from control.shaken import Shaken
 from control.steering import Steering
 from control.step_record import StepRecord, StepStart
 from control.torso_servo import TorsoServo
@@ -45,6 +46,8 @@ class Balancer:
         targets: Targets by name of the regulation variable.
         fixed_targets: Targets that win over the steering's, by name.
         torso_servo: The torso servo, or None.
+        shaken: Says when a step has to be planned again, or None.
+        replans: How often that was.
         records: Finished steps.
         late: Steps whose answer never came.
     """
@@ -60,6 +63,8 @@ class Balancer:
     targets: dict[str, float] = field(default_factory=dict)
     fixed_targets: dict[str, float] = field(default_factory=dict)
     torso_servo: TorsoServo | None = None
+    shaken: Shaken | None = None
+    replans: int = field(default=0, init=False)
     records: list[StepRecord] = field(default_factory=list, init=False)
     late: int = field(default=0, init=False)
 
@@ -88,6 +93,9 @@ class Balancer:
         self._asked = False
         self._turned = 0.0
         self.steering.reset()
+        self.replans = 0
+        if self.shaken is not None:
+            self.shaken.reset()
         self.records.clear()
         self.late = 0
         if self.planner is not None:
@@ -101,6 +109,8 @@ class Balancer:
             here = self.body.measure(observation)
             self._end_step(observation.time, here, self._start)
             self._begin_step(observation, here, dt)
+        elif self.shaken is not None:
+            self._look_again(observation, self._start, self.shaken, dt)
         if self._asked:
             self._take_answer(observation.time)
         goals = self._tracker.step(policy_input(observation), dt)[0]
@@ -122,11 +132,28 @@ class Balancer:
             self._tracker.rescale(scale[None])
             return
         self.late += self._asked
+        self._ask(observation, start, dt)
+
+    def _look_again(
+        self, observation: Observation, start: StepStart, shaken: Shaken, dt: float
+    ) -> None:
+        """Plan the rest of the step anew, if something has happened since it began."""
+        state = int(self._tracker.state[0])
+        if not shaken.entered(state):
+            return
+        here = self.body.measure(observation)
+        if shaken.by(state, here.com_velocity[0], start.heading) and self.planner is not None:
+            self.replans += 1
+            self._ask(observation, start, dt)
+
+    def _ask(self, observation: Observation, start: StepStart, dt: float) -> None:
+        """Ask for the scalings of the step, or of what is left of it."""
+        assert self.planner is not None
         self._asked = True
         flight = RolloutStart(observation, np.array(self._sent), dt)
-        before = self._tracker.scale[0]
+        now, before = self._tracker.now, self._tracker.scale[0]
         self.planner.ask(
-            StepRequest(flight, self._tracker.now, start.stance, scale, before, self._target)
+            StepRequest(flight, now, start.stance, self._scale, before, self._target, start)
         )
 
     def _take_answer(self, time: float) -> None:

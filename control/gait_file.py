@@ -52,7 +52,11 @@ class Perturbation(Record, frozen=True):
 
 
 class Balance(Record, frozen=True):
-    """How the gait keeps its balance; every entry can be overridden at the command line."""
+    """How the gait keeps its balance.
+
+    A step is planned again in its middle when the centre of mass is `replan` m/s faster or slower
+    than it was at the same state two steps ago.
+    """
 
     regulation: list[str] = []
     perturbations: list[str] = []
@@ -64,6 +68,7 @@ class Balance(Record, frozen=True):
     regularisation: float = 1e-3
     weights: dict[str, float] = {}
     drift: float = 0.5
+    replan: float | None = None
     horizon: float = 1.5
 
 
@@ -80,7 +85,8 @@ class Speed(Record, frozen=True):
 
     A walk begins at the speed `begin` and gains `ramp` m/s a step. Without a `default` the table
     only counts when a speed is commanded. `correct` names the target or the perturbation that the
-    feedback moves, by `gain` times the error, m/s, each step.
+    feedback moves, by `gain` times the error, m/s, each step; `also` names targets that move with
+    it, by so much for each unit (a slower robot leans forward, Eq. 5.1).
     """
 
     rows: list[SpeedRow]
@@ -88,6 +94,7 @@ class Speed(Record, frozen=True):
     begin: float = 0.0
     ramp: float = 1.0
     correct: str | None = None
+    also: dict[str, float] = {}
     gain: float = 0.0
     limit: float = 0.0
 

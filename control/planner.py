@@ -33,6 +33,7 @@ class StepRequest:
         scale: (p,) scalings of all perturbations before balance.
         before: (p,) scalings in force until the answer acts.
         target: (r,) wanted regulation variables.
+        origin: Where the step began, if that is not where `start` is.
     """
 
     start: RolloutStart
@@ -41,6 +42,7 @@ class StepRequest:
     scale: Array
     before: Array
     target: Array
+    origin: StepStart | None = None
 
 
 class Planner(Protocol):
@@ -109,7 +111,7 @@ class StepPlanner:
 
     def plan(self, request: StepRequest) -> Array:
         """Return the scalings (r,) for the step."""
-        start = StepStart.of(request.start.observation, request.stance, self.body)
+        start = request.origin or StepStart.of(request.start.observation, request.stance, self.body)
 
         def sample(scalings: Array) -> tuple[Array, Mask]:
             scale = np.repeat(request.scale[None], len(scalings), axis=0)

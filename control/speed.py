@@ -86,6 +86,12 @@ class SpeedControl:
             targets[table.correct] += self.correction
         return targets
 
+    def shifts(self) -> dict[str, float]:
+        """Return what the feedback adds to other targets."""
+        table = self.gait.file.speed
+        also = {} if table is None else table.also
+        return {name: value * self.correction for name, value in also.items()}
+
     def measured(self, speed: float) -> None:
         """Take the speed of the step that has just ended, m/s."""
         table = self.gait.file.speed

@@ -87,7 +87,11 @@ class Steering:
     def targets(self, base: dict[str, float], *, swing_is_left: bool) -> dict[str, float]:
         """Return the targets of the step by name: `base`, the speed's, and what is added."""
         targets = {**base, **self.speed.targets()}
-        for added in (self.side.targets(swing_is_left=swing_is_left), self.style.targets()):
+        for added in (
+            self.speed.shifts(),
+            self.side.targets(swing_is_left=swing_is_left),
+            self.style.targets(),
+        ):
             for name, value in added.items():
                 targets[name] = targets.get(name, 0.0) + value
         return targets

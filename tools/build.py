@@ -14,6 +14,7 @@ from control.gait_file import Balance, Sampling
 from control.guide import Guide, Steady, WalkCommand
 from control.planner import Planner, StepPlanner
 from control.regulation import RegulationVariable, regulation_variables
+from control.shaken import Shaken
 from control.side import SideControl
 from control.speed import SpeedControl
 from control.steering import Steering
@@ -114,6 +115,7 @@ def build_walk(
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
         torso_servo=torso_servo,
+        shaken=None if balance.replan is None or options.rv else Shaken(balance.replan),
     )
 
 

@@ -129,6 +129,7 @@ class WalkReport:
             "rollouts": watch.count,
             "rollout_time_s": watch.seconds,
             "rollouts_a_step": watch.count / max(walker.steps, 1),
+            "replans": walker.replans,
             "step_model": self.counters,
             "tick_ms": loop.tick_ms(),
             "missed": loop.missed if robot.paced else None,
