@@ -49,7 +49,7 @@ class Balancer:
         shaken: Says when a step has to be planned again, or None.
         replans: How often that was.
         records: Finished steps.
-        late: Steps whose answer never came.
+        late: Steps whose answer came too late to act in time, or never.
     """
 
     gait: Gait
@@ -91,6 +91,7 @@ class Balancer:
         self._tracker = PoseTracker(self.gait, self.contacts, scale, None, self.torso_servo)
         self._start: StepStart | None = None
         self._asked = False
+        self._kept: dict[int, Array] = {}
         self._turned = 0.0
         self.steering.reset()
         self.replans = 0
@@ -132,7 +133,9 @@ class Balancer:
             self._tracker.rescale(scale[None])
             return
         self.late += self._asked
-        self._ask(observation, start, dt)
+        before = self._before(start.stance)
+        self._tracker.rescale(before[None])
+        self._ask(observation, start, before, dt)
 
     def _look_again(
         self, observation: Observation, start: StepStart, shaken: Shaken, dt: float
@@ -144,17 +147,29 @@ class Balancer:
         here = self.body.measure(observation)
         if shaken.by(state, here.com_velocity[0], start.heading) and self.planner is not None:
             self.replans += 1
-            self._ask(observation, start, dt)
+            self._ask(observation, start, self._tracker.scale[0], dt)
 
-    def _ask(self, observation: Observation, start: StepStart, dt: float) -> None:
-        """Ask for the scalings of the step, or of what is left of it."""
+    def _ask(self, observation: Observation, start: StepStart, before: Array, dt: float) -> None:
+        """Ask for the scalings of the step, or of what is left of it.
+
+        Those `before` (p,) stay in force until the answer acts.
+        """
         assert self.planner is not None
-        self._asked = True
-        flight = RolloutStart(observation, np.array(self._sent), dt)
-        now, before = self._tracker.now, self._tracker.scale[0]
-        self.planner.ask(
-            StepRequest(flight, now, start.stance, self._scale, before, self._target, start)
-        )
+        flight, now = RolloutStart(observation, np.array(self._sent), dt), self._tracker.now
+        request = StepRequest(flight, now, start.stance, self._scale, before, self._target, start)
+        self._asked, self._late_from = True, request.due(self.planner.latency) + dt
+        self.planner.ask(request)
+
+    def _before(self, stance: int) -> Array:
+        """Return the scalings (p,) until the answer comes: this step's, with the old K.
+
+        The old K is the last one of the same side: what a lean to the left needs, a lean to the
+        right does not.
+        """
+        scale = self._scale.copy()
+        if stance in self._kept:
+            scale[self._columns] += self._kept[stance]
+        return scale
 
     def _take_answer(self, time: float) -> None:
         """Put the planner's scalings into force, if they have come."""
@@ -163,8 +178,11 @@ class Balancer:
         if answer is None:
             return
         self._asked = False
+        self.late += time >= self._late_from
         scale = self._scale.copy()
         scale[self._columns] += answer
+        assert self._start is not None
+        self._kept[self._start.stance] = answer
         self._tracker.rescale(scale[None])
 
     def _end_step(self, time: float, end: Outcomes, start: StepStart) -> None:

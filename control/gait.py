@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from control.gait_checks import check_gait
 from control.gait_file import GaitFile, Perturbation, Pose, State
 from control.pose_graph import FOREVER, PoseGraph, RelativeGraph
 from hal.config import load_toml
@@ -57,6 +58,7 @@ def load_gait(path: Path, joints: Joints, contacts: ContactSensors, mirror: Mirr
         ConfigError: The file does not fit its format, the robot, or the joint limits.
     """
     file = load_toml(path, GaitFile)
+    check_gait(path, file, joints)
     reader = _Reader(path, file, joints, contacts, mirror)
     graph = reader.graph()
     pose, hold = reader.perturbations(graph)
@@ -74,6 +76,8 @@ class _Reader:
     mirror: Mirror
 
     def graph(self) -> PoseGraph:
+        if not self.file.state:
+            raise self._error("state", "a graph needs at least one state")
         states = list(self.file.state)
         poses = [self._state_pose(state) for state in states]
         if self.file.mirror:
@@ -129,7 +133,8 @@ class _Reader:
         where = f"state.{state.name}.pose"
         degrees = self._pose(self.file.pose, "pose") + self._pose(state.pose, where)
         pose = np.radians(degrees)
-        outside = (pose < self.joints.lower - 1e-9) | (pose > self.joints.upper + 1e-9)
+        inside = (pose >= self.joints.lower - 1e-9) & (pose <= self.joints.upper + 1e-9)
+        outside = ~inside
         if outside.any():
             j = int(np.flatnonzero(outside)[0])
             low, high = np.degrees([self.joints.lower[j], self.joints.upper[j]])

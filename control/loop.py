@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
+from hal.command import JointCommand
 from hal.controller import Controller, Stopwatch
 from hal.guard import GuardedBackend
 from hal.observation import Observation
@@ -20,6 +21,21 @@ class Estimator(Protocol):
 
     def update(self, observation: Observation, dt: float) -> Observation:
         """Return `observation` with its base."""
+        ...
+
+
+class Recorder(Protocol):
+    """Takes down every tick, in the tick's own time: it has to be quick, and never waits."""
+
+    def record(
+        self,
+        observation: Observation,
+        command: JointCommand,
+        seconds: float,
+        tick: int,
+        missed: int,
+    ) -> None:
+        """Take down what was seen, what the joints were told, and how long that took, s."""
         ...
 
 
@@ -60,6 +76,7 @@ def run_loop(
     estimator: Estimator | None = None,
     rollouts: Stopwatch | None = None,
     report: LoopReport | None = None,
+    recorder: Recorder | None = None,
 ) -> LoopReport:
     """Run `controller` on `backend` every `period` s until there is a reason to stop.
 
@@ -73,6 +90,7 @@ def run_loop(
         estimator: Fills in the base state.
         rollouts: Time to leave out of the ticks.
         report: Filled in as the run goes, so that an interrupted run has measured something.
+        recorder: Takes down every tick.
 
     Raises:
         WindupError: Whatever the backend, the guard or the controller raise.
@@ -94,9 +112,12 @@ def run_loop(
         if first:
             controller.reset(observation)
             first = False
-        backend.write(controller.step(observation, period))
-        report.tick.append(wall.perf_counter() - began - (rollouts.seconds - playing))
+        command = backend.write(controller.step(observation, period))
+        spent = wall.perf_counter() - began - (rollouts.seconds - playing)
+        report.tick.append(spent)
         report.ticks += 1
+        if recorder is not None:
+            recorder.record(observation, command, spent, report.ticks, report.missed)
         tick += 1
         late = int((clock.now() - started) / period - tick + 1e-6)
         if late > 0:

@@ -5,6 +5,7 @@ The planner holds everything that a step model needs, so that it can run in the 
 """
 
 from dataclasses import dataclass
+from math import ceil
 from typing import Protocol
 
 import numpy as np
@@ -44,9 +45,22 @@ class StepRequest:
     target: Array
     origin: StepStart | None = None
 
+    def ticks(self, latency: float) -> int:
+        """Return the tick of the step, from 0, at which an answer may act after `latency` s."""
+        return ceil(latency / self.start.dt - 1e-6)
+
+    def due(self, latency: float) -> float:
+        """Return the time of that tick, less half a tick for a clock on the wall, s."""
+        return self.start.observation.time + (self.ticks(latency) - 0.5) * self.start.dt
+
 
 class Planner(Protocol):
     """Answers requests, at once or later."""
+
+    @property
+    def latency(self) -> float:
+        """From the start of a step to its scalings acting, s."""
+        ...
 
     def reset(self) -> None:
         """Forget all steps."""
@@ -57,7 +71,11 @@ class Planner(Protocol):
         ...
 
     def answer(self, time: float) -> Array | None:
-        """Return the scalings (r,) asked for, once they may act at `time` s; None until then."""
+        """Return the scalings (r,) asked for, once they may act at `time` s; None until then.
+
+        Raises:
+            PlannerError: There will be no answer.
+        """
         ...
 
 
@@ -94,6 +112,7 @@ class StepPlanner:
     def __post_init__(self) -> None:
         self._columns = [self.gait.index(name) for name in self.perturbations]
         self._answer: Array | None = None
+        self._due = 0.0
 
     def reset(self) -> None:
         """Forget all steps."""
@@ -103,9 +122,12 @@ class StepPlanner:
     def ask(self, request: StepRequest) -> None:
         """Plan the step now."""
         self._answer = self.plan(request)
+        self._due = request.due(self.latency)
 
     def answer(self, time: float) -> Array | None:
         """Return what `ask` has found, once."""
+        if time < self._due:
+            return None
         answer, self._answer = self._answer, None
         return answer
 
@@ -126,9 +148,10 @@ class StepPlanner:
     def policy(self, request: StepRequest, scale: Array) -> StepPolicy:
         """Return what plays the requested step with scalings (m, p)."""
         size = len(scale)
-        first = np.repeat(request.before[None], size, axis=0) if self.latency > 0.0 else scale
+        ticks = request.ticks(self.latency)
+        first = np.repeat(request.before[None], size, axis=0) if ticks else scale
         at = request.at.repeat(size)
         tracker = PoseTracker(self.gait, self.contacts, first, at, self.torso_servo)
         policy = StepPolicy(tracker, self.joints.lower, self.joints.upper)
-        policy.rescale_at(self.latency, scale)
+        policy.rescale_at(ticks * request.start.dt, scale)
         return policy

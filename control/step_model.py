@@ -128,13 +128,18 @@ class StepModel:
     def _retry(
         self, sample: Sample, base: Array, j: int, k: Array, q: Array, fell: Mask
     ) -> tuple[Array, Array, bool]:
-        """Replace one fallen sample by one on the other side of the origin's step."""
-        if fell.all():
+        """Replace a fallen sample by one where the other still stands.
+
+        Centred samples are retried half as far out on the standing side; a one-sided sample on the
+        other side of the origin.
+        """
+        if fell.all() or (not self.centred and fell[0]):
             self.counters["dropped"] += 1
             return k, q, False
         self.counters["retried"] += 1
         tried = base[None].copy()
-        tried[0, j] = 0.5 * (base[j] + k[~fell][0])
+        side = -self.samples[j] if not self.centred else 0.5 * (k[~fell][0] - base[j])
+        tried[0, j] += side
         value, again = sample(tried)
         k, q = k.copy(), q.copy()
         k[fell], q[fell] = tried[0, j], value[0, j]
@@ -181,6 +186,9 @@ class StepModel:
             self.counters["kept_last"] += 1
             return self._last.get(side, origin)
         jacobian = self._differences(sample, origin, tried, values, fell, side)
+        if np.abs(jacobian * self.samples).max() < SINGULAR:
+            self.counters["kept_last"] += 1
+            return self._last.get(side, origin)
         self._jacobian[side] = jacobian
         if self.memory is not None:
             self.memory.store(side, start, jacobian)
@@ -220,4 +228,5 @@ class StepModel:
         """Return dK of the damped, weighted least squares, in the scalings' units."""
         scaled = self.weights[:, None] * jacobian * self.samples
         normal = scaled.T @ scaled + self.regularisation * np.eye(len(error))
-        return self.samples * np.linalg.solve(normal, scaled.T @ (self.weights * error))
+        wanted = scaled.T @ (self.weights * error)
+        return self.samples * np.linalg.lstsq(normal, wanted, rcond=None)[0]

@@ -1,6 +1,7 @@
 """What every robot looks like to the loop: a port full of servos, a twin, or a mock."""
 
-from typing import Protocol
+from collections.abc import Mapping
+from typing import Protocol, runtime_checkable
 
 from hal.command import JointCommand
 from hal.joints import Joints, Mask
@@ -67,4 +68,23 @@ class Backend(Protocol):
 
     def disconnect(self) -> None:
         """Give back what `connect` took."""
+        ...
+
+
+@runtime_checkable
+class BusHealth(Protocol):
+    """What a backend on a bus can say about the bus and its servos; a twin has neither."""
+
+    @property
+    def alert_kinds(self) -> tuple[str, ...]:
+        """All that a servo can complain of."""
+        ...
+
+    @property
+    def alerts(self) -> dict[str, tuple[str, ...]]:
+        """Joint name to what its servo complains of."""
+        ...
+
+    def bus_errors(self) -> Mapping[str, int]:
+        """Return kind of error to how often it has happened; the kinds are always the same."""
         ...

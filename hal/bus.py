@@ -1,6 +1,7 @@
-"""One bus of Dynamixel servos: who is there, single registers, and several servos at once."""
+"""One bus of servos: who is there, single registers, and several servos at once."""
 
-from collections.abc import Iterable, Mapping, Sequence
+import contextlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -8,23 +9,19 @@ import numpy.typing as npt
 
 from hal.errors import HardwareError, NoAnswerError, UsageError
 from hal.exchange import Exchange
+from hal.families import DYNAMIXEL_X, Family
 from hal.joints import Mask
 from hal.port import Port
-from hal.protocols import protocol2
-from hal.protocols.batched import BlockRead
+from hal.protocols.cyclic import CyclicRead
 from hal.protocols.protocol2 import Span
 from hal.registers import Register
-from hal.sdk import DynamixelLink
-from hal.servos.x_series_registers import BAUD_CODES, COMMON, model_name
 
 Counts = npt.NDArray[np.int64]
 
-PING_SLOT = 3e-3
-"""Servos answer a broadcast ping one after the other, each id in its own slot of this, s."""
 REBOOT_TIME = 0.6
 """How long a servo is deaf after a reboot, s."""
-
-_TABLE = {register.name: register for register in COMMON}
+EEPROM_TIME = 20e-3
+"""How long a Feetech servo writes its EEPROM after it has answered, s."""
 
 
 class Found(NamedTuple):
@@ -34,30 +31,33 @@ class Found(NamedTuple):
     id: int
     model_number: int
     firmware: int
-
-    @property
-    def model(self) -> str:
-        """The name of its model."""
-        return model_name(self.model_number)
+    model: str
 
 
 class Bus:
-    """The servos on one port.
+    """The servos on one port, all of one family.
 
-    `ping`, `read`, `write` and their like go through dynamixel-sdk, wait for the answer, and try
+    `ping`, `read`, `write` and their like go through the maker's SDK, wait for the answer, and try
     again; `sync_read` and `sync_write` are one transaction of ours. A loop holds its own
-    `BlockRead` and `BlockWrite` and drives `exchange` itself.
+    `CyclicRead` and `CyclicWrite` and drives `exchange` itself.
 
     Attributes:
         port: The port.
+        family: Its servos.
         exchange: Its cyclic traffic and error statistics.
     """
 
-    def __init__(self, port: Port) -> None:
-        self.port = port
+    def __init__(self, port: Port, family: Family = DYNAMIXEL_X) -> None:
+        self.port, self.family = port, family
         self.exchange = Exchange(port)
-        self._link = DynamixelLink(port)
+        self._link = family.dialect.link(port)
         self._fast: dict[tuple[int, ...], bool] = {}
+
+    def move_to(self, port: Port) -> None:
+        """Go on over another port, as after an adapter was unplugged; statistics go on too."""
+        self.port = port
+        self.exchange.move_to(port)
+        self._link = self.family.dialect.link(port)
 
     def ping(self, id: int) -> int:
         """Return the model number of servo `id`.
@@ -74,7 +74,7 @@ class Bus:
         """
         before = self.port.baud
         try:
-            return [found for baud in bauds or BAUD_CODES for found in self._scan(baud)]
+            return [found for baud in bauds or self.family.bauds for found in self._scan(baud)]
         finally:
             self.port.baud = before
 
@@ -88,12 +88,17 @@ class Bus:
         Raises:
             HardwareError: It reads back as something else.
         """
-        self._link.write(id, register.address, register.encode(counts))
+        self.command(id, register, counts, unlock=register.area == "eeprom")
         if (now := self.read(id, register)) != counts:
             raise HardwareError(
                 f"id {id} on {self.port.url}: {register.name} was set to {counts} "
                 f"and reads back as {now}"
             )
+
+    def command(self, id: int, register: Register, counts: int, unlock: bool = False) -> None:
+        """Write what does not read back; `unlock` opens an EEPROM that has a lock."""
+        with self._unlocked(id, unlock):
+            self._link.write(id, register.address, register.encode(counts))
 
     def sync_read(
         self, ids: Sequence[int], register: Register, fast: bool = False
@@ -103,15 +108,17 @@ class Bus:
         Plain by default: behind a missing servo a fast answer is silent.
         """
         spans = [Span(id, register.address, register.size) for id in ids]
-        read = BlockRead(spans, fast=fast and self.fast(ids))
+        read = self.family.dialect.read(spans, fast and self.fast(ids))
         self.exchange.request(read)
         valid = self.exchange.collect()
-        kind = f"<{'i' if register.signed else 'u'}{register.size}"
-        return read.column(0, kind).astype(np.int64), valid
+        return register.values(read.column(0, register.dtype)).astype(np.int64), valid
 
     def bulk_read(self, spans: Sequence[Span]) -> dict[int, bytes]:
-        """Return the bytes of other registers of each servo, by id, of those who answered."""
-        read = BlockRead(spans)
+        """Return the bytes of other registers of each servo, by id, of those who answered.
+
+        One transaction in protocol 2 and on MX that answered `probe_fast`, else one a servo.
+        """
+        read = self.family.dialect.read(spans, self.fast([span.id for span in spans]))
         self.exchange.request(read)
         valid = self.exchange.collect()
         return {span.id: read.params(row) for row, span in enumerate(spans) if valid[row]}
@@ -119,22 +126,24 @@ class Bus:
     def sync_write(self, register: Register, counts: Mapping[int, int]) -> None:
         """Write one register of several servos at once. Nobody answers: read back what matters."""
         data = {id: register.encode(value) for id, value in counts.items()}
-        self.exchange.send([protocol2.sync_write(data, register.address, register.size)])
+        frames = self.family.dialect.sync_write(data, register.address, register.size)
+        self.exchange.send(frames)
 
     def fast(self, ids: Sequence[int]) -> bool:
         """Return whether these servos answered `probe_fast`."""
         return self._fast.get(tuple(ids), False)
 
     def probe_fast(self, ids: Sequence[int]) -> bool:
-        """Find out whether all of `ids` know the fast sync read.
+        """Find out whether all of `ids` know the fast read of their family.
 
+        That is the fast sync read, the sync read of SCS, the bulk read of MX.
         Silence proves nothing about a servo without power: False is remembered only when the
         same servos answer the plain one.
         """
-        spans = [Span(id, _TABLE["id"].address, 1) for id in ids]
-        if self._everybody(BlockRead(spans, fast=True)):
+        spans = [Span(id, self.family.registers["id"].address, 1) for id in ids]
+        if self._everybody(self.family.dialect.read(spans, fast=True)):
             self._fast[tuple(ids)] = True
-        elif self._everybody(BlockRead(spans)):
+        elif self._everybody(self.family.dialect.read(spans)):
             self._fast[tuple(ids)] = False
         return self.fast(ids)
 
@@ -150,11 +159,14 @@ class Bus:
         Raises:
             UsageError: Somebody has it already, or there is no such id.
         """
-        if not 0 <= new <= protocol2.LAST_ID:
-            raise UsageError(f"id {new} cannot be; ids go from 0 to {protocol2.LAST_ID}")
+        last = self.family.dialect.last_id
+        if not 0 <= new <= last:
+            raise UsageError(f"id {new} cannot be; ids go from 0 to {last}")
         if self._answers(new):
             raise UsageError(f"id {new} on {self.port.url} is taken; two servos cannot share it")
-        self._link.write(id, _TABLE["id"].address, bytes([new]))
+        register = self.family.registers["id"]
+        with self._unlocked(id, after=new):
+            self._link.write(id, register.address, bytes([new]))
         self._link.ping(new)
 
     def set_baud(self, id: int, baud: int) -> None:
@@ -163,11 +175,10 @@ class Bus:
         Raises:
             UsageError: No servo of the family has this rate.
         """
-        if baud not in BAUD_CODES:
-            rates = ", ".join(str(rate) for rate in BAUD_CODES)
-            raise UsageError(f"baud rate {baud} cannot be; there are {rates}")
-        self._link.write(id, _TABLE["baud_rate"].address, bytes([BAUD_CODES[baud]]))
-        self.port.baud = baud
+        register, code = self.family.registers["baud_rate"], self.family.baud_code(baud)
+        with self._unlocked(id):
+            self._link.write(id, register.address, bytes([code]))
+            self.port.baud = baud
         self._link.ping(id)
 
     def factory_reset(self, id: int, keep: int = 0x02) -> None:
@@ -176,21 +187,27 @@ class Bus:
         self._wait(REBOOT_TIME)
 
     def _scan(self, baud: int) -> list[Found]:
-        """Ping everybody at one baud rate; every reply that is whole counts."""
         self.port.baud = baud
-        self.port.flush_input()
-        self.port.write(protocol2.ping())
-        slots = PING_SLOT * protocol2.LAST_ID + 2.0 * self.port.latency
-        longest = (protocol2.LAST_ID + 1) * (protocol2.OVERHEAD + 3)
-        stream = self.port.read(longest, self.port.clock.now() + slots + longest * 10.0 / baud)
-        answers = {item.id: item.params for item in protocol2.salvage(stream)}
         return [
-            Found(baud, id, int.from_bytes(params[:2], "little"), params[2])
-            for id, params in sorted(answers.items())
-            if len(params) == 3
+            Found(baud, *answered, self.family.model_name(answered.model_number))
+            for answered in self.family.dialect.who(self.port, self._link)
         ]
 
-    def _everybody(self, read: BlockRead) -> bool:
+    @contextlib.contextmanager
+    def _unlocked(self, id: int, unlock: bool = True, after: int | None = None) -> Iterator[None]:
+        """Open the EEPROM of a Feetech servo for a write, and close it under the id `after`."""
+        lock = self.family.registers.get("lock")
+        if lock is None or not unlock:
+            yield
+            return
+        self._link.write(id, lock.address, bytes([0]))
+        try:
+            yield
+            self._wait(EEPROM_TIME)
+        finally:
+            self._link.write(id if after is None else after, lock.address, bytes([1]))
+
+    def _everybody(self, read: CyclicRead) -> bool:
         for _ in range(2):
             self.exchange.request(read)
             if self.exchange.collect().all():

@@ -46,6 +46,10 @@ class UnsafeCommandError(WindupError):
     """A command that the guard refuses outright: not a number, or of the wrong shape."""
 
 
+class ControllerError(WindupError):
+    """A controller failed in mid-run with an error of its own."""
+
+
 class StaleStateError(WindupError):
     """A servo has not answered for longer than the limits allow."""
 
@@ -54,6 +58,16 @@ class StaleStateError(WindupError):
 
 class DivergedError(WindupError):
     """The twin's physics left the numbers; the simulation cannot go on."""
+
+
+class PlannerError(WindupError):
+    """The process that plans steps could not start, failed, or has died."""
+
+
+class TelemetryError(WindupError):
+    """A telemetry ring that cannot be made, is not there, or is of another version."""
+
+    exit_status = 2
 
 
 class HardwareError(WindupError):

@@ -7,7 +7,8 @@ import numpy as np
 
 from hal.joints import Mask
 from hal.port import Port
-from hal.protocols.batched import BlockRead
+from hal.protocols.batched1 import ChainRead
+from hal.protocols.cyclic import CyclicRead
 
 SLACK = 2e-3
 """What the host and its driver may add to the time on the wire, s."""
@@ -29,7 +30,10 @@ class Exchange:
     Attributes:
         port: The port.
         errors: Kind of error to how often it happened: "no answer" and "corrupt" count servos,
-            "resynchronised" counts answers that the fast check turned down.
+            "resynchronised" counts answers in which something was lost, "implausible" counts
+            servos whose good frame said what cannot be.
+        stuffed: Answers that were longer than plain and all there: data that looked like a header
+            was stuffed, or noise came with them, which is no error.
         cycles: Answers collected.
         turnaround: What each servo takes before it answers, s; `TURNAROUND` once its return
             delay has been set to 0.
@@ -39,10 +43,17 @@ class Exchange:
         self.port = port
         self.errors: Counter[str] = Counter()
         self.cycles = 0
+        self.stuffed = 0
         self.turnaround = UNSET_TURNAROUND
         self._wire_free = 0.0
         self._deadline = 0.0
-        self._pending: BlockRead | None = None
+        self._pending: CyclicRead | None = None
+
+    def move_to(self, port: Port) -> None:
+        """Go on over another port; what was asked on the old one is forgotten."""
+        self.port = port
+        self._wire_free = self._deadline = 0.0
+        self._pending = None
 
     def send(self, frames: Iterable[bytes]) -> None:
         """Send frames that nobody answers."""
@@ -50,12 +61,13 @@ class Exchange:
             self.port.write(frame)
             self._occupy(len(frame))
 
-    def request(self, read: BlockRead) -> None:
+    def request(self, read: CyclicRead) -> None:
         """Ask; input that has come before is too late for whatever it answered."""
-        self.port.flush_input()
-        self.port.write(read.request)
-        self._occupy(len(read.request))
-        self._deadline = self._wire_free + self.answer_time(read)
+        if isinstance(read, ChainRead):
+            read.begin()
+            self._ask(read.parts[0])
+        else:
+            self._ask(read)
         self._pending = read
 
     def collect(self) -> Mask:
@@ -63,22 +75,40 @@ class Exchange:
         read, self._pending = self._pending, None
         if read is None:
             return _NOBODY
-        port, deadline = self.port, self._deadline
-        stream = port.read(read.length, deadline)
-        read.decode(stream)
         self.cycles += 1
+        if isinstance(read, ChainRead):
+            return self._collect_chain(read)
+        stream = self.port.read(read.length, self._deadline)
+        read.decode(stream)
         if not read.complete:
             self._resynchronise(read, stream)
         return read.valid
 
-    def answer_time(self, read: BlockRead) -> float:
+    def _collect_chain(self, chain: ChainRead) -> Mask:
+        """Take in the first answer of a chain, then ask and take in one after the other."""
+        for row, part in enumerate(chain.parts):
+            if row:
+                self._ask(part)
+            stream = self.port.read(part.length, self._deadline)
+            part.decode(stream)
+            if not part.complete:
+                self._resynchronise(part, stream)
+            chain.collected(row)
+        return chain.valid
+
+    def answer_time(self, read: CyclicRead) -> float:
         """Return how long the answer to `read` may take once the request is on the wire, s."""
         wire = read.length * 10.0 / self.port.baud
         return wire + len(read.spans) * self.turnaround + self.port.latency + SLACK
 
-    def _resynchronise(self, read: BlockRead, stream: bytes) -> None:
+    def _ask(self, read: CyclicRead) -> None:
+        self.port.flush_input()
+        self.port.write(read.request)
+        self._occupy(len(read.request))
+        self._deadline = self._wire_free + self.answer_time(read)
+
+    def _resynchronise(self, read: CyclicRead, stream: bytes) -> None:
         """Wait for what stuffing, noise or a lost byte has moved back, and keep what is good."""
-        self.errors["resynchronised"] += 1
         while not read.complete and self.port.clock.now() < self._deadline:
             more = self.port.read(max(1, read.length - len(stream)), self._deadline)
             if not more:
@@ -88,7 +118,10 @@ class Exchange:
                 break
             read.decode(stream)
         lost = int((~read.valid).sum())
-        if lost:
+        if not lost:
+            self.stuffed += 1
+        else:
+            self.errors["resynchronised"] += 1
             kind = "corrupt" if len(stream) > read.answered() else "no answer"
             self.errors[kind] += lost
 

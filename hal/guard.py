@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from math import isfinite
 from typing import Literal
 
 import numpy as np
@@ -142,6 +143,8 @@ class GuardedBackend:
                 f"a command of shape {block.shape} for {len(self.joints)} joints; "
                 f"it has to be {self._buffer.shape}"
             )
+        if not isfinite(block.sum()):
+            self._refuse(block)
         np.maximum(block, self.limits.lower, out=self._buffer)
         np.minimum(self._buffer, self.limits.upper, out=self._buffer)
         if (self._buffer == block).all():
@@ -184,14 +187,18 @@ class GuardedBackend:
             self._write(JointCommand.hold(self.joints, pose))
             self.clock.wait_until(now + TICK)
 
-    def _count(self, block: Array) -> None:
-        """Count the clamps of `block`; refuse what is not a number."""
-        if not np.isfinite(block).all():
-            row, joint = np.argwhere(~np.isfinite(block))[0]
+    def _refuse(self, block: Array) -> None:
+        """Say which value is not a number; a sum that overflows is none of them."""
+        bad = np.argwhere(~np.isfinite(block))
+        if bad.size:
+            row, joint = bad[0]
             raise UnsafeCommandError(
                 f"the controller asked joint {self.joints.names[joint]!r} for "
                 f"{FIELDS[row]} {block[row, joint]}; refused"
             )
+
+    def _count(self, block: Array) -> None:
+        """Count the clamps of `block`."""
         changed = self._buffer != block
         for row in np.flatnonzero(changed.any(axis=1)):
             self.clamps[FIELDS[row]] += 1

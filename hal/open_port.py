@@ -79,6 +79,22 @@ def _by_serial_number(number: str) -> str:
     raise PortError(f"no USB adapter with serial number {number!r}; plugged in: {known}")
 
 
+def stable_url(url: str) -> str:
+    """Return a URL that finds the same adapter after it was unplugged.
+
+    That is "usb:SERIAL" for a device with a serial number that no other adapter has, else `url`.
+    """
+    if "://" in url or url.startswith("usb:"):
+        return url
+    device = os.path.realpath(url)
+    ports = [port for port in list_ports.comports() if port.serial_number]
+    for port in ports:
+        if os.path.realpath(port.device) == device:
+            twins = [other for other in ports if other.serial_number == port.serial_number]
+            return f"usb:{port.serial_number}" if len(twins) == 1 else url
+    return url
+
+
 def _explain(device: str, url: str, error: Exception) -> str:
     code = getattr(error, "errno", None)
     if "://" in device:

@@ -2,16 +2,21 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from functools import lru_cache
+from typing import Any, Literal
+
+import numpy as np
+import numpy.typing as npt
 
 from hal.errors import UnknownNameError
 
 Area = Literal["eeprom", "ram"]
+Order = Literal["little", "big"]
 
 
 @dataclass(frozen=True, slots=True)
 class Register:
-    """One register, little-endian, two's complement where it is signed.
+    """One register. Byte order and sign are its own: no bus and no process has any.
 
     Attributes:
         name: As in the maker's manual, in lower case.
@@ -19,8 +24,10 @@ class Register:
         size: Bytes.
         area: An "eeprom" register is locked while torque is on, and wears.
         writable: Can it be written at all?
-        signed: Are negative counts possible?
+        signed: Are negative counts possible, as two's complement?
         unit: SI value of one count: rad, rad/s, A, V, s, or a fraction of 1.
+        sign_bit: Bit that says "negative" while the bits below it are the magnitude, or None.
+        order: Which byte comes first.
     """
 
     name: str
@@ -30,10 +37,21 @@ class Register:
     writable: bool = True
     signed: bool = False
     unit: float = 1.0
+    sign_bit: int | None = None
+    order: Order = "little"
+
+    @property
+    def dtype(self) -> str:
+        """The numpy type of its raw bytes."""
+        return f"{'<' if self.order == 'little' else '>'}{'i' if self.signed else 'u'}{self.size}"
 
     def decode(self, data: bytes) -> int:
         """Return the counts that `data` spells."""
-        return int.from_bytes(data, "little", signed=self.signed)
+        raw = int.from_bytes(data, self.order, signed=self.signed)
+        if self.sign_bit is None:
+            return raw
+        magnitude = raw & (1 << self.sign_bit) - 1
+        return -magnitude if raw >> self.sign_bit & 1 else magnitude
 
     def encode(self, counts: int) -> bytes:
         """Return the bytes of `counts`.
@@ -41,7 +59,28 @@ class Register:
         Raises:
             OverflowError: They do not fit.
         """
-        return counts.to_bytes(self.size, "little", signed=self.signed)
+        if self.sign_bit is not None:
+            if abs(counts) >> self.sign_bit:
+                raise OverflowError(f"{counts} does not fit into {self.name}")
+            counts = -counts | 1 << self.sign_bit if counts < 0 else counts
+        return counts.to_bytes(self.size, self.order, signed=self.signed)
+
+    def values(self, raw: npt.NDArray[Any]) -> npt.NDArray[Any]:
+        """Return the counts behind an array of `dtype`."""
+        if self.sign_bit is None:
+            return raw
+        return _magnitudes(self.sign_bit).take(raw)
+
+
+@lru_cache(maxsize=8)
+def _magnitudes(sign_bit: int) -> npt.NDArray[np.int32]:
+    """Return what each word of 16 bits means; to look it up costs a fifth of working it out."""
+    raw = np.arange(1 << 16, dtype=np.int32)
+    one = 1 << sign_bit
+    magnitude = raw & one - 1
+    table = np.where(raw & one, -magnitude, magnitude)
+    table.setflags(write=False)
+    return table
 
 
 class RegisterTable(Mapping[str, Register]):

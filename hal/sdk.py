@@ -7,6 +7,7 @@ adapter; an exception leaves its port marked as in use for ever.
 """
 
 import contextlib
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -105,24 +106,25 @@ class SdkPackets(Protocol2PacketHandler):  # type: ignore[misc]  # the SDK has n
         return [*packet[:5], *length, *body, *packet[end : end + 2]]
 
 
-class DynamixelLink:
+class Link(ABC):
     """One servo at a time, verified and slow: what configuration needs.
 
     Everything raises `NoAnswerError`, `CorruptAnswerError`, `RefusedError` or `PortError`.
     """
 
-    def __init__(self, port: Port) -> None:
-        self._port, self._packets = SdkPort(port), SdkPackets()
+    timed_out: int = COMM_RX_TIMEOUT
+    """What the SDK returns when nothing came."""
 
+    def __init__(self, port: Port, packets: Any) -> None:
+        self._port, self._packets = SdkPort(port), packets
+
+    @abstractmethod
     def ping(self, id: int, attempts: int = ATTEMPTS) -> int:
         """Return the model number of servo `id`."""
-        number, _ = self._ask(id, lambda: self._packets.ping(self._port, id), attempts)
-        return int(number)
 
+    @abstractmethod
     def read(self, id: int, address: int, size: int) -> bytes:
         """Return `size` bytes at `address`."""
-        data, _ = self._ask(id, lambda: self._packets.readTxRx(self._port, id, address, size))
-        return bytes(data)
 
     def write(self, id: int, address: int, data: bytes) -> None:
         """Write `data` at `address`; the servo has answered when this returns."""
@@ -135,13 +137,13 @@ class DynamixelLink:
             ),
         )
 
+    @abstractmethod
     def reboot(self, id: int) -> None:
         """Restart a servo; it is deaf for some 100 ms."""
-        self._ask(id, lambda: (None, *self._packets.reboot(self._port, id)), attempts=1)
 
+    @abstractmethod
     def factory_reset(self, id: int, keep: int) -> None:
         """Reset a servo; `keep` 0xFF nothing, 0x01 the id, 0x02 id and baud rate."""
-        self._ask(id, lambda: (None, *self._packets.factoryReset(self._port, id, keep)), 1)
 
     def _ask(
         self, id: int, call: Callable[[], tuple[Any, int, int]], attempts: int = ATTEMPTS
@@ -155,16 +157,15 @@ class DynamixelLink:
                 self._check(id, error)
                 return value, error
         where = f"id {id} on {self._port.port.url} at {self._port.port.baud} baud"
-        if result == COMM_RX_TIMEOUT:
+        if result == self.timed_out:
             raise NoAnswerError(f"no answer from {where}; is it powered? run `windup scan`")
         raise CorruptAnswerError(
             f"only broken answers from {where}; a wrong baud rate, or two servos with this id?"
         )
 
+    @abstractmethod
     def _check(self, id: int, error: int) -> None:
-        if code := error & ~protocol2.ALERT:
-            what = REFUSALS.get(code, f"answers with error {code}")
-            raise RefusedError(f"id {id} on {self._port.port.url} {what}")
+        """Raise RefusedError where an error byte says that the servo will not."""
 
     @contextlib.contextmanager
     def _released(self) -> Iterator[None]:
@@ -174,3 +175,33 @@ class DynamixelLink:
             yield
         finally:
             self._port.is_using = False
+
+
+class DynamixelLink(Link):
+    """Protocol 2, through dynamixel-sdk."""
+
+    def __init__(self, port: Port) -> None:
+        super().__init__(port, SdkPackets())
+
+    def ping(self, id: int, attempts: int = ATTEMPTS) -> int:
+        """Return the model number of servo `id`."""
+        number, _ = self._ask(id, lambda: self._packets.ping(self._port, id), attempts)
+        return int(number)
+
+    def read(self, id: int, address: int, size: int) -> bytes:
+        """Return `size` bytes at `address`."""
+        data, _ = self._ask(id, lambda: self._packets.readTxRx(self._port, id, address, size))
+        return bytes(data)
+
+    def reboot(self, id: int) -> None:
+        """Restart a servo; it is deaf for some 100 ms."""
+        self._ask(id, lambda: (None, *self._packets.reboot(self._port, id)), attempts=1)
+
+    def factory_reset(self, id: int, keep: int) -> None:
+        """Reset a servo; `keep` 0xFF nothing, 0x01 the id, 0x02 id and baud rate."""
+        self._ask(id, lambda: (None, *self._packets.factoryReset(self._port, id, keep)), 1)
+
+    def _check(self, id: int, error: int) -> None:
+        if code := error & ~protocol2.ALERT:
+            what = REFUSALS.get(code, f"answers with error {code}")
+            raise RefusedError(f"id {id} on {self._port.port.url} {what}")

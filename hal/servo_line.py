@@ -1,53 +1,74 @@
 """The joints on one bus: which frames a cycle sends, and where in the arrays its answers go."""
 
 from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from hal.bus import Bus
+from hal.families.family import Block
 from hal.imu.opencr import OpenCr
 from hal.joints import Array, Mask
-from hal.protocols.batched import BlockRead, BlockWrite
+from hal.plausibility import Plausibility
+from hal.protocols.cyclic import CyclicRead
 from hal.protocols.protocol2 import Span
-from hal.servos.x_series_registers import COMMON
+from hal.servo_model import ServoMount
+from hal.units import gain_groups
 
-STATE = Span(0, 126, 10)
-"""Current or load, velocity, position: one run of registers, the same in the whole family."""
-STATE_TYPE = np.dtype([("current", "<i2"), ("velocity", "<i4"), ("position", "<i4")])
-HEALTH = Span(0, 126, 21)
-"""The same, on to voltage and temperature."""
 HEALTH_EVERY = 10
-"""One servo's voltage and temperature are read every so many cycles."""
+"""Voltage and temperature are read every so many cycles."""
 
 Rows = slice | npt.NDArray[np.intp]
-LAST_CODE = 127
-"""Largest error byte without the alert bit."""
 
-REGISTERS = {register.name: register for register in COMMON}
+
+class Asked(NamedTuple):
+    """One of the reads of a line.
+
+    Attributes:
+        read: The read.
+        state_at: Which bytes of its payload are the servos' state; None where they are its
+            beginning.
+        block: What is read of each servo.
+        long: Rows read on to voltage and temperature, or None.
+    """
+
+    read: CyclicRead
+    state_at: npt.NDArray[np.intp] | None
+    block: Block
+    long: slice | None = None
 
 
 class ServoLine:
     """The servos of one bus within a robot of n joints.
 
-    A cycle is one transaction. On a bus with an OpenCR it is a bulk read of servos and board; else
-    a sync read, fast where all servos know it. Now and then one servo is read further on, to its
-    voltage and temperature.
+    A cycle is one transaction: the common read of the family, the fast one where all servos know
+    it, one read a servo where they know none. On a bus with an OpenCR it is a bulk read of servos
+    and board. Now and then servos are read further on, to their voltage and temperature: one
+    where the protocol lets a read differ between servos, else all.
 
     Attributes:
         bus: The bus.
         ids: Their ids.
         rows: Their joints' indices.
+        mounts: How they sit.
+        check: The plausibility of readings; None where the checksum is enough.
         imu: The last bytes of the OpenCR, or None while there are none.
         imu_fresh: Did they come with the last answers?
         goals: Goal positions, counts.
-        gains: P registers.
+        gains: How stiffness is set, on which rows, and the frames that do it.
     """
 
     def __init__(
-        self, bus: Bus, ids: Sequence[int], rows: Sequence[int], board: OpenCr | None = None
+        self,
+        bus: Bus,
+        mounts: Sequence[ServoMount],
+        rows: Sequence[int],
+        board: OpenCr | None = None,
+        check: Plausibility | None = None,
     ) -> None:
-        self.bus, self.ids = bus, tuple(ids)
+        self.bus, self.mounts, self.check = bus, tuple(mounts), check
+        self.ids = tuple(mount.id for mount in mounts)
         self.rows: npt.NDArray[np.intp] = np.array(rows, dtype=np.intp)
         # One bus in joint order is the rule, and a slice costs less than an index.
         whole = self.rows.tolist() == list(range(len(self.ids)))
@@ -55,96 +76,127 @@ class ServoLine:
         self.board = board
         self.imu: bytes | None = None
         self.imu_fresh = False
-        goal, gain = REGISTERS["goal_position"], REGISTERS["position_p_gain"]
-        self.goals = BlockWrite(self.ids, goal.address, goal.size)
-        self.gains = BlockWrite(self.ids, gain.address, gain.size)
-        self._state = _read(self.ids, board)
-        self._fast: BlockRead | None = None
-        self._health = [_read(self.ids, board, row) for row in range(len(self.ids))]
+        family = bus.family
+        self.goals = family.dialect.write(self.ids, family.registers["goal_position"])
+        self.gains = [
+            (gain, at, family.dialect.write([self.ids[row] for row in at], gain.register))
+            for gain, at in gain_groups(mounts)
+        ]
+        self._block, self._long_block = family.cycle([mount.model for mount in mounts])
+        self._state = self._plain()
+        self._health = self._health_reads()
+        self._fast: Asked | None = None
+        self._fast_health = self._health
         self._cycle = 0
         self._broken_chain = False
         self._asked = self._state
-        self._long: int | None = None
-        """Row that is read on to its voltage and temperature in this cycle."""
 
     def probe_fast(self) -> bool:
-        """Use the fast sync read from now on if all servos know it."""
+        """Use the fast read from now on if all servos know it."""
         if self.board is None and self.bus.probe_fast(self.ids):
-            self._fast = _read(self.ids, None, fast=True)
+            self._fast = self._plain(fast=True)
+            if not self.bus.family.health_alone:
+                self._fast_health = self._health_reads(fast=True)
         return self._fast is not None
 
     def request(self) -> None:
         """Ask all servos of the line, and the board."""
         self._cycle += 1
-        self._long = None
+        fast = self._fast if not self._broken_chain else None
         if self._cycle % HEALTH_EVERY == 0:
-            self._long = self._cycle // HEALTH_EVERY % len(self.ids)
-            self._asked = self._health[self._long]
-        elif self._fast is not None and not self._broken_chain:
-            self._asked = self._fast
+            health = self._health if fast is None else self._fast_health
+            self._asked = health[self._cycle // HEALTH_EVERY % len(health)]
         else:
-            self._asked = self._state
-        self.bus.exchange.request(self._asked)
+            self._asked = fast or self._state
+        self.bus.exchange.request(self._asked.read)
 
-    def collect(self, counts: Array, health: Array, alert: Mask) -> Mask:
+    def collect(self, counts: Array, health: Array, error: npt.NDArray[np.uint8]) -> Mask:
         """Take in the answers and return whose came, in the order of `rows`.
 
         Args:
             counts: (3, n) position, velocity and current of all joints; fresh ones are put there.
             health: (2, n) voltage V and temperature degrees C; the same.
-            alert: (n,) bool, who signals a hardware error; the same.
+            error: (n,) error bytes; the same.
         """
-        read, servos = self._asked, len(self.ids)
+        asked, servos = self._asked, len(self.ids)
         answered = self.bus.exchange.collect()
         if not answered.size:
             return np.zeros(servos, dtype=bool)
         valid = answered[:servos]
         self.imu_fresh = self.board is not None and bool(answered[-1])
         if self.imu_fresh:
-            self.imu = read.params(servos)
+            self.imu = asked.read.params(servos)
         # In a fast answer all are silent behind a missing one: ask plainly until all are back.
-        self._broken_chain = not read.complete
-        self._put(read, valid, counts, alert)
-        if self._long is not None and valid[self._long]:
-            self._take_health(read, self._long, health)
+        self._broken_chain = not asked.read.complete
+        believed = self._put(asked, valid, counts, error)
+        if asked.long is not None:
+            self._take_health(asked, asked.long, believed, health)
+        return believed
+
+    def _put(self, asked: Asked, valid: Mask, counts: Array, error: npt.NDArray[np.uint8]) -> Mask:
+        read, block = asked.read, asked.block
+        records = self._records(asked)
+        position, velocity, effort = block.counts(records)
+        errors = read.error[: len(self.ids)]
+        complete = read.complete
+        if self.check is not None:
+            valid = self.check.accept(position, velocity, valid, self.bus.port.clock.now())
+            complete = bool(valid.all())
+            self.bus.exchange.errors["implausible"] = self.check.rejected
+        rows: Rows = self._where
+        if not complete:
+            rows = self.rows[valid]
+            position, velocity, effort = position[valid], velocity[valid], effort[valid]
+            errors = errors[valid]
+        counts[0, rows] = position
+        counts[1, rows] = velocity
+        counts[2, rows] = effort
+        error[rows] = errors
         return valid
 
-    def _put(self, read: BlockRead, valid: Mask, counts: Array, alert: Mask) -> None:
-        state, error = self._fields(read), read.error[: len(self.ids)]
-        rows: Rows = self._where
-        if not read.complete:
-            rows, state, error = self.rows[valid], state[valid], error[valid]
-        counts[0, rows] = state["position"]
-        counts[1, rows] = state["velocity"]
-        counts[2, rows] = state["current"]
-        alert[rows] = error > LAST_CODE
+    def _records(self, asked: Asked) -> npt.NDArray[np.void]:
+        """Return (servos,) records of the block."""
+        payload, block = asked.read.payload, asked.block
+        if asked.state_at is not None:
+            payload = payload.take(asked.state_at)
+        return payload[: len(self.ids) * block.size].view(block.dtype)
 
-    def _fields(self, read: BlockRead) -> npt.NDArray[np.void]:
-        """Return (servos,) records of `STATE_TYPE`."""
-        payload = read.payload
-        if self._long is not None:
-            payload = payload.take(self._state_of(read))
-        return payload[: len(self.ids) * STATE.size].view(STATE_TYPE)
+    def _take_health(self, asked: Asked, long: slice, valid: Mask, health: Array) -> None:
+        """Put the voltage and temperature of the rows `long` where they belong."""
+        fresh = valid[long]
+        rows = self.rows[long][fresh]
+        for row, name in enumerate(("present_voltage", "present_temperature")):
+            register = self.bus.family.registers[name]
+            offset = register.address - self._block.address
+            raw = asked.read.column(offset, register.dtype, long)
+            health[row, rows] = raw[fresh] * register.unit
 
-    def _state_of(self, read: BlockRead) -> npt.NDArray[np.intp]:
-        sizes = [span.size for span in read.spans[: len(self.ids)]]
-        starts = np.cumsum([0, *sizes[:-1]])
-        return (starts[:, None] + np.arange(STATE.size)).ravel()
+    def _plain(self, fast: bool = False) -> Asked:
+        return Asked(self._read(self._spans(self._block), fast), None, self._block)
 
-    def _take_health(self, read: BlockRead, row: int, health: Array) -> None:
-        data = read.params(row)
-        voltage, temperature = REGISTERS["present_voltage"], REGISTERS["present_temperature"]
-        start = voltage.address - HEALTH.address
-        volts = voltage.decode(data[start : start + voltage.size]) * voltage.unit
-        health[:, self.rows[row]] = volts, data[temperature.address - HEALTH.address]
+    def _health_reads(self, fast: bool = False) -> list[Asked]:
+        everybody = slice(0, len(self.ids))
+        if not self.bus.family.health_alone:
+            block = self._long_block
+            return [Asked(self._read(self._spans(block), fast), None, block, everybody)]
+        reads = []
+        for row, id in enumerate(self.ids):
+            spans = self._spans(self._block)
+            spans[row] = self._long_block.span(id)
+            at = _state_of(spans, self._block.size)
+            reads.append(Asked(self._read(spans), at, self._block, slice(row, row + 1)))
+        return reads
+
+    def _spans(self, block: Block) -> list[Span]:
+        return [block.span(id) for id in self.ids]
+
+    def _read(self, spans: list[Span], fast: bool = False) -> CyclicRead:
+        board = [self.board.span] if self.board is not None else []
+        return self.bus.family.dialect.read([*spans, *board], fast)
 
 
-def _read(
-    ids: Sequence[int], board: OpenCr | None, long_row: int | None = None, fast: bool = False
-) -> BlockRead:
-    """Return the cyclic read of `ids`; the servo at `long_row` is read on to its temperature."""
-    spans = [
-        Span(id, STATE.address, HEALTH.size if row == long_row else STATE.size)
-        for row, id in enumerate(ids)
-    ]
-    return BlockRead([*spans, *([board.span] if board is not None else [])], fast)
+def _state_of(spans: Sequence[Span], size: int) -> npt.NDArray[Any]:
+    """Return which bytes of a payload of uneven `spans` are the first `size` of each."""
+    sizes = [span.size for span in spans]
+    starts = np.cumsum([0, *sizes[:-1]])
+    return (starts[:, None] + np.arange(size)).ravel()

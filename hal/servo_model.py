@@ -76,8 +76,9 @@ class ServoModel:
         p_default: P register as the servo leaves the factory.
         armature: Rotor inertia through the gearbox, kg m2.
         friction_loss: Dry friction, N m.
-        counts_per_rev: Encoder counts of one turn.
+        counts_per_rev: Counts of one turn; where the encoder sees less, as many as it would have.
         pwm_limit: Largest duty.
+        encoder_counts: How many counts the encoder has.
     """
 
     name: str
@@ -87,8 +88,9 @@ class ServoModel:
     p_default: int
     armature: float
     friction_loss: float
-    counts_per_rev: int = 4096
+    counts_per_rev: float = 4096
     pwm_limit: float = 1.0
+    encoder_counts: int = 4096
 
     def motor(self, voltage: float) -> Motor:
         """Return the motor at a supply of `voltage` V.
@@ -118,6 +120,16 @@ class ServoModel:
         """Return the damping K^2/R of the motor itself at `voltage` V, N m s/rad."""
         motor = self.motor(voltage)
         return motor.stall_torque / motor.no_load_speed
+
+    @property
+    def last_count(self) -> int:
+        """The largest count of the encoder."""
+        return self.encoder_counts - 1
+
+    @property
+    def middle(self) -> int:
+        """The count half way."""
+        return self.encoder_counts // 2
 
     @property
     def torque_constant(self) -> float | None:

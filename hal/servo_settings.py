@@ -3,30 +3,8 @@
 from typing import NamedTuple
 
 from hal.bus import Bus
-from hal.registers import Register, RegisterTable
-
-POSITION_MODE = 3
-PWM_FULL = 885
-
-# What the torque law and the cyclic traffic assume, in the order in which it is written.
-WANTED = (
-    ("return_delay", 0),
-    ("drive_mode", 0),  # counts up, velocity profile, a goal does not switch torque on
-    ("operating_mode", POSITION_MODE),
-    ("pwm_limit", PWM_FULL),
-    ("min_position_limit", 0),  # a goal beyond these is ignored without a word
-    ("max_position_limit", 4095),
-    ("startup_configuration", 0),  # no torque after a brown-out
-    ("status_return_level", 2),
-    ("bus_watchdog", 0),
-    ("goal_pwm", PWM_FULL),
-    ("profile_velocity", 0),
-    ("profile_acceleration", 0),
-    ("position_i_gain", 0),
-    ("position_d_gain", 0),
-    ("feedforward_1st_gain", 0),
-    ("feedforward_2nd_gain", 0),
-)
+from hal.registers import Register
+from hal.servo_model import ServoModel
 
 
 class Setting(NamedTuple):
@@ -40,11 +18,16 @@ class Setting(NamedTuple):
         return f"{self.register.name} {self.present} instead of {self.wanted}"
 
 
-def differences(bus: Bus, id: int, table: RegisterTable) -> list[Setting]:
+def differences(bus: Bus, id: int, model: ServoModel) -> list[Setting]:
     """Return the settings of servo `id` that differ. Nothing is written."""
+    table = bus.family.table(model.name)
     found = []
-    for name, wanted in WANTED:
-        if name in table and (present := bus.read(id, table[name])) != wanted:
+    for name, value, mask in bus.family.wanted(model):
+        if name not in table:
+            continue
+        present = bus.read(id, table[name])
+        wanted = value if mask is None else present & ~mask | value
+        if present != wanted:
             found.append(Setting(table[name], present, wanted))
     return found
 

@@ -6,6 +6,7 @@ from itertools import combinations
 import numpy as np
 
 from hal.bus import Bus
+from hal.coupling import Couplings
 from hal.errors import (
     ConfigError,
     CorruptAnswerError,
@@ -13,20 +14,26 @@ from hal.errors import (
     NoAnswerError,
     UnknownNameError,
 )
+from hal.families import DYNAMIXEL_X, Family, family_of
 from hal.imu.opencr import OpenCr
 from hal.joints import Joints
 from hal.servo_model import ServoMount
 from hal.servo_settings import Setting, differences
-from hal.servos.x_series_registers import model_name, x_series_registers
 from hal.units import Units
 
 Differences = list[tuple[Bus, int, list[Setting]]]
 
 
 def check_mounts(
-    joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, object], units: Units
+    joints: Joints,
+    mounts: Sequence[ServoMount],
+    buses: Mapping[str, object],
+    units: Units,
+    couplings: Couplings,
 ) -> None:
-    """Refuse a wiring that cannot be: an unknown bus, an id twice, a range past the encoder's.
+    """Refuse a wiring that cannot be.
+
+    An unknown bus, two families on one bus, an id twice, a range past the encoder's.
 
     Raises:
         ConfigError: The message names the joints.
@@ -36,19 +43,40 @@ def check_mounts(
         if mount.bus not in buses:
             raise UnknownNameError("bus", mount.bus, buses)
     named = list(zip(joints.names, mounts, strict=True))
+    _check_families(named)
     for (first, one), (second, other) in combinations(named, 2):
         if (one.bus, one.id) == (other.bus, other.id):
             raise ConfigError(
                 f"joints {first!r} and {second!r} both have id {one.id} on bus {one.bus!r}"
             )
+    extent = couplings.extent(joints.lower, joints.upper)
     for row, (name, mount) in enumerate(named):
-        ends = sorted(float(units.counts(end)[row]) for end in (joints.lower, joints.upper))
-        top = mount.model.counts_per_rev - 1
+        ends = sorted(float(units.counts(end)[row]) for end in extent)
+        top = mount.model.last_count
         if ends[0] < 0 or ends[1] > top:
             raise ConfigError(
                 f"joint {name!r} (id {mount.id} on bus {mount.bus!r}): its range is "
                 f"{ends[0]:.0f} to {ends[1]:.0f} counts, its encoder ends at 0 and {top}; "
                 "narrow the range in robot.toml or turn the horn and calibrate"
+            )
+
+
+def bus_families(mounts: Sequence[ServoMount]) -> dict[str, Family]:
+    """Return bus name to the family of its first servo."""
+    families: dict[str, Family] = {}
+    for mount in mounts:
+        families.setdefault(mount.bus, family_of(mount.model.name))
+    return families
+
+
+def _check_families(named: Sequence[tuple[str, ServoMount]]) -> None:
+    families = bus_families([mount for _, mount in named])
+    for name, mount in named:
+        family, first = family_of(mount.model.name), families[mount.bus]
+        if family is not first:
+            raise ConfigError(
+                f"joint {name!r}: a {mount.model.name} is {family.name}, the other servos on bus "
+                f"{mount.bus!r} are {first.name}; give each family a bus of its own"
             )
 
 
@@ -71,6 +99,8 @@ def check_servos(
             problems.setdefault(bus.port.url, []).append(f"joint {name!r} id {mount.id}: {error}")
     if board is not None:
         bus = buses[board.bus]
+        if bus.family is not DYNAMIXEL_X:
+            raise ConfigError(f"an OpenCR cannot sit on bus {board.bus!r} of {bus.family.name}")
         try:
             bus.ping(board.id)
         except HardwareError as error:
@@ -87,11 +117,11 @@ def _inspect(bus: Bus, mount: ServoMount) -> list[Setting]:
     except HardwareError as error:
         raise HardwareError(_short(error)) from None
     if number != mount.model.model_number:
-        raise HardwareError(f"is a {model_name(number)} where a {mount.model.name} should be")
-    table = x_series_registers(mount.model.name)
-    settings = differences(bus, mount.id, table)
+        there = bus.family.model_name(number)
+        raise HardwareError(f"is a {there} where a {mount.model.name} should be")
+    settings = differences(bus, mount.id, mount.model)
     locked = [str(setting) for setting in settings if setting.register.area == "eeprom"]
-    if locked and bus.read(mount.id, table["torque_enable"]):
+    if locked and bus.read(mount.id, bus.family.registers["torque_enable"]):
         raise HardwareError(f"torque is on and {', '.join(locked)}; `windup stop` first")
     return settings
 

@@ -37,6 +37,7 @@ class RobotDescription:
         timestep: Physics step of the MJCF, s.
         rate_hz: Rate of the control loop, Hz.
         wire_rate_hz: Rate of the control loop on a servo bus, Hz.
+        model_latency: From the start of a step to its plan acting, where time is the wall's, s.
         base: Body with the free joint.
         torso: Body whose z axis is the robot's "up".
         joints: The joints.
@@ -62,6 +63,7 @@ class RobotDescription:
     timestep: float
     rate_hz: float
     wire_rate_hz: float
+    model_latency: float
     base: str
     torso: str
     joints: Joints
@@ -161,6 +163,7 @@ def _describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDes
         timestep=model.opt.timestep,
         rate_hz=robot.rate_hz,
         wire_rate_hz=robot.wire_rate_hz or robot.rate_hz,
+        model_latency=robot.model_latency,
         base=robot.base,
         torso=robot.torso,
         joints=joints,
@@ -184,7 +187,7 @@ def _mount(entry: JointEntry) -> ServoMount | None:
     if entry.servo is None or entry.bus is None or entry.id is None:
         return None
     model = servo_model(entry.servo)
-    zero = model.counts_per_rev // 2 if entry.zero is None else entry.zero
+    zero = model.middle if entry.zero is None else entry.zero
     return ServoMount(model, entry.bus, entry.id, entry.sign, zero, entry.ratio)
 
 

@@ -123,6 +123,7 @@ class RobotFile(Record, frozen=True):
         stop: What "stop" means: hold, crouch, or limp.
         stance: Name of the pose to stand in.
         crouch: Name of the pose to crouch in.
+        model_latency: From the start of a step to its plan acting, where time is the wall's, s.
         contact_threshold: Force above which a contact sensor counts as pressed, N.
         poses: Pose name to joint name to rad; joints not named are at 0.
     """
@@ -144,5 +145,6 @@ class RobotFile(Record, frozen=True):
     sources: tuple[str, ...] = ()
     bus: tuple[Bus, ...] = ()
     foot: tuple[Foot, ...] = ()
+    model_latency: NotNegative = 0.06
     contact_threshold: Positive = 1.0
     imu: Imu | None = None

@@ -1,12 +1,15 @@
 """The twin as a backend: the same records, and a clock that steps physics."""
 
 import time as wall
+from math import floor
 
 import numpy as np
 
+from hal.clock import sleep_until
 from hal.command import JointCommand
 from hal.joints import Joints, Mask
 from hal.observation import Observation
+from sim_twin.imu_errors import ImuErrors
 from sim_twin.sensors import Sensors
 from sim_twin.servo_motor import ServoDrive, TorqueDrive
 from sim_twin.twin import Twin
@@ -15,34 +18,39 @@ from sim_twin.twin import Twin
 class TwinClock:
     """Simulated time: waiting steps the physics, as fast as it can or paced by the wall.
 
+    Paced, `now` is what the wall says it should be: whoever computes too long comes too late,
+    as on a robot, and the physics goes on without them.
+
     Args:
         twin: The twin.
-        paced: Let no simulated second pass faster than a real one.
+        paced: Let simulated time pass as real time does.
     """
 
     def __init__(self, twin: Twin, *, paced: bool = False) -> None:
         self.twin, self.paced = twin, paced
         self._data, self._timestep = twin.data, twin.timestep
-        self._started: float | None = None
+        self._origin: float | None = None
+
+    def align(self) -> None:
+        """Let the wall's time count from here: the present simulated time is now."""
+        self._origin = wall.monotonic() - self._data.time if self.paced else None
 
     def now(self) -> float:
-        """Return the simulated time, s."""
-        return self._data.time
+        """Return the time, s, in whole physics steps; before any wait and `align` it stands."""
+        if self._origin is None:
+            return self._data.time
+        behind = floor((wall.monotonic() - self._origin - self._data.time) / self._timestep)
+        return self._data.time + max(behind, 0) * self._timestep
 
     def wait_until(self, time: float) -> None:
-        """Step the physics until it is `time` s, and the wall too where the clock is paced."""
+        """Step the physics until it is `time` s, and wait for the wall where the clock is paced."""
+        if self.paced and self._origin is None:
+            self.align()
         steps = round((time - self._data.time) / self._timestep)
         if steps > 0:
             self.twin.step(steps)
-        if self.paced:
-            self._pace()
-
-    def _pace(self) -> None:
-        if self._started is None:
-            self._started = wall.perf_counter() - self._data.time
-        ahead = self._started + self._data.time - wall.perf_counter()
-        if ahead > 0.0:
-            wall.sleep(ahead)
+        if self._origin is not None:
+            sleep_until(self._origin + self._data.time)
 
 
 class TwinBackend:
@@ -53,6 +61,7 @@ class TwinBackend:
         paced: See `TwinClock`.
         sensor_delay: Age of everything that is read, s; the robot's own by default.
         true_base: Put the true base state into observations.
+        imu_errors: What the IMU makes of the motion; by default it is perfect.
     """
 
     def __init__(
@@ -62,12 +71,13 @@ class TwinBackend:
         paced: bool = False,
         sensor_delay: float | None = None,
         true_base: bool = True,
+        imu_errors: ImuErrors | None = None,
     ) -> None:
         self.twin = twin
         self.clock = TwinClock(twin, paced=paced)
         self.joints: Joints = twin.robot.joints
         delay = twin.robot.drive.sensor_delay if sensor_delay is None else sensor_delay
-        self.sensors = Sensors(twin, delay=delay, true_base=true_base)
+        self.sensors = Sensors(twin, delay=delay, true_base=true_base, imu_errors=imu_errors)
         self._drive: ServoDrive | TorqueDrive = (
             ServoDrive(twin.model, twin.robot, twin.supply, twin.world.plant.stiffness)
             if twin.robot.drive.kind == "servo"

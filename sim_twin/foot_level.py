@@ -6,7 +6,8 @@ import numpy as np
 from hal.observation import Observation
 from robots.description import RobotDescription
 
-SURE = 0.004  # nearer to 0 than this is 0: what a tilted foot alone would show, m
+SURE = 0.015
+"""Nearer to 0 is 0, of the base's height: a foot that is tilted or sinks in shows as much."""
 
 
 class FootLevel:
@@ -14,10 +15,14 @@ class FootLevel:
 
     Args:
         robot: The robot; its contact sensors have sites of their own names.
+
+    Attributes:
+        sure: The smallest height that is told from 0, m.
     """
 
     def __init__(self, robot: RobotDescription) -> None:
         self.contacts = robot.contacts
+        self.sure = SURE * float(robot.spec().body(robot.base).pos[2])
         self.model = robot.spec().compile()
         self.data = mujoco.MjData(self.model)
         sites = [self.model.sensor(name).objid[0] for name in robot.contacts.names]
@@ -39,4 +44,4 @@ class FootLevel:
         mujoco.mj_kinematics(self.model, self.data)
         heights = self.data.site_xpos[self._sites, 2] - self._above
         level = float(heights[pressed].min())
-        return level if abs(level) > SURE else 0.0
+        return level if abs(level) > self.sure else 0.0

@@ -46,6 +46,7 @@ class Push:
         """Return what gives a whole robot of `mass` kg `speed` m/s toward `direction` rad."""
         return cls.impulse("", speed * mass, direction, start, duration)
 
-    def active(self, time: float) -> bool:
-        """Return True while the push lasts, at `time` s."""
-        return self.start <= time < self.start + self.duration - 1e-9
+    def share(self, time: float, step: float) -> float:
+        """Return the part of the step from `time` to `time + step` s that the push lasts."""
+        begin, end = max(self.start, time), min(self.start + self.duration, time + step)
+        return max(end - begin, 0.0) / step

@@ -34,6 +34,9 @@ class RolloutPredictor:
         threads: Threads that share the rollouts.
         ground: The ground as far as it is known; else it is flat, at the height of the foot that
             stands on it.
+
+    Attributes:
+        delay: From a state being sensed to its command acting, s.
     """
 
     def __init__(
@@ -50,6 +53,7 @@ class RolloutPredictor:
         self._level = FootLevel(robot)
         if delay is None:
             delay = robot.drive.command_delay + robot.drive.sensor_delay
+        self.delay = delay
         self.model = build_model(
             robot, delay=delay, supply=supply, bare=True, world=World(self.ground)
         )

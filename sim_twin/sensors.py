@@ -8,6 +8,7 @@ import numpy as np
 
 from hal.joints import Array
 from hal.observation import BaseState, ImuState, JointState, Observation
+from sim_twin.imu_errors import ImuErrors
 from sim_twin.twin import Twin
 
 AMBIENT = 25.0
@@ -31,10 +32,19 @@ class Sensors:
         twin: The twin.
         delay: Age of everything that is read, s.
         true_base: Put the true base state into observations.
+        imu_errors: What the IMU makes of the motion; by default it is perfect.
     """
 
-    def __init__(self, twin: Twin, *, delay: float = 0.0, true_base: bool = True) -> None:
+    def __init__(
+        self,
+        twin: Twin,
+        *,
+        delay: float = 0.0,
+        true_base: bool = True,
+        imu_errors: ImuErrors | None = None,
+    ) -> None:
         self.twin, self.delay, self.true_base = twin, delay, true_base
+        self._errors = imu_errors if twin.robot.imu is not None else None
         robot, model = twin.robot, twin.model
         n = len(robot.joints)
         self._counts = np.array(
@@ -46,6 +56,7 @@ class Sensors:
         if robot.imu is not None:
             self._gyro = _place(model.sensor(robot.imu.gyro).adr[0], 3)
             self._accelerometer = _place(model.sensor(robot.imu.accelerometer).adr[0], 3)
+            self._motion = np.r_[self._gyro, self._accelerometer]
             name = robot.imu.orientation
             self._orientation = None if name is None else _place(model.sensor(name).adr[0], 4)
         self._voltage = _constant(n, twin.supply)
@@ -56,7 +67,9 @@ class Sensors:
         self._line: deque[Snapshot] = deque()
         if delay > 0.0:
             self._line = deque(maxlen=round(delay / twin.timestep) + 1)
+        if delay > 0.0 or self._errors is not None:
             twin.on_step = self._record
+            twin.on_jump = self._line.clear
 
     def read(self) -> Observation:
         """Return the observation that is available now."""
@@ -77,15 +90,22 @@ class Sensors:
     def _read_imu(self, sensors: Array) -> ImuState | None:
         if self._imu is None:
             return None
-        orientation = None if self._orientation is None else sensors[self._orientation]
+        fused = self._orientation is not None and self._errors is None
+        orientation = sensors[self._orientation] if fused else None
         return ImuState(orientation, sensors[self._gyro], sensors[self._accelerometer], self.delay)
 
     def _snapshot(self) -> Snapshot:
         qpos, qvel, force, sensors = self._views
-        return Snapshot(self.twin.time, qpos.copy(), qvel.copy(), force.copy(), sensors.copy())
+        sensors = sensors.copy()
+        if self._errors is not None:
+            sensors[self._motion] = self._errors.sample(sensors[self._motion])
+        return Snapshot(self.twin.time, qpos.copy(), qvel.copy(), force.copy(), sensors)
 
     def _record(self) -> None:
-        self._line.append(self._snapshot())
+        if self._errors is not None:
+            self._errors.feel(self._views[3][self._motion])
+        if self.delay > 0.0:
+            self._line.append(self._snapshot())
 
 
 def _place(start: int, size: int) -> slice:

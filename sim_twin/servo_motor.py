@@ -49,8 +49,9 @@ def add_actuators(
         else:
             if servo.ratio != 1.0:
                 raise ConfigError(f"joint {name!r}: a linkage ratio is not modelled by the twin")
-            stiffness = robot.joints.joints[index].stiffness * supply / robot.drive.supply
-            set_servo(actuator, servo.model, supply, stiffness)
+            stiffness = robot.joints.joints[index].stiffness
+            register = round(servo.model.p_register(stiffness, robot.drive.supply))
+            set_servo(actuator, servo.model, supply, servo.model.stiffness(register, supply))
         if delay > 0.0:
             actuator.delay = delay
             actuator.nsample = max(1, round(delay / spec.option.timestep))

@@ -1,6 +1,7 @@
 """The MuJoCo twin of a robot: a world with one robot on a floor."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import radians
 
 import mujoco
@@ -14,6 +15,21 @@ from sim_twin.push import Push
 from sim_twin.world import World, build_model
 
 STATE = mujoco.mjtState.mjSTATE_INTEGRATION
+WILD = 1e5  # squared speeds of all joints and the base above which something is going wrong
+LOST = 1e6  # sum of positions that no robot has
+
+
+@dataclass(frozen=True)
+class TwinState:
+    """Everything that decides a twin's future.
+
+    Attributes:
+        physics: MuJoCo's integration state, with the commands in flight.
+        pushes: Pushes under way or to come.
+    """
+
+    physics: Array
+    pushes: tuple[Push, ...]
 
 
 class Twin:
@@ -31,6 +47,7 @@ class Twin:
         data: MuJoCo's state.
         up: (3,) unit vector along the torso, a live view.
         on_step: Called after every physics step, where something has to look that closely.
+        on_jump: Called after a reset or a restore, for whoever remembers the past.
     """
 
     def __init__(
@@ -52,10 +69,13 @@ class Twin:
         self.data = mujoco.MjData(self.model)
         self.timestep = float(self.model.opt.timestep)
         self.on_step: Callable[[], None] | None = None
+        self.on_jump: Callable[[], None] | None = None
+        self._suspect: int | None = None
         self._pushes: list[Push] = []
         self._torso = self.model.body(robot.torso).id
         self.up = self.data.xmat[self._torso, 2::3]
-        self._qpos = self.data.qpos
+        self._qpos, self._qvel = self.data.qpos, self.data.qvel
+        self._before = np.empty(self.model.nq + self.model.nv)
         self.reset()
 
     def reset(self, pose: Array | None = None, *, noise: float = 0.0, seed: int = 0) -> None:
@@ -73,7 +93,7 @@ class Twin:
         self.data.qpos[7:] = pose + jitter
         self._drop_to_floor()
         self.set_goals(pose)
-        mujoco.mj_forward(self.model, self.data)
+        self._jumped()
 
     def set_goals(self, pose: Array) -> None:
         """Make `pose` (n,) rad the target now and in everything still in flight."""
@@ -133,6 +153,8 @@ class Twin:
         Raises:
             DivergedError: The physics left the numbers.
         """
+        self._before[: self.model.nq] = self._qpos
+        self._before[self.model.nq :] = self._qvel
         if self._pushes or self.on_step is not None:
             for _ in range(steps):
                 self._apply_pushes()
@@ -141,19 +163,27 @@ class Twin:
                     self.on_step()
         else:
             mujoco.mj_step(self.model, self.data, steps)
-        if not abs(self._qpos.sum()) < 1e6:
-            raise self._diverged()
+        if not self._qvel.dot(self._qvel) < WILD:
+            self._look_closer(steps)
 
-    def save(self) -> Array:
-        """Return the complete physical state, with everything in flight."""
+    def save(self) -> TwinState:
+        """Return the complete physical state, with everything in flight and to come."""
         state = np.empty(mujoco.mj_stateSize(self.model, STATE))
         mujoco.mj_getState(self.model, self.data, state, STATE)
-        return state
+        return TwinState(state, tuple(self._pushes))
 
-    def restore(self, state: Array) -> None:
+    def restore(self, state: TwinState) -> None:
         """Go back to a state from `save`."""
-        mujoco.mj_setState(self.model, self.data, state, STATE)
+        mujoco.mj_setState(self.model, self.data, state.physics, STATE)
+        self._pushes[:] = state.pushes
+        self._jumped()
+
+    def _jumped(self) -> None:
+        """Bring what is derived up to date after a jump in time."""
+        self._suspect = None
         mujoco.mj_forward(self.model, self.data)
+        if self.on_jump is not None:
+            self.on_jump()
 
     def _drop_to_floor(self) -> None:
         """Set the base height so that the lowest foot geom touches the floor."""
@@ -166,24 +196,54 @@ class Twin:
     def _apply_pushes(self) -> None:
         self.data.xfrc_applied[:] = 0.0
         for push in self._pushes:
-            if push.active(self.time) and not push.body:
-                share = self.model.body_mass / self.model.body_mass.sum()
-                self.data.xfrc_applied[:, :3] += share[:, None] * push.force
-            elif push.active(self.time):
-                body = self.model.body(push.body).id
-                self.data.xfrc_applied[body, :3] += push.force
-                if push.height is not None:
-                    point = self.data.xpos[body] + [0.0, 0.0, push.height]
-                    arm = point - self.data.xipos[body]
-                    self.data.xfrc_applied[body, 3:] += np.cross(arm, push.force)
+            share = push.share(self.time, self.timestep)
+            if share > 1e-6:  # less is rounding of the time
+                self._apply(push, share * push.force)
         if all(self.time >= push.start + push.duration for push in self._pushes):
             self._pushes.clear()
-            self.data.xfrc_applied[:] = 0.0
 
-    def _diverged(self) -> DivergedError:
-        worst = int(np.argmax(np.nan_to_num(np.abs(self.data.qvel), nan=np.inf)))
-        joint = "the base" if worst < 6 else f"joint {self.robot.joints.names[worst - 6]!r}"
-        return DivergedError(
+    def _apply(self, push: Push, force: Array) -> None:
+        if not push.body:
+            part = self.model.body_mass / self.model.body_mass.sum()
+            self.data.xfrc_applied[:, :3] += part[:, None] * force
+            return
+        body = self.model.body(push.body).id
+        self.data.xfrc_applied[body, :3] += force
+        if push.height is not None:
+            point = self.data.xpos[body] + [0.0, 0.0, push.height]
+            self.data.xfrc_applied[body, 3:] += np.cross(point - self.data.xipos[body], force)
+
+    def _look_closer(self, steps: int) -> None:
+        """Remember which joint ran away first, and give up when the numbers are lost.
+
+        Raises:
+            DivergedError: They are.
+        """
+        if self._suspect is None:
+            self._suspect = self._fastest(steps)
+        if abs(self._qpos.sum()) < LOST:
+            return
+        joint = "the base"
+        if self._suspect >= 6:
+            joint = f"joint {self.robot.joints.names[self._suspect - 6]!r}"
+        raise DivergedError(
             f"the twin diverged at {self.time:.3f} s, first at {joint}; "
             "lower its stiffness or the physics time step"
         )
+
+    def _fastest(self, steps: int) -> int:
+        """Return the degree of freedom that first got too fast in the last `steps`, replayed."""
+        replay = mujoco.MjData(self.model)
+        replay.qpos[:] = self._before[: self.model.nq]
+        replay.qvel[:] = self._before[self.model.nq :]
+        replay.ctrl[:] = self.data.ctrl
+        replay.history[:] = self.data.history
+        fastest = 0
+        for _ in range(steps):
+            mujoco.mj_step(self.model, replay)
+            if not np.isfinite(replay.qvel).all():
+                break
+            fastest = int(np.argmax(np.abs(replay.qvel)))
+            if replay.qvel.dot(replay.qvel) > WILD:
+                break
+        return fastest

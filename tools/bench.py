@@ -10,9 +10,11 @@ import tyro
 from tools.bench_balance import measure_balance
 from tools.bench_loop import measure_tick, measure_twin
 from tools.bench_servo import measure_servos
+from tools.bench_stop import measure_stops
+from tools.bench_wire import measure_bus
 from tools.output import console, write_json
 
-What = Literal["tick", "twin", "balance", "servo"]
+What = Literal["tick", "twin", "balance", "servo", "bus", "stop"]
 
 
 @dataclass(frozen=True)
@@ -21,7 +23,9 @@ class Bench:
 
     what: Annotated[What, tyro.conf.Positional]
     """tick: one turn of the loop. twin: stepping through the guard against bare physics.
-    balance: the rollouts of one step. servo: the twin's servo against its data sheet."""
+    balance: the rollouts of one step. servo: the twin's servo against its data sheet.
+    bus: a cycle of 20 servos against the wire and other packages.
+    stop: how soon the torque is off when the controller ends, crashes or dies (10 minutes)."""
     robot: str = "op3"
     """Name of the robot, or path of its folder."""
     json: Path | None = None
@@ -34,6 +38,8 @@ class Bench:
             "twin": measure_twin,
             "balance": measure_balance,
             "servo": measure_servos,
+            "bus": measure_bus,
+            "stop": measure_stops,
         }
         result = measures[self.what](self.robot)
         for key, value in result.items():

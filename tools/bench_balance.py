@@ -10,8 +10,9 @@ from control.planner import StepPlanner, StepRequest
 from hal.errors import WindupError
 from hal.joints import Array
 from sim_twin.rollouts import RolloutPredictor
-from tools.build import WalkOptions, build_walk
+from tools.build import build_walk
 from tools.robot import Robot
+from tools.walk_options import WalkOptions
 
 ROUNDS = 20
 ROLLOUTS = 5
@@ -29,6 +30,11 @@ class Recorder:
 
     planner: StepPlanner
     requests: list[StepRequest] = field(default_factory=list)
+
+    @property
+    def latency(self) -> float:
+        """The planner's latency, s."""
+        return self.planner.latency
 
     def reset(self) -> None:
         """Forget all steps."""

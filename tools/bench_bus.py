@@ -30,6 +30,8 @@ from hal.protocols.protocol2 import Instruction, Span
 from hal.servo_backend import BusPort, ServoBackend
 from hal.servo_model import ServoMount
 from hal.servos import servo_model
+from tools import bench_bus1
+from tools.bench_bus1 import Vendor
 
 STATE, SIZE = 126, 10
 GOAL = 116
@@ -38,13 +40,20 @@ READY = b"r"
 Cycle = Callable[[], None]
 
 
-def bench_memory(servos: int = 20, rounds: int = 9, cycles: int = 100) -> dict[str, float]:
+def bench_memory(
+    servos: int = 20, rounds: int = 9, cycles: int = 100, vendor: Vendor | None = None
+) -> dict[str, float]:
     """Measure the codecs alone: answers lie ready in memory, nothing is a system call.
 
+    `vendor` says whose protocol 1; None is Dynamixel protocol 2.
+
     Returns:
-        Microseconds of processor time a cycle for "sdk", "codec", "codec fast", "backend".
+        Microseconds of processor time a cycle for "sdk", "codec", "codec fast" (of protocol 2),
+        "backend".
     """
     ids = list(range(1, servos + 1))
+    if vendor is not None:
+        return interleaved(bench_bus1.subjects(vendor, ids), rounds, cycles)
     return interleaved(
         {
             "sdk": _sdk_cycle(_CannedSdkPort(ids), ids),
@@ -57,7 +66,9 @@ def bench_memory(servos: int = 20, rounds: int = 9, cycles: int = 100) -> dict[s
     )
 
 
-def bench_pty(servos: int = 20, rounds: int = 9, cycles: int = 100) -> dict[str, float]:
+def bench_pty(
+    servos: int = 20, rounds: int = 9, cycles: int = 100, vendor: Vendor | None = None
+) -> dict[str, float]:
     """Measure with system calls, over a pseudo-terminal to a process that answers at once.
 
     Returns:
@@ -66,6 +77,9 @@ def bench_pty(servos: int = 20, rounds: int = 9, cycles: int = 100) -> dict[str,
     ids = list(range(1, servos + 1))
     with contextlib.ExitStack() as stack:
         paths = [stack.enter_context(_responder()) for _ in range(5)]
+        if vendor is not None:
+            others = bench_bus1.pty_subjects(vendor, ids, paths, stack)
+            return interleaved(others, rounds, cycles)
         sdk = PortHandler(paths[0])
         sdk.baudrate = BAUD
         sdk.openPort()
@@ -96,8 +110,10 @@ def interleaved(subjects: Mapping[str, Cycle], rounds: int, cycles: int) -> dict
     return {name: float(np.median(each)) * 1e6 for name, each in times.items()}
 
 
-def wire_bytes(servos: int = 20, fast: bool = False) -> int:
+def wire_bytes(servos: int = 20, fast: bool = False, vendor: Vendor | None = None) -> int:
     """Return the bytes of one cycle: request, answers and goals."""
+    if vendor is not None:
+        return bench_bus1.wire_bytes(vendor, servos)
     ids = range(1, servos + 1)
     read = BlockRead([Span(id, STATE, SIZE) for id in ids], fast)
     return len(read.request) + read.length + len(BlockWrite(list(ids), GOAL, 4).frame())
@@ -110,13 +126,14 @@ def respond(descriptor: int) -> None:
     os.write(descriptor, READY)
     while data := os.read(descriptor, 4096):
         pending += data
-        while len(pending) >= 7:
-            end = 7 + int.from_bytes(pending[5:7], "little")
+        while len(pending) >= 7 or (len(pending) >= 6 and pending[2] != 0xFD):
+            newer = pending[2] == 0xFD  # no servo of protocol 1 has this id here
+            end = 7 + int.from_bytes(pending[5:7], "little") if newer else 4 + pending[3]
             if len(pending) < end:
                 break
             request, pending = pending[:end], pending[end:]
             if request not in canned:
-                canned[request] = _answer(request)
+                canned[request] = _answer(request) if newer else bench_bus1.answer(request)
             if answer := canned.get(request):
                 os.write(descriptor, answer)
 

@@ -1,51 +1,31 @@
 """Putting a walking controller together from a robot, a gait and what the user asked for."""
 
-from dataclasses import dataclass, replace
-from math import radians
+from dataclasses import replace
+from math import isfinite
 
 import msgspec
 import numpy as np
 
 from control.balancer import Balancer
 from control.body import Body
-from control.course import Course
+from control.estimator import BaseEstimator
+from control.foot_load import FootLoad
 from control.gait import Gait, load_gait
 from control.gait_file import Balance, Sampling
-from control.guide import Guide, Steady, WalkCommand
 from control.planner import Planner, StepPlanner
 from control.regulation import RegulationVariable, regulation_variables
 from control.shaken import Shaken
-from control.side import SideControl
-from control.speed import SpeedControl
-from control.steering import Steering
+from control.soles import Soles
 from control.step_memory import Reuse, memory_of
 from control.step_model import StepModel
-from control.style import Styling
+from control.tilt_filter import GRAVITY
 from control.torso_servo import TorsoServo
 from hal.controller import Predictor
-from hal.errors import UnknownNameError, UsageError
+from hal.errors import StateMissingError, UnknownNameError, UsageError
 from robots import RobotDescription
-from tools.route import guide_of
-
-
-@dataclass(frozen=True)
-class WalkOptions:
-    """How to walk. What is None is as the gait says."""
-
-    gait: str = "walk"
-    speed: float | None = None
-    side: float = 0.0
-    turn: float = 0.0  # degrees/s
-    style: tuple[str, ...] = ()
-    path: str | None = None
-    to: tuple[float, float] | None = None
-    guide: Guide | None = None  # instead of all these
-    rv: tuple[str, ...] | None = None
-    sampling: Sampling | None = None
-    target: tuple[str, ...] = ()
-    model: Reuse = "full"
-    torso_servo: bool = True
-    open_loop: bool = False
+from sim_twin.imu_errors import OPENCR
+from tools.steer import steering_of
+from tools.walk_options import WalkOptions
 
 
 def find_gait(robot: RobotDescription, name: str) -> Gait:
@@ -66,10 +46,42 @@ def body_of(robot: RobotDescription) -> Body:
     return Body(robot.spec().compile(), robot.base, robot.torso, soles)
 
 
+def build_estimator(robot: RobotDescription, *, switches: bool = True) -> BaseEstimator:
+    """Return what estimates the base of `robot` from its sensors.
+
+    Args:
+        robot: The robot.
+        switches: Its contact sensors exist; without them the soles' heights tell who stands.
+
+    Raises:
+        StateMissingError: The robot has no IMU or no feet.
+    """
+    if robot.imu is None or not robot.feet:
+        raise StateMissingError(
+            f"the base of {robot.name} cannot be estimated; "
+            "give it an [imu] and a [[foot]] in robot.toml"
+        )
+    model = robot.spec().compile()
+    soles = Soles(model, [foot.body for foot in robot.feet], robot.contacts)
+    weight = float(model.body_subtreemass[model.body(robot.base).id]) * GRAVITY
+    load = FootLoad(soles, robot.contacts, weight, sensed=switches)
+    return BaseEstimator(load, model.site(robot.imu.site).pos.copy(), lag=OPENCR.lag)
+
+
 def build_walk(
-    robot: RobotDescription, options: WalkOptions, predictor: Predictor | None
+    robot: RobotDescription,
+    options: WalkOptions,
+    predictor: Predictor | None,
+    *,
+    latency: float = 0.0,
 ) -> Balancer:
     """Return the controller that walks `robot` as `options` say.
+
+    Args:
+        robot: The robot.
+        options: How to walk.
+        predictor: Plays rollouts in the controller's own time.
+        latency: From the start of a step to its scalings acting, where the predictor plays, s.
 
     Raises:
         UsageError: The options do not fit the gait.
@@ -102,6 +114,7 @@ def build_walk(
             predictor=predictor,
             torso_servo=torso_servo,
             horizon=balance.horizon,
+            latency=latency,
         )
     return Balancer(
         gait=gait,
@@ -111,52 +124,12 @@ def build_walk(
         regulation=variables,
         perturbations=names,
         planner=planner,
-        steering=_steering(robot, gait, options),
+        steering=steering_of(robot, gait, options),
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
         torso_servo=torso_servo,
         shaken=None if balance.replan is None or options.rv else Shaken(balance.replan),
     )
-
-
-def _steering(robot: RobotDescription, gait: Gait, options: WalkOptions) -> Steering:
-    """Return what steers a walk; open loop it only follows the gait's own speed.
-
-    Raises:
-        UsageError: The gait cannot walk as wanted.
-    """
-    turn = gait.file.turn
-    fastest = 0.0 if turn is None else turn.limit
-    if abs(options.turn) > fastest:
-        can = f"turns at most at {fastest:g} degrees/s" if fastest else "cannot turn"
-        raise UsageError(f"turn {options.turn:g} degrees/s: gait {gait.name!r} {can}")
-    order = WalkCommand(options.speed, options.side, radians(options.turn))
-    route = guide_of(robot, gait, path=options.path, to=options.to, speed=options.speed)
-    heading = None if options.open_loop else gait.file.heading
-    return Steering(
-        gait=gait,
-        guide=options.guide or route or Steady(order),
-        speed=SpeedControl(gait, options.speed),
-        side=SideControl(gait, options.side),
-        style=Styling(gait, amounts(options.style)),
-        course=None if heading is None else Course(heading, turn),
-    )
-
-
-def amounts(given: tuple[str, ...]) -> dict[str, float]:
-    """Return amounts by name from "NAME=AMOUNT", or a bare NAME for an amount of one.
-
-    Raises:
-        UsageError: An amount is no number.
-    """
-    found = {}
-    for text in given:
-        name, equals, value = text.partition("=")
-        try:
-            found[name] = float(value) if equals else 1.0
-        except ValueError:
-            raise UsageError(f"--style {text}: {value!r} is no number") from None
-    return found
 
 
 def _resampled(balance: Balance, sampling: Sampling) -> Balance:
@@ -250,4 +223,6 @@ def _targets(given: tuple[str, ...], variables: list[RegulationVariable]) -> dic
             targets[name] = float(value)
         except ValueError:
             raise UsageError(f"--target {text}: {value!r} is no number") from None
+        if not isfinite(targets[name]):
+            raise UsageError(f"--target {text}: {value!r} is no number to aim at")
     return targets

@@ -3,19 +3,27 @@
 import logging
 import signal
 import sys
-from typing import Annotated
+from contextlib import suppress
+from pathlib import Path
+from typing import Annotated, Any
 
 import mujoco
 import tyro
 
-from hal.errors import WindupError
+from hal.errors import UsageError, WindupError
 from tools.bench import Bench
+from tools.emulate import Emulate
+from tools.estimate import Estimate
+from tools.health import Health
+from tools.options import Common
 from tools.output import check_writable, console, error_record, write_json
 from tools.play import Play
+from tools.reproduce import Reproduce
 from tools.robots_list import Robots
 from tools.scan import Scan
 from tools.stand import Stand
 from tools.stop import Stop
+from tools.sweep import Sweep, separate
 from tools.walk import Walk
 
 Command = (
@@ -24,8 +32,13 @@ Command = (
     | Annotated[Stand, tyro.conf.subcommand("stand")]
     | Annotated[Stop, tyro.conf.subcommand("stop")]
     | Annotated[Scan, tyro.conf.subcommand("scan")]
+    | Annotated[Emulate, tyro.conf.subcommand("emulate")]
+    | Annotated[Health, tyro.conf.subcommand("health")]
     | Annotated[Robots, tyro.conf.subcommand("robots")]
+    | Annotated[Estimate, tyro.conf.subcommand("estimate")]
     | Annotated[Bench, tyro.conf.subcommand("bench")]
+    | Annotated[Sweep, tyro.conf.subcommand("sweep")]
+    | Annotated[Reproduce, tyro.conf.subcommand("reproduce")]
 )
 
 
@@ -44,13 +57,9 @@ def run(arguments: list[str] | None = None) -> int:
     # A robot has to be let go on SIGTERM as on Ctrl-C.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        command = tyro.cli(
-            Command,
-            prog="windup",
-            description="Controllers for small servo humanoids: on the robot, and on its twin.",
-            args=arguments,
-            config=(tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes),
-        )
+        command = parse(separate(arguments))
+        if isinstance(command, Common):
+            command.check()
         check_writable(getattr(command, "json", None), getattr(command, "plot", None))
         return int(command.run())
     except WindupError as error:
@@ -60,12 +69,35 @@ def run(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         console.print("windup: interrupted")
         return 130
+    except SystemExit as parsed:
+        status = parsed.code if isinstance(parsed.code, int) else 2
+        if status != 0:
+            _write_unparsed(sys.argv[1:] if arguments is None else arguments)
+        return status
+
+
+def _write_unparsed(arguments: list[str]) -> None:
+    """Tell programs that their command line could not be understood."""
+    if "--json" in arguments[:-1]:
+        target = Path(arguments[arguments.index("--json") + 1])
+        message = f"the command line cannot be understood: {' '.join(arguments)}"
+        with suppress(OSError):
+            write_json(target, arguments[0], error_record(UsageError(message)))
+
+
+def parse(arguments: list[str]) -> Any:
+    """Return the command that the arguments mean; exits with status 2 if they mean none."""
+    return tyro.cli(
+        Command,
+        prog="windup",
+        description="Controllers for small servo humanoids: on the robot, and on its twin.",
+        args=arguments,
+        config=(tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes),
+    )
 
 
 def _write_error(command: object, error: WindupError) -> None:
     """Tell programs too, where they asked for JSON."""
-    try:
+    with suppress(OSError):  # the error may be about this very file
         target = getattr(command, "json", None)
         write_json(target, type(command).__name__.lower(), error_record(error))
-    except OSError:
-        return  # the error was about this very file

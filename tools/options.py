@@ -1,6 +1,7 @@
 """Options that every command takes, and what they mean together."""
 
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 from typing import Annotated
 
@@ -36,11 +37,23 @@ class Common:
     plot: Path | None = None
     """Draw the run into an image file."""
 
-    def __post_init__(self) -> None:
+    noise: float = 0.0
+    """Standard deviation of noise on the start pose, degrees."""
+
+    def check(self) -> None:
+        """Raise what cannot be, before anything is opened.
+
+        Raises:
+            UsageError: An option is out of its range.
+        """
         if self.seeds is not None and self.seeds < 1:
             raise UsageError(f"--seeds {self.seeds}: give 1 or more")
-        if self.rate is not None and self.rate <= 0.0:
+        if self.seed < 0:
+            raise UsageError(f"--seed {self.seed}: give 0 or more")
+        if self.rate is not None and not 0.0 < self.rate < inf:
             raise UsageError(f"--rate {self.rate:g}: give a rate above 0 Hz")
+        if not 0.0 <= self.noise < inf:
+            raise UsageError(f"--noise {self.noise:g}: give 0 degrees or more")
 
     @property
     def all_seeds(self) -> list[int]:

@@ -1,6 +1,8 @@
 """`windup play`: play a pose graph on a robot."""
 
+from contextlib import suppress
 from dataclasses import dataclass
+from math import inf
 from typing import Annotated
 
 import tyro
@@ -19,12 +21,10 @@ class Play(Common):
     """Name of the graph: a file in the robot's gaits."""
     seconds: float | None = None
     """How long; to its end, or 5 s for a graph that has none."""
-    noise: float = 0.0
-    """Standard deviation of noise on the start pose, degrees."""
 
     def run(self) -> int:
         """Play; returns the exit status."""
-        if self.seconds is not None and self.seconds <= 0.0:
+        if self.seconds is not None and not 0.0 < self.seconds < inf:
             raise UsageError(f"--seconds {self.seconds:g}: give more than 0")
         rows = [self._one(seed) for seed in self.all_seeds]
         for row in rows:
@@ -33,6 +33,8 @@ class Play(Common):
             )
         result = rows[0] if self.seeds is None else {"robot": self.robot, "rows": rows}
         write_json(self.json, "play", result)
+        if any(row["reason"] == "interrupted" for row in rows):
+            return 130
         return 1 if any(row["fell"] for row in rows) else 0
 
     def _one(self, seed: int) -> dict[str, object]:
@@ -46,7 +48,9 @@ class Play(Common):
             seed=seed,
             noise=self.noise,
         ) as robot:
-            report = robot.play(self.graph, self.seconds)
+            with suppress(KeyboardInterrupt):  # the robot has stopped
+                robot.play(self.graph, self.seconds)
+            report = robot.loop
             return {
                 "robot": robot.description.name,
                 "graph": self.graph,

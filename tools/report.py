@@ -10,7 +10,7 @@ from control.loop import LoopReport
 from control.navigation import PathFollower, PointFollower
 from control.planner import StepPlanner
 from hal.joints import Array
-from tools.build import WalkOptions
+from tools.walk_options import WalkOptions
 
 if TYPE_CHECKING:
     from tools.robot import Robot
@@ -114,7 +114,7 @@ class WalkReport:
             "steps_requested": self.requested,
             "steps": walker.steps,
             "fell": self.fell,
-            "fell_at_step": walker.steps if self.fell else None,
+            "fell_at_step": walker.steps + 1 if self.fell else None,
             "reason": loop.reason,
             "distance_m": float(end[0]),
             "lateral_m": float(end[1]),
@@ -133,6 +133,7 @@ class WalkReport:
             "step_model": self.counters,
             "tick_ms": loop.tick_ms(),
             "missed": loop.missed if robot.paced else None,
+            "late_plans": walker.late if robot.paced else None,
             "clamps": {name: count for name, count in robot.backend.clamps.items() if count},
             "regulation": self.regulation(),
         }
@@ -152,10 +153,9 @@ class WalkReport:
         rows = []
         for column, variable in enumerate(self.walker.regulation):
             row: dict[str, Any] = {"name": variable.name, "unit": variable.unit}
-            if records:
-                row["target"] = float(records[-1].target[column])
-                row["mean"] = float(values[:, column].mean())
-                row["sd"] = float(values[:, column].std())
+            row["target"] = float(records[-1].target[column]) if records else None
+            row["mean"] = float(values[:, column].mean()) if records else None
+            row["sd"] = float(values[:, column].std()) if records else None
             rows.append(row)
         return rows
 

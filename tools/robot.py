@@ -5,65 +5,50 @@ with Robot.open("op3") as robot:              # its twin
 """
 
 from collections.abc import Callable
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field, replace
 from types import TracebackType
 from typing import Self
 
-import numpy as np
-
-from control.loop import LoopReport, Until, run_loop
+from control.loop import LoopReport, Until
 from control.play import GraphPlayer, PoseHolder
-from hal.controller import Controller, Stopwatch
-from hal.errors import HardwareError, UnknownNameError, UsageError, WindupError
-from hal.guard import GuardedBackend
-from hal.observation import BaseState, Observation
-from robots import RobotDescription, load_robot
+from hal.controller import Stopwatch
+from hal.errors import UnknownNameError, UsageError
+from hal.observation import Observation
+from robots import load_robot
 from sim_twin.clearance import FootClearance
 from sim_twin.push import Push
 from sim_twin.rollouts import RolloutPredictor
 from sim_twin.twin import Twin
 from sim_twin.world import World
-from tools.build import WalkOptions, build_walk, find_gait
+from tools.build import build_walk, find_gait
+from tools.plan_process import plan_aside
 from tools.report import WalkReport
-from tools.stack import Stack, State, twin_stack, wire_stack
+from tools.session import Session
+from tools.stack import State, twin_stack, wire_stack
 from tools.walk_end import OnStep, WalkEnd
+from tools.walk_options import WalkOptions
 
 START_SECONDS = 1.0
 REST_SECONDS = 1.5
-# Called once a tick with the observation and the controller.
-Watch = Callable[[Observation], None]
+PLAY_SECONDS = 5.0
 
 
 @dataclass
-class Robot:
+class Robot(Session):
     """A robot that can be run; open one with `Robot.open`.
 
     Attributes:
-        description: What robot it is.
-        stack: Its backend and what belongs to it.
         predictor: Plays rollouts of it.
-        period: Period of the control loop, s.
         noise: Noise of the start pose, degrees.
         seed: Seed of everything random.
-        paced: Its time is real time.
-        loop: Report of the last run.
-        watch: Called with every observation, for whoever draws or logs.
-        base: Base state last seen: the truth on a twin, an estimate on a robot.
         clearance: How close the feet of a twin came in the last walk.
     """
 
-    description: RobotDescription
-    stack: Stack
-    predictor: RolloutPredictor
-    period: float
+    predictor: RolloutPredictor = field(kw_only=True)
     noise: float = 0.0
     seed: int = 0
-    paced: bool = False
-    loop: LoopReport = field(default_factory=LoopReport)
-    watch: Watch | None = None
-    base: BaseState | None = None
-    clearance: FootClearance | None = None
-    _armed: bool = False
+    clearance: FootClearance | None = field(default=None, init=False)
 
     @classmethod
     def open(
@@ -104,7 +89,12 @@ class Robot:
         steps = description.physics_steps(rate or wired)
         if port is None:
             stack = twin_stack(
-                description, state=state or "true", paced=realtime, delay=delay, world=world
+                description,
+                state=state or "true",
+                paced=realtime,
+                delay=delay,
+                seed=seed,
+                world=world,
             )
         elif world is not None:
             raise UsageError("only a twin has another ground or plant; leave --port away")
@@ -136,17 +126,12 @@ class Robot:
         trace: TracebackType | None,
     ) -> None:
         try:
-            if self._armed and error is None and not self.fallen:
+            if self.armed and error is None and not self.fallen:
                 self.rest()
-            elif self._armed:
+            elif self.armed:
                 self.stop()
         finally:
-            self.stack.close()
-
-    @property
-    def backend(self) -> GuardedBackend:
-        """The guarded backend."""
-        return self.stack.backend
+            self.close()
 
     @property
     def twin(self) -> Twin:
@@ -158,18 +143,6 @@ class Robot:
         if self.stack.twin is None:
             raise UsageError("only a twin can do that; leave --port away")
         return self.stack.twin
-
-    @property
-    def fallen(self) -> bool:
-        """True when the robot has fallen."""
-        if self.stack.twin is not None:
-            return self.stack.twin.fallen
-        if self.base is None:
-            return False
-        fall = self.description.fall
-        _, x, y, _ = self.base.orientation
-        tilted = 1.0 - 2.0 * (x * x + y * y) < np.cos(fall.tilt)
-        return bool(self.base.position[2] < fall.height or tilted)
 
     def push(
         self, impulse: float, direction: float = 0.0, *, duration: float = 0.1, delay: float = 0.0
@@ -190,23 +163,6 @@ class Robot:
         mass = float(self.twin.model.body_mass.sum())
         self.twin.push(Push.velocity_step(speed, mass, direction, self.twin.time + delay))
 
-    def arm(self) -> None:
-        """Switch the torque on at the present pose, where there are servos to switch.
-
-        Raises:
-            UsageError: The port is real and `arm` was not given; nothing has moved.
-            HardwareError: A servo did not take it; all torque is off again.
-        """
-        if self._armed or not self.stack.wired:
-            return
-        if not self.stack.may_arm:
-            raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
-        self._armed = True
-        on = self.backend.set_torque(True)
-        if not on.all():
-            names = ", ".join(np.array(self.description.joints.names)[~on])
-            raise HardwareError(f"torque does not come on at {names}; run `windup scan`")
-
     def rest(self) -> None:
         """Crouch, if the robot has a pose for it, and switch the torque off."""
         crouch = self.description.crouch
@@ -214,22 +170,18 @@ class Robot:
             self.run(PoseHolder(self.description.joints, crouch, REST_SECONDS), REST_SECONDS + 0.3)
         self.stop(limp=True)
 
-    def stop(self, *, limp: bool = False) -> None:
-        """Carry out the stop policy at once; with `limp`, just switch the torque off.
-
-        Raises:
-            HardwareError: Torque was told to go off and a joint read back on.
-        """
-        on = self.backend.stop("limp" if limp else None)
-        self._armed = bool(on.any())
-
     def stand(self, seconds: float = 2.0) -> LoopReport:
         """Hold the stance for `seconds` s of the robot's time."""
         return self.run(PoseHolder(self.description.joints, self.description.stance), seconds)
 
     def play(self, graph: str, seconds: float | None = None) -> LoopReport:
-        """Play a pose graph of the robot to its end, or for `seconds` s."""
+        """Play a pose graph of the robot to its end, or for `seconds` s.
+
+        A graph without an end is played for 5 s.
+        """
         gait = find_gait(self.description, graph)
+        if seconds is None and gait.graph.periodic:
+            seconds = PLAY_SECONDS
         player = GraphPlayer(gait, self.description.joints, self.description.contacts)
         self.start_at(gait.file.start)
         return self.run(player, seconds, until=lambda _: "done" if player.finished else None)
@@ -262,79 +214,42 @@ class Robot:
         if speed is not None:
             options = replace(options, speed=speed)
         self.predictor.stopwatch = Stopwatch()
-        walker = build_walk(self.description, options, self.predictor)
-        end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
-        self.start_at(walker.gait.file.start)
-        if (twin := self.stack.twin) is not None:
-            self.clearance = FootClearance(self.description, twin.model, twin.data)
+        stopwatch = None if self.paced else self.predictor.stopwatch
+        with ExitStack() as stack:
+            walker = build_walk(self.description, options, self.predictor)
+            end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
+            if self.paced and walker.planner is not None:
+                aside = plan_aside(self.description, options, self.predictor, self.period)
+                walker.planner = stack.enter_context(aside).wait_ready()
+            self.start_at(walker.gait.file.start)
+            self._watch_feet()
             if disturb is not None:
                 disturb(self)
-        report = WalkReport(self, walker, options, steps)
-        try:
-            self.run(walker, until=end, rollouts=True)
-            if stand > 0.0 and self.loop.reason == "done":
-                walked, self.loop = self.loop, self.stand(stand)
-                walked.reason = self.loop.reason
-                self.loop = walked
-        except KeyboardInterrupt:
-            self.loop.reason = "interrupted"
-            self.stop()
+            report = WalkReport(self, walker, options, steps)
+            with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far
+                walked = self.run(walker, until=self._looking(end), rollouts=stopwatch)
+                if stand > 0.0 and walked.reason == "done":
+                    walked.reason = self.stand(stand).reason
+                    self.loop = walked
         report.loop = self.loop
         return report
 
-    def run(
-        self,
-        controller: Controller,
-        seconds: float | None = None,
-        *,
-        until: Until | None = None,
-        rollouts: bool = False,
-    ) -> LoopReport:
-        """Run a controller until the time is over, `until` gives a reason, or the robot falls.
+    def _watch_feet(self) -> None:
+        """From now on remember how close the feet of a twin come."""
+        twin = self.stack.twin
+        self.clearance = None
+        if twin is not None:
+            self.clearance = FootClearance(self.description, twin.model, twin.data)
 
-        Raises:
-            WindupError: From the guard, the backend or the controller; the stop policy has run.
-        """
-        self.arm()
-        begin = self.backend.clock.now()
+    def _looking(self, end: Until) -> Until:
+        """Return `end`, with a look at the feet first."""
 
-        def end(observation: Observation) -> str | None:
-            self.base = observation.base
-            if rollouts and self.clearance is not None:
+        def until(observation: Observation) -> str | None:
+            if self.clearance is not None:
                 self.clearance.look()
-            if self.watch is not None:
-                self.watch(observation)
-            if self.fallen:
-                return "fell"
-            if until is not None and (reason := until(observation)) is not None:
-                return reason
-            over = seconds is not None and observation.time >= begin + seconds - 1e-9
-            return "done" if over else None
+            return end(observation)
 
-        self.loop = LoopReport()
-        try:
-            run_loop(
-                self.backend,
-                controller,
-                period=self.period,
-                until=end,
-                estimator=self.stack.estimator,
-                rollouts=self.predictor.stopwatch if rollouts else None,
-                report=self.loop,
-            )
-        except WindupError as error:
-            self.loop.reason = str(error)
-            if error.exit_status != 2:
-                self._stop_after_error()
-            raise
-        return self.loop
-
-    def _stop_after_error(self) -> None:
-        """Carry out the stop policy; a twin that has diverged can no longer do it."""
-        try:
-            self.stop()
-        except WindupError as error:
-            self.loop.reason += f"; and the stop failed: {error}"
+        return until
 
     def start_at(self, name: str | None) -> None:
         """Put a fresh twin into a start pose, with noise; let anything else move there."""

@@ -9,10 +9,8 @@ from rich.table import Table
 
 from hal.bus import Bus, Found
 from hal.errors import HardwareError
+from hal.families import DYNAMIXEL_X, FAMILIES
 from hal.open_port import open_port
-from hal.registers import Register
-from hal.servo_line import REGISTERS
-from hal.servos.x_series_registers import hardware_errors
 from robots import load_robot
 from tools.output import console, write_json
 
@@ -35,16 +33,24 @@ class Scan:
         expected = _expected(self.robot)
         port = open_port(self.url)
         try:
-            bus = Bus(port)
-            found = bus.scan(None if self.baud is None else [self.baud])
-            rows = [_describe(bus, servo, expected) for servo in found]
+            rows = [row for family in FAMILIES for row in self._family(Bus(port, family), expected)]
         finally:
             port.close()
-        missing = sorted(set(expected) - {servo.id for servo in found})
+        missing = sorted(set(expected) - {row["id"] for row in rows})
         self._show(rows, [f"{expected[id]} (id {id})" for id in missing])
         result = {"url": self.url, "servos": rows, "missing_ids": missing}
         write_json(self.json, "scan", result)
         return 3 if missing or not rows else 0
+
+    def _family(self, bus: Bus, expected: dict[int, str]) -> list[dict[str, Any]]:
+        """Return the servos of one family; other families that answer are left to their own."""
+        bauds = bus.family.bauds if self.baud is None else [self.baud]
+        found = bus.scan([baud for baud in bauds if baud in bus.family.bauds])
+        # Protocol 1 is spoken by three families: a model number says whose it is.
+        mine = [servo for servo in found if servo.model_number in bus.family.numbers]
+        if bus.family is DYNAMIXEL_X:
+            mine = found
+        return [_describe(bus, servo, expected) for servo in mine]
 
     def _show(self, rows: list[dict[str, Any]], missing: list[str]) -> None:
         if not rows:
@@ -78,9 +84,9 @@ def _describe(bus: Bus, servo: Found, expected: dict[int, str]) -> dict[str, Any
     before = bus.port.baud
     bus.port.baud = servo.baud
     try:
-        volts = _read(bus, servo.id, REGISTERS["present_voltage"])
-        heat = _read(bus, servo.id, REGISTERS["present_temperature"])
-        error = _read(bus, servo.id, REGISTERS["hardware_error"])
+        volts = _read(bus, servo.id, "present_voltage")
+        heat = _read(bus, servo.id, "present_temperature")
+        error = _read(bus, servo.id, "hardware_error")
     finally:
         bus.port.baud = before
     return {
@@ -90,14 +96,15 @@ def _describe(bus: Bus, servo: Found, expected: dict[int, str]) -> dict[str, Any
         "baud": servo.baud,
         "voltage_v": None if volts is None else round(0.1 * volts, 1),
         "temperature_c": heat,
-        "error": "" if not error else ", ".join(hardware_errors(error)),
+        "error": "" if not error else ", ".join(bus.family.explain(error)),
         "joint": expected.get(servo.id, ""),
     }
 
 
-def _read(bus: Bus, id: int, register: Register) -> int | None:
+def _read(bus: Bus, id: int, name: str) -> int | None:
     """Return one register, or None where the device has none."""
+    register = bus.family.registers.get(name)
     try:
-        return bus.read(id, register)
+        return None if register is None else bus.read(id, register)
     except HardwareError:
         return None

@@ -2,24 +2,29 @@
 
 from dataclasses import dataclass, replace
 from itertools import count
+from math import inf
 from typing import Literal
 
 import sim_twin.wire as wire
 from control.loop import Estimator
 from hal.errors import UsageError
 from hal.guard import GuardedBackend, SafetyLimits
+from hal.imu.bno08x_rvc import Bno08xRvc
 from hal.imu.opencr import OpenCr
 from hal.joints import Mask
 from hal.observation import Observation
 from hal.servo_backend import BusPort, ServoBackend
 from robots import RobotDescription
 from sim_twin.backend import TwinBackend
+from sim_twin.imu_errors import OPENCR, ImuErrors
 from sim_twin.sensors import Sensors
 from sim_twin.twin import Twin
 from sim_twin.world import World
+from tools.build import build_estimator
 
 State = Literal["true", "estimated"]
 TWIN = "twin://"
+IMU = "imu"  # name of the port of an IMU that is on no servo bus
 _worlds = count()
 
 
@@ -35,6 +40,7 @@ class Stack:
         wired: There is a port with servos between us and the joints.
         may_arm: Torque may be switched on.
         world: Name of the emulated world to forget at the end, or "".
+        port: URL of the port, as the user gave it.
     """
 
     backend: GuardedBackend
@@ -44,6 +50,7 @@ class Stack:
     wired: bool = False
     may_arm: bool = True
     world: str = ""
+    port: str | None = None
 
     def close(self) -> None:
         """Disconnect."""
@@ -74,18 +81,24 @@ def twin_stack(
     state: State,
     paced: bool,
     delay: float | None,
+    seed: int,
     world: World | None = None,
 ) -> Stack:
-    """Return a stack on a twin of `robot`; what is odd about its `world` nobody is told.
+    """Return a stack on a twin of `robot`; where its state is estimated, its IMU is a real one.
+
+    What is odd about the twin's `world` nobody is told.
 
     Raises:
         UsageError: The delay is negative, or no whole number of physics steps.
     """
     _check_delay(delay, robot)
     twin = Twin(robot, delay=delay, world=world)
-    backend = _guarded(TwinBackend(twin, paced=paced, true_base=state == "true"), robot)
+    true = state == "true"
+    errors = None if true else ImuErrors(OPENCR, twin.timestep, seed)
+    estimator = None if true else build_estimator(robot)
+    backend = _guarded(TwinBackend(twin, paced=paced, true_base=true, imu_errors=errors), robot)
     delay = robot.drive.command_delay if delay is None else delay
-    return Stack(backend, twin, None, delay + robot.drive.sensor_delay)
+    return Stack(backend, twin, estimator, delay + robot.drive.sensor_delay)
 
 
 def wire_stack(
@@ -105,26 +118,32 @@ def wire_stack(
         UsageError: The port does not fit the robot.
         HardwareError: Something on the bus is not as the robot's file says.
     """
-    emulated = port.startswith(TWIN)
+    given, emulated = port, port.startswith(TWIN)
     world = ""
     if emulated:
         port, world = _in_a_world(robot, port)
     backend = _guarded(_servo_backend(robot, port), robot)
     backend.connect()
     twin = _twin_behind(world) if emulated else None
-    estimator: Estimator | None = None
     try:
+        estimator = _estimator(robot, twin, state)
         if twin is not None:
             twin.reset(noise=noise, seed=seed)
-            estimator = Truth(Sensors(twin)) if state == "true" else None
-        elif state == "true":
-            raise UsageError("--state true needs a twin; a robot has `--state estimated`")
         backend.configure()
     except BaseException:
         backend.disconnect()
         raise
     delay = robot.drive.wire_delay
-    return Stack(backend, twin, estimator, delay, True, arm or emulated, world)
+    return Stack(backend, twin, estimator, delay, True, arm or emulated, world, given)
+
+
+def _estimator(robot: RobotDescription, twin: Twin | None, state: State) -> Estimator:
+    """Return what fills in the base state behind a port; no servo bus carries foot switches."""
+    if state == "estimated":
+        return build_estimator(robot, switches=False)
+    if twin is None:
+        raise UsageError("--state true needs a twin; a robot has `--state estimated`")
+    return Truth(Sensors(twin))
 
 
 def limp(robot: RobotDescription, port: str) -> Mask:
@@ -144,37 +163,44 @@ def _servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
     if len(mounts) < len(robot.joints):
         raise UsageError(f"{robot.name} has no servos on a wire; leave --port away")
     bauds = {bus.name: bus.baud for bus in robot.buses}
-    ports = {name: BusPort(url, bauds[name]) for name, url in _urls(robot, port).items()}
-    board = OpenCr(robot.buses[0].name) if robot.imu is not None else None
+    urls = _urls(robot, port)
+    imu = urls.pop(IMU, None)
+    # An OP3's IMU hangs on the servo bus; other robots have theirs on a port of its own.
+    on_the_bus = robot.imu is not None and robot.buses[0].protocol == "dynamixel2"
     return ServoBackend(
         robot.joints,
         mounts,
-        ports,
+        {name: BusPort(url, bauds[name]) for name, url in urls.items()},
         supply=robot.drive.supply,
-        board=board,
+        board=OpenCr(robot.buses[0].name) if on_the_bus else None,
+        imu=Bno08xRvc(imu) if imu is not None else None,
         contacts=len(robot.contacts.names),
     )
 
 
 def _urls(robot: RobotDescription, port: str) -> dict[str, str]:
-    """Return the URL of each bus.
+    """Return the URL of each bus, and of the IMU where it has a port of its own.
 
     Raises:
         UsageError: A bus has none, or a name is no bus of the robot.
     """
     names = [bus.name for bus in robot.buses]
+    apart = robot.imu is not None and robot.buses[0].protocol != "dynamixel2"
     first, equals, _ = port.partition("=")
-    if not (equals and first in names):
-        if port.startswith(TWIN) and len(names) > 1:
-            return {name: f"{port}{'&' if '?' in port else '?'}bus={name}" for name in names}
-        if len(names) > 1:
-            wanted = ",".join(f"{name}=URL" for name in names)
-            raise UsageError(f"{robot.name} has several buses; give --port {wanted}")
-        return {names[0]: port}
-    given = dict(part.partition("=")[::2] for part in port.split(","))
-    if set(given) != set(names):
-        raise UsageError(f"--port names {', '.join(given)}; the buses are {', '.join(names)}")
-    return given
+    if equals and first in names:
+        given = dict(part.partition("=")[::2] for part in port.split(","))
+        if set(given) - {IMU} != set(names):
+            raise UsageError(f"--port names {', '.join(given)}; the buses are {', '.join(names)}")
+        return given
+    if port.startswith(TWIN):
+        also = [*names, IMU] if apart else names
+        if len(also) == 1:
+            return {names[0]: port}
+        return {name: f"{port}{'&' if '?' in port else '?'}bus={name}" for name in also}
+    if len(names) > 1:
+        wanted = ",".join(f"{name}=URL" for name in names)
+        raise UsageError(f"{robot.name} has several buses; give --port {wanted}")
+    return {names[0]: port}
 
 
 def _in_a_world(robot: RobotDescription, port: str) -> tuple[str, str]:
@@ -204,7 +230,7 @@ def _guarded(backend: TwinBackend | ServoBackend, robot: RobotDescription) -> Gu
 def _check_delay(delay: float | None, robot: RobotDescription) -> None:
     if delay is None:
         return
-    if delay < 0.0:
+    if not 0.0 <= delay < inf:
         raise UsageError(f"--delay {delay:g}: give 0 s or more")
     steps = delay / robot.timestep
     if abs(steps - round(steps)) > 1e-6:

@@ -1,6 +1,8 @@
 """`windup stand`: move a robot into its stance and hold it."""
 
+from contextlib import suppress
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
@@ -19,7 +21,7 @@ class Stand(Common):
 
     def run(self) -> int:
         """Stand; returns the exit status."""
-        if self.seconds <= 0.0:
+        if not 0.0 < self.seconds < inf:
             raise UsageError(f"--seconds {self.seconds:g}: give more than 0")
         with Robot.open(
             self.robot,
@@ -29,8 +31,11 @@ class Stand(Common):
             rate=self.rate,
             realtime=self.realtime,
             seed=self.seed,
+            noise=self.noise,
         ) as robot:
-            report = robot.stand(self.seconds)
+            with suppress(KeyboardInterrupt):  # the robot has stopped
+                robot.stand(self.seconds)
+            report = robot.loop
             joints = robot.backend.read().joints
             error = np.degrees(np.abs(joints.position - robot.description.stance))
             result = {
@@ -50,4 +55,6 @@ class Stand(Common):
             f"{result['largest_error_joint']} by {error.max():.1f} degrees"
         )
         write_json(self.json, "stand", result)
+        if report.reason == "interrupted":
+            return 130
         return 1 if result["fell"] else 0

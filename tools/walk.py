@@ -11,13 +11,14 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from hal.errors import UsageError
 from robots import load_robot
-from tools.build import WalkOptions, build_walk
+from tools.build import build_walk
 from tools.options import Common
 from tools.output import console, write_json
 from tools.plot import Trace, plot_walk
 from tools.report import WalkReport, summary
 from tools.robot import Robot
 from tools.twin_options import TwinOptions
+from tools.walk_options import WalkOptions
 
 STEPS = 80
 GOAL_STEPS = 1000
@@ -58,8 +59,6 @@ class Walk(TwinOptions, Common):
     """Keep the torso upright by its own servo, where the gait has one."""
     open_loop: bool = False
     """Play the bare pose graph, without balance."""
-    noise: float = 0.0
-    """Standard deviation of noise on the start pose, degrees."""
     delay: float | None = None
     """Delay of the servos, s."""
 
@@ -98,7 +97,7 @@ class Walk(TwinOptions, Common):
         ) as robot:
             trace = Trace(robot.description.contacts)
             robot.watch = trace.add if self.plot and show else None
-            with _progress(show) as progress:
+            with _progress(show and not self.realtime) as progress:
                 report = self._walk(robot, progress)
         if show:
             console.print(_line(report))
@@ -162,6 +161,7 @@ class Walk(TwinOptions, Common):
 
 
 def _progress(show: bool) -> Progress:
+    """Return a progress bar; it draws from a thread, so a loop on the wall's time has none."""
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -177,7 +177,9 @@ def _update(progress: Progress, bar: Any, robot: Robot) -> Callable[[int, float]
     """Return what moves the progress bar at the end of a step."""
 
     def update(steps: int, speed: float) -> None:
-        lean = np.degrees(np.arccos(np.clip(robot.twin.up[2], -1.0, 1.0)))
+        assert robot.base is not None, "a walk has a base state"
+        _, x, y, _ = robot.base.orientation
+        lean = np.degrees(np.arccos(np.clip(1.0 - 2.0 * (x * x + y * y), -1.0, 1.0)))
         progress.update(
             bar, completed=steps, speed=f"{speed:5.2f} m/s", lean=f"lean {lean:4.1f} deg"
         )

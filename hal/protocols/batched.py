@@ -1,4 +1,4 @@
-"""The cyclic codec: all answers of a cycle checked at once, all goals patched into one frame.
+"""The cyclic codec of protocol 2: a cycle's answers checked at once, its goals in one frame.
 
 A read is laid out once: which bytes of the expected stream are constant, which vary, how far each
 stands from the end of its frame. A cycle then costs a handful of numpy calls whatever the number
@@ -11,32 +11,21 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from hal.joints import Mask
 from hal.protocols import protocol2
 from hal.protocols.crc16 import distance_table
+from hal.protocols.cyclic import Bytes, CyclicRead, Index
 from hal.protocols.protocol2 import Span, Status
 
-Bytes = npt.NDArray[np.uint8]
-Index = npt.NDArray[np.intp]
 
+class BlockRead(CyclicRead):
+    """A sync read, plain or fast, or where the spans differ a bulk read.
 
-class BlockRead:
-    """One request and the n replies to it.
-
-    Attributes:
-        spans: What is read of whom, in the order of the replies.
-        request: The frame to send.
-        length: Bytes of a complete answer without stuffing.
-        longest: Bytes of the longest answer that stuffing can make.
-        valid: (n,) bool: who answered the last request.
-        complete: Did all?
-        error: (n,) error bytes, and what the properties below show: as of each servo's last
-            good answer.
+    `length` is without stuffing; `longest` has all that stuffing can add.
     """
 
     def __init__(self, spans: Sequence[Span], fast: bool = False) -> None:
-        self.spans, self.fast = tuple(spans), fast
-        self._rows = {span.id: row for row, span in enumerate(self.spans)}
+        super().__init__(spans)
+        self.fast = fast
         uniform = len({(span.address, span.size) for span in self.spans}) == 1
         ids = [span.id for span in self.spans]
         if uniform:
@@ -45,38 +34,6 @@ class BlockRead:
         else:
             self.request = protocol2.bulk_read(self.spans)
         self._lay_out(_fast_answer(self.spans) if fast else _answers(self.spans))
-        self.valid: Mask = np.zeros(len(self.spans), dtype=bool)
-        self.complete = False
-        self.error: Bytes = np.zeros(len(self.spans), dtype=np.uint8)
-        self.payload: Bytes = np.zeros(self._ends[-1], dtype=np.uint8)
-
-    def column(self, offset: int, dtype: str, rows: slice = slice(None)) -> npt.NDArray[np.int64]:
-        """Return a live view of one field of the chosen rows, which must be of equal size.
-
-        `offset` counts bytes from the start of each span; the view is updated by `decode`.
-        """
-        chosen = range(len(self.spans))[rows]
-        size = self.spans[chosen[0]].size
-        start = self._ends[chosen[0]] - size + offset
-        return np.ndarray((len(chosen),), dtype, self.payload.data, start, (size,))
-
-    def params(self, row: int) -> bytes:
-        """Return the last good parameters of one row."""
-        return self.payload[self._ends[row] - self.spans[row].size : self._ends[row]].tobytes()
-
-    def decode(self, stream: bytes) -> Mask:
-        """Take in an answer and return (n,) bool: whose reply was in it and good."""
-        if len(stream) == self.length:
-            data = np.frombuffer(stream, dtype=np.uint8)
-            if self._sound(data):
-                data.take(self._payload_at, out=self.payload, mode="clip")
-                data.take(self._error_at, out=self.error, mode="clip")
-                if not self.complete:
-                    self.valid.fill(True)
-                    self.complete = True
-                return self.valid
-        self._salvage(stream)
-        return self.valid
 
     def answered(self) -> int:
         """Return how many bytes the good replies to the last request had, without stuffing."""
@@ -91,32 +48,16 @@ class BlockRead:
         terms = self._table.take(self._index, mode="clip")
         return bool((np.bitwise_xor.reduceat(terms, self._starts) == self._fixed_crc).all())
 
-    def _salvage(self, stream: bytes) -> None:
-        self.valid.fill(False)
-        for item in self._statuses(stream):
-            if self._fits(item):
-                row = self._rows[item.id]
-                end = self._ends[row]
-                self.payload[end - len(item.params) : end] = np.frombuffer(item.params, np.uint8)
-                self.error[row] = item.error
-                self.valid[row] = True
-        self.complete = bool(self.valid.all())
-
     def _statuses(self, stream: bytes) -> Sequence[Status]:
         if self.fast:
             return list(protocol2.salvage_fast(stream, self.spans[0].size))
         return list(protocol2.salvage(stream, self.longest))
-
-    def _fits(self, item: Status) -> bool:
-        row = self._rows.get(item.id)
-        return row is not None and len(item.params) == self.spans[row].size
 
     def _lay_out(self, answer: bytes) -> None:
         """Index the bytes of an `answer` whose error bytes, parameters and CRCs are all 0."""
         self.length = len(answer)
         sizes = [span.size for span in self.spans]
         self.longest = self.length + sum((size + 1) // 3 for size in sizes)
-        self._ends = np.cumsum(sizes).tolist()
         head = 8 if self.fast else 0
         skip, tail = (2, 2) if self.fast else (9, 2)
         starts = head + np.cumsum([0, *[skip + size + tail for size in sizes[:-1]]])
@@ -194,6 +135,10 @@ class BlockWrite:
         crc = int(np.bitwise_xor.reduce(terms)) ^ self._empty_crc
         frame[-2:] = crc.to_bytes(2, "little")
         return bytes(frame)
+
+    def frames(self) -> list[bytes]:
+        """Return all frames to send: one."""
+        return [self.frame()]
 
     def _stuffed(self) -> bytes:
         rows = self.values.tolist()

@@ -2,10 +2,11 @@
 
 from hal.errors import UnknownNameError
 from hal.servo_model import ServoModel
-from hal.servos.feetech_sts import FEETECH_STS
+from hal.servos.feetech import FEETECH
+from hal.servos.mx import MX
 from hal.servos.x_series import X_SERIES
 
-_MODELS = {model.name: model for model in (*X_SERIES, *FEETECH_STS)}
+_MODELS = {model.name: model for model in (*X_SERIES, *MX, *FEETECH)}
 
 
 def servo_names() -> tuple[str, ...]:

@@ -145,7 +145,7 @@ HARDWARE_ERRORS = {
 """Bit of `hardware_error` to what it means."""
 
 _TABLES = {name: RegisterTable(name, (*COMMON, *extra)) for name, _, extra in MODELS}
-_NAMES = {number: name for name, number, _ in MODELS}
+NUMBERS = {number: name for name, number, _ in MODELS}
 
 
 def x_series_registers(model: str) -> RegisterTable:
@@ -161,17 +161,3 @@ def x_series_registers(model: str) -> RegisterTable:
         return _TABLES[model]
     except KeyError:
         raise UnknownNameError("X series servo", model, _TABLES) from None
-
-
-def model_name(number: int) -> str:
-    """Return the name behind a model number, or "model 999"."""
-    return _NAMES.get(number, f"model {number}")
-
-
-def hardware_errors(bits: int) -> tuple[str, ...]:
-    """Return what the bits of a hardware error register mean.
-
-    >>> hardware_errors(0b100100)
-    ('overheating', 'overload')
-    """
-    return tuple(what for bit, what in HARDWARE_ERRORS.items() if bits >> bit & 1)

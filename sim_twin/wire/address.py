@@ -1,7 +1,7 @@
 """What a ``twin://`` URL says.
 
 ``twin://op3[?clock=virtual|real&world=NAME&bus=legs&faults=drop:0.01&seed=1&supply=12...]``: a
-robot of ours; ``twin://bench?servos=XM430-W350:1-20,XL430:30&baud=1000000``: servos on a bench.
+robot of ours; ``twin://bench?servos=STS3215:1-20&baud=1000000``: servos of one protocol on a bench.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -34,7 +34,12 @@ class Address:
         hold: Whether the robot is held until its servos are driven, "yes" or "no".
         servos: On the bench, models and ids: "XM430-W350:1-20,XL430:30".
         baud: On the bench, the servos' baud rate; 0: the robot's own, or 1000000.
-        return_delay: Register 9 of the servos at the start; 250 as they leave the factory.
+        return_delay: Of the servos at the start, in their unit of 2 us; -1: as they leave the
+            factory.
+        physics: Of a robot: "mujoco", its twin, or "inertia", where each servo has nothing to do
+            with the others.
+        imu: A BNO08x in UART-RVC mode on a port of its own, bus "imu": "rvc" or "none"; "auto": a
+            robot has one unless its servo bus has a board with an IMU.
     """
 
     robot: str
@@ -51,7 +56,9 @@ class Address:
     hold: str = "yes"
     servos: str = "XM430-W350:1"
     baud: int = 0
-    return_delay: int = 250
+    return_delay: int = -1
+    physics: str = "mujoco"
+    imu: str = "auto"
 
 
 CHOICES = {
@@ -59,6 +66,8 @@ CHOICES = {
     "missing": ("skip", "wait"),
     "power": ("on", "off"),
     "hold": ("yes", "no"),
+    "physics": ("mujoco", "inertia"),
+    "imu": ("auto", "rvc", "none"),
 }
 DEFAULTS = Address(BENCH)
 OPTIONS = tuple(item.name for item in fields(Address) if item.name != "robot")

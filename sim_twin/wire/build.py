@@ -1,23 +1,59 @@
 """Builds the world that an address names."""
 
+import math
+
 from hal.errors import UsageError
+from hal.servo_model import ServoMount
 from hal.servos import servo_model
 from robots import RobotDescription, load_robot
 from sim_twin.twin import Twin
 from sim_twin.wire.address import BENCH, Address, parse_servos
-from sim_twin.wire.bus import Bus, Timing
+from sim_twin.wire.bus import Bus, Language, Timing
 from sim_twin.wire.device import Device
-from sim_twin.wire.dynamixel2 import Dynamixel2
+from sim_twin.wire.families import PROTOCOLS, full_name, make_language, make_servo
 from sim_twin.wire.faults import Faults
-from sim_twin.wire.opencr import OpenCr
+from sim_twin.wire.opencr import ImuSource, OpenCr, RestingImu
+from sim_twin.wire.rvc import BAUD as RVC_BAUD
+from sim_twin.wire.rvc import Mute, start_rvc
 from sim_twin.wire.schedule import Schedule
-from sim_twin.wire.servo import Servo
-from sim_twin.wire.shaft import InertiaShaft
+from sim_twin.wire.shaft import InertiaShaft, Shaft
 from sim_twin.wire.twin_shaft import TwinImu, TwinPhysics, TwinShaft
-from sim_twin.wire.world import Bench, World
-from sim_twin.wire.x_series import model
+from sim_twin.wire.world import Bench, Physics, World
 
 NOMINAL = 12.0  # V, for servos that stand so much
+IMU = "imu"  # name of the port of an IMU
+
+
+class Workshop:
+    """What the buses of one world share while it is built.
+
+    Args:
+        address: What is to be built.
+    """
+
+    def __init__(self, address: Address) -> None:
+        self.address = address
+        self.schedule = Schedule()
+        self.faults = Faults.parse(address.faults, address.seed)
+        self.buses: dict[str, Bus] = {}
+
+    def bus(self, name: str, devices: list[Device], language: Language, baud: int) -> Bus:
+        """Add a bus."""
+        address = self.address
+        timing = Timing(
+            address.latency * 1e-3, address.turnaround * 1e-6, address.missing == "wait"
+        )
+        bus = Bus(name, devices, language, self.schedule, baud, timing, self.faults)
+        self.buses[name] = bus
+        return bus
+
+    def imu(self, source: ImuSource) -> None:
+        """Add the port of an IMU that talks by itself."""
+        start_rvc(self.bus(IMU, [], Mute(), RVC_BAUD), source)
+
+    def world(self, physics: Physics, supply: float, owned: tuple[object, ...] = ()) -> World:
+        """Return the world with its buses."""
+        return World(physics, self.schedule, self.buses, supply, owned)
 
 
 def build_world(address: Address) -> World:
@@ -33,65 +69,74 @@ def build_world(address: Address) -> World:
 
 
 def _bench(address: Address) -> World:
-    baud = address.baud or 1_000_000
+    baud, shop = address.baud or 1_000_000, Workshop(address)
+    servos = [(full_name(name), identifier) for name, identifier in parse_servos(address.servos)]
+    protocol = PROTOCOLS[servos[0][0]]
     shafts: list[InertiaShaft] = []
     devices: list[Device] = []
-    for name, identifier in parse_servos(address.servos):
-        table = model(name)
-        sheet = servo_model(table.name)
+    for name, identifier in servos:
+        sheet = servo_model(name)
         supply = address.supply or min(NOMINAL, sheet.rows[-1].voltage)
-        shaft = InertiaShaft(sheet.motor(supply), sheet.armature, sheet.friction_loss)
-        shafts.append(shaft)
+        shafts.append(_loose_shaft(name, supply))
         devices.append(
-            Servo(
-                table,
-                sheet,
-                shaft,
-                identifier,
-                baud,
-                supply,
-                return_delay_time=address.return_delay,
-            )
+            make_servo(name, shafts[-1], identifier, baud, supply, address.return_delay, protocol)
         )
-    schedule = Schedule()
-    buses = {BENCH: _bus(address, BENCH, devices, schedule, baud)}
-    return World(Bench(shafts), schedule, buses, address.supply or NOMINAL)
+    shop.bus(BENCH, devices, make_language(protocol), baud)
+    if address.imu == "rvc":
+        shop.imu(RestingImu())
+    return shop.world(Bench(shafts), address.supply or NOMINAL)
 
 
 def _robot(address: Address, robot: RobotDescription) -> World:
+    mounts = [(joint, mount) for joint, mount in enumerate(robot.servos) if mount is not None]
+    if not mounts:
+        raise UsageError(f"robot {robot.name!r} has no servos on a wire; 'windup walk' takes it")
+    shop = Workshop(address)
     supply = address.supply or robot.drive.supply
-    twin = Twin(robot, delay=0.0, supply=supply)
-    hung: dict[str, list[Device]] = {bus.name: [] for bus in robot.buses}
-    for joint, mount in enumerate(robot.servos):
-        if mount is None:
-            continue
-        baud = address.baud or next(bus.baud for bus in robot.buses if bus.name == mount.bus)
-        shaft = TwinShaft(twin, joint, mount)
+    twin = Twin(robot, delay=0.0, supply=supply) if address.physics == "mujoco" else None
+    bauds = {bus.name: address.baud or bus.baud for bus in robot.buses}
+    protocols = {bus.name: bus.protocol for bus in robot.buses}
+    hung: dict[str, list[Device]] = {name: [] for name in bauds}
+    shafts: list[InertiaShaft] = []
+    for joint, mount in mounts:
+        shaft: Shaft
+        if twin is None:
+            shafts.append(_posed_shaft(robot, joint, mount, supply))
+            shaft = shafts[-1]
+        else:
+            shaft = TwinShaft(twin, joint, mount)
         hung[mount.bus].append(
-            Servo(
-                model(mount.model.name), mount.model, shaft, mount.id, baud, supply,
-                return_delay_time=address.return_delay,
+            make_servo(
+                mount.model.name, shaft, mount.id, bauds[mount.bus], supply,
+                address.return_delay, protocols[mount.bus],
             )
         )  # fmt: skip
-    if not any(hung.values()):
-        raise UsageError(f"robot {robot.name!r} has no servos on a wire; 'windup walk' takes it")
-    if robot.imu is not None and robot.buses[0].protocol == "dynamixel2":
-        first = robot.buses[0]
-        board = OpenCr(
-            TwinImu(twin), [*hung[first.name]], address.baud or first.baud, supply,
-            powered=address.power == "on",
-        )  # fmt: skip
-        hung[first.name].append(board)
-    schedule = Schedule()
-    buses = {
-        bus.name: _bus(address, bus.name, hung[bus.name], schedule, address.baud or bus.baud)
-        for bus in robot.buses
-    }
-    physics = TwinPhysics(twin, held=address.hold == "yes")
-    return World(physics, schedule, buses, supply, owned=(twin,))
+    source: ImuSource = RestingImu() if twin is None or robot.imu is None else TwinImu(twin)
+    first = robot.buses[0].name
+    board = robot.imu is not None and protocols[first] == "dynamixel2"
+    if board:
+        on = address.power == "on"
+        hung[first].append(OpenCr(source, [*hung[first]], bauds[first], supply, powered=on))
+    for name, devices in hung.items():
+        shop.bus(name, devices, make_language(protocols[name]), bauds[name])
+    if address.imu == "rvc" or (address.imu == "auto" and robot.imu is not None and not board):
+        shop.imu(source)
+    if twin is None:
+        return shop.world(Bench(shafts, robot.timestep), supply)
+    return shop.world(TwinPhysics(twin, held=address.hold == "yes"), supply, (twin,))
 
 
-def _bus(address: Address, name: str, devices: list[Device], schedule: Schedule, baud: int) -> Bus:
-    timing = Timing(address.latency * 1e-3, address.turnaround * 1e-6, address.missing == "wait")
-    faults = Faults.parse(address.faults, address.seed)
-    return Bus(name, devices, Dynamixel2(), schedule, baud, timing, faults)
+def _loose_shaft(name: str, supply: float) -> InertiaShaft:
+    sheet = servo_model(name)
+    return InertiaShaft(sheet.motor(supply), sheet.armature, sheet.friction_loss)
+
+
+def _posed_shaft(
+    robot: RobotDescription, joint: int, mount: ServoMount, supply: float
+) -> InertiaShaft:
+    """Return a shaft that stands where the robot's stance has it."""
+    shaft = _loose_shaft(mount.model.name, supply)
+    turn = mount.sign * mount.ratio * float(robot.stance[joint])
+    per_rad = mount.model.counts_per_rev / (2.0 * math.pi)
+    shaft.position = turn + (mount.zero - mount.model.middle) / per_rad
+    return shaft

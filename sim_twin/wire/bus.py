@@ -5,13 +5,13 @@ own baud rate, and the other way round.
 """
 
 import math
-from collections import deque
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import NamedTuple, Protocol
 
 from sim_twin.wire.device import Device
 from sim_twin.wire.faults import Faults
+from sim_twin.wire.inbox import Burst, Inbox
 from sim_twin.wire.schedule import Schedule
 
 BITS = 10  # start, eight, stop
@@ -30,7 +30,19 @@ class Heard(Protocol):
 
 
 class Language(Protocol):
-    """A protocol: how bytes become frames, and what devices do with a frame."""
+    """A protocol: how bytes become frames, and what devices do with a frame.
+
+    Attributes:
+        id_at: Where a frame has its id.
+        length_at: Where it has its length, the low byte.
+    """
+
+    id_at: int
+    length_at: int
+
+    def seal(self, frame: bytes, /) -> bytes:
+        """Return `frame` with the checksum that it should have."""
+        ...
 
     def feed(self, chunk: bytes) -> list[Heard]:
         """Return the frames that end in `chunk`."""
@@ -60,28 +72,6 @@ class Timing(NamedTuple):
     waits: bool = False
 
 
-@dataclass(slots=True)
-class Burst:
-    """Bytes on the wire, one after the other.
-
-    Attributes:
-        start: When the first one begins, s.
-        byte: How long each takes, s.
-        data: What they are.
-        ruined: From when on they are noise, s.
-    """
-
-    start: float
-    byte: float
-    data: bytearray
-    ruined: float = math.inf
-
-    @property
-    def end(self) -> float:
-        """When the last one ends, s."""
-        return self.start + len(self.data) * self.byte
-
-
 class Bus:
     """One bus and its host side.
 
@@ -93,7 +83,11 @@ class Bus:
         timing: Latencies.
         faults: What happens to answers.
         heard: When the last good instruction ended, s.
+        began: When the last bytes of the host began, s.
         counts: "frames" executed, "dropped", "collisions".
+        plugged: Whether the host's adapter is there.
+        plugs: How often it has been pulled out or put in.
+        tap: Called with the direction (">" from the host), the baud rate and each burst of bytes.
     """
 
     def __init__(
@@ -109,14 +103,14 @@ class Bus:
         self.name, self.devices, self.language, self.schedule = name, devices, language, schedule
         self.timing = timing or Timing()
         self.faults = faults or Faults()
-        self.heard = 0.0
+        self.heard = self.began = 0.0
         self.counts = {"frames": 0, "dropped": 0, "collisions": 0}
+        self.plugged, self.plugs = True, 0
+        self.tap: Callable[[str, int, Burst], None] | None = None
         self._baud = baud
         self._sent = -math.inf  # when the host's last byte ends
         self._air: list[Burst] = []  # on the wire now or soon
-        self._inbox: deque[Burst] = deque()  # for the host
-        self._queued = 0  # bytes in the inbox that the host has not read
-        self._taken = 0  # bytes of the inbox's first burst that the host has
+        self.inbox = Inbox(self.timing.latency)
         self._by_id: dict[int, list[Device]] = {}
         self.refresh()
 
@@ -147,63 +141,49 @@ class Bus:
         if start - self._sent > FORGET:
             self.language.reset()
         burst = Burst(start, BITS / self._baud, bytearray(data))
-        self._sent = burst.end
+        self._sent, self.began = burst.end, start
         self._collide(burst)
+        if self.tap is not None:
+            self.tap(">", self._baud, burst)
         for item in self.language.feed(bytes(burst.data)):
             end = start + item.end * burst.byte
             self.schedule.at(end, partial(self._hear, item, burst, end))
 
     def available(self) -> int:
         """Return the number of bytes that the host has got and not read."""
-        now, total = self.schedule.now - self.timing.latency, -self._taken
-        for burst in self._inbox:
-            arrived = int((now - burst.start) / burst.byte + 1e-6)
-            total += max(0, min(arrived, len(burst.data)))
-            if arrived < len(burst.data):
-                break
-        return max(total, 0)
+        return self.inbox.available(self.schedule.now)
 
     def arrival(self, count: int) -> float:
         """Return when the host has `count` bytes, s; infinity if they are not on the way yet."""
-        if count > self._queued:
-            return math.inf
-        count += self._taken
-        for burst in self._inbox:
-            if count <= len(burst.data):
-                return burst.start + count * burst.byte + self.timing.latency
-            count -= len(burst.data)
-        return math.inf
+        return self.inbox.arrival(count)
 
     def read(self, count: int) -> bytes:
         """Return up to `count` bytes that have arrived."""
-        count = min(count, self.available())
-        data = bytearray()
-        while count > 0:
-            first = self._inbox[0]
-            piece = first.data[self._taken : self._taken + count]
-            data += piece
-            count -= len(piece)
-            self._queued -= len(piece)
-            self._taken += len(piece)
-            if self._taken == len(first.data):
-                self._inbox.popleft()
-                self._taken = 0
-        return bytes(data)
+        return self.inbox.read(count, self.schedule.now)
 
     @property
     def queued(self) -> int:
         """Bytes that the host has not read, arrived or on the way."""
-        return self._queued
+        return self.inbox.queued
 
     def discard(self) -> None:
         """Throw away what has arrived and was not read."""
         self.read(self.available())
 
+    def plug(self, there: bool) -> None:
+        """Pull the host's adapter out, or put it in again; open ports stay dead all the same."""
+        if there != self.plugged:
+            self.plugged = there
+            self.plugs += 1
+            self.inbox.clear()
+            self.language.reset()
+
     # The devices' side
 
     def listeners(self, identifier: int) -> list[Device]:
         """Return who hears the host and has this id, or has it as a shadow."""
-        return [d for d in self._by_id.get(identifier, ()) if self.hears(d)]
+        found = self._by_id.get(identifier)
+        return [device for device in found if self.hears(device)] if found else []
 
     def everybody(self) -> list[Device]:
         """Return who hears the host."""
@@ -211,22 +191,40 @@ class Bus:
 
     def hears(self, device: Device) -> bool:
         """Whether a device understands what the host sends now."""
-        same = abs(device.baud - self._baud) <= BAUD_TOLERANCE * self._baud
+        mine, its = self._baud, device.baud
+        same = its == mine or abs(its - mine) <= BAUD_TOLERANCE * mine
         return same and device.listens(self.schedule.now)
 
-    def answer(self, data: bytes, baud: int) -> float:
+    def answer(self, data: bytes, baud: int, identifier: int) -> float:
         """Put an answer on the wire, now; return when it ends, s."""
-        burst = Burst(self.schedule.now, BITS / baud, bytearray(data))
+        if self.faults.active:
+            return self.faults.answer(self, data, baud, identifier)
+        return self.put(data, baud)
+
+    def answers(self, data: Sequence[bytes]) -> None:
+        """Put answers on the wire, without gaps and faults, at the host's baud rate."""
+        self.put(b"".join(data), self._baud)
+
+    def put(self, data: bytes, baud: int, got: bytes | None = None, held: float = 0.0) -> float:
+        """Put bytes of a device on the wire, now; return when they end, s.
+
+        Args:
+            data: What the device sends.
+            baud: How fast.
+            got: What the host gets of it, where that is something else.
+            held: Before when the host's adapter does not give it away, s.
+        """
+        burst = Burst(self.schedule.now, BITS / baud, bytearray(data), held=held)
         end = burst.end
-        got = self.faults.answer(data)
         self._collide(burst)
-        if got is not data:
+        if got is not None:
             burst.data[:] = got
         if abs(baud - self._baud) > BAUD_TOLERANCE * self._baud:
             burst.data[:] = self.faults.noise(len(burst.data))
-        if burst.data:
-            self._inbox.append(burst)
-            self._queued += len(burst.data)
+        if burst.data and self.plugged:
+            self.inbox.append(burst)
+            if self.tap is not None:
+                self.tap("<", baud, burst)
         return end
 
     def _hear(self, item: Heard, burst: Burst, end: float) -> None:

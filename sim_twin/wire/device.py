@@ -4,9 +4,9 @@ from typing import Protocol
 
 
 class Device(Protocol):
-    """A servo or a board that speaks Dynamixel protocol 2; see `Servo` for what each part means.
+    """A servo or a board on a bus; see `Servo` for what each part means.
 
-    Error bytes are those of the protocol's status frame. Times are the world's, s.
+    Error bytes are those of its protocol's status frame. Times are the world's, s.
     """
 
     @property
@@ -54,6 +54,11 @@ class Device(Protocol):
         """Whether it really drives a motor now."""
         ...
 
+    @property
+    def supply(self) -> float:
+        """Its supply voltage, V."""
+        ...
+
     def listens(self, now: float) -> bool:
         """Whether it is powered and has booted."""
         ...
@@ -92,6 +97,10 @@ class Device(Protocol):
 
     def clear(self, parameters: bytes) -> int:
         """Do a Clear instruction and return the error byte."""
+        ...
+
+    def overload(self, now: float) -> None:
+        """Take itself for overloaded, as with a horn that is held."""
         ...
 
     def control(self, now: float, dt: float) -> None:

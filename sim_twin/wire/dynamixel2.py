@@ -2,40 +2,34 @@
 
 from collections.abc import Callable, Iterator
 from functools import partial
-from typing import NamedTuple
 
 from sim_twin.wire.bus import Bus, Heard
 from sim_twin.wire.device import Device
 from sim_twin.wire.frames import (
     BROADCAST,
     HEADER,
+    ID_AT,
+    LENGTH_AT,
     LENGTH_MAX,
     STATUS,
     Frame,
     Parser,
     crc16,
     encode_status,
+    seal,
 )
 from sim_twin.wire.register_file import BAD_INSTRUCTION, BAD_LENGTH, OK
+from sim_twin.wire.turns import READS, Round, Turn, answering, take_turns
 
 PING, READ, WRITE, REG_WRITE, ACTION = 0x01, 0x02, 0x03, 0x04, 0x05
 FACTORY_RESET, REBOOT, CLEAR = 0x06, 0x08, 0x10
 SYNC_READ, SYNC_WRITE, FAST_SYNC_READ = 0x82, 0x83, 0x8A
 BULK_READ, BULK_WRITE, FAST_BULK_READ = 0x92, 0x93, 0x9A
 
-READS = 1  # return level from which reads are answered
 WRITES = 2
 STATUS_BYTES = 11  # of a status frame around its data
 PING_GAP = 0.003  # s between the slots of a broadcast ping, which SDKs allow for each id
 EEPROM_END = 64
-
-
-class Turn(NamedTuple):
-    """One device's part in a sync or bulk read."""
-
-    identifier: int
-    address: int
-    size: int
 
 
 class Dynamixel2:
@@ -45,12 +39,15 @@ class Dynamixel2:
         errors: Reason to the number of times something was dropped.
     """
 
+    id_at, length_at = ID_AT, LENGTH_AT
+    seal = staticmethod(seal)
+
     def __init__(self) -> None:
         self._parser = Parser()
         self.errors: dict[str, int] = {}
         self._many: dict[int, Callable[[bytes, Bus], None]] = {
-            SYNC_READ: lambda parameters, bus: _in_turns(_sync(parameters), bus),
-            BULK_READ: lambda parameters, bus: _in_turns(_bulk(parameters), bus),
+            SYNC_READ: lambda parameters, bus: _take(_sync(parameters), bus),
+            BULK_READ: lambda parameters, bus: _take(_bulk(parameters), bus),
             FAST_SYNC_READ: lambda parameters, bus: _chained(_sync(parameters), bus),
             FAST_BULK_READ: lambda parameters, bus: _chained(_bulk(parameters), bus),
             SYNC_WRITE: _sync_write,
@@ -97,7 +94,7 @@ def _one(frame: Frame, bus: Bus) -> None:
         if level >= needs and not silent:
             status = encode_status(frame.identifier, error, data)
             start = bus.schedule.now + delay + bus.timing.turnaround
-            bus.schedule.at(start, partial(_answer, bus, status, baud))
+            bus.schedule.at(start, partial(bus.answer, status, baud, frame.identifier))
 
 
 def _act(device: Device, frame: Frame, bus: Bus, broadcast: bool = False) -> tuple[int, bytes]:
@@ -141,10 +138,6 @@ def _write(device: Device, address: int, data: bytes, bus: Bus) -> int:
     return error
 
 
-def _answer(bus: Bus, status: bytes, baud: int) -> None:
-    bus.answer(status, baud)
-
-
 def _ping_all(bus: Bus) -> None:
     """Every device answers in the slot of its id."""
     now = bus.schedule.now
@@ -152,7 +145,7 @@ def _ping_all(bus: Bus) -> None:
         data = encode_status(device.identifier, device.read(0, 1, now)[0], device.ping())
         slot = PING_GAP + len(data) * 10.0 / bus.baud
         start = now + device.identifier * slot + device.return_delay
-        bus.schedule.at(start, partial(_answer, bus, data, device.baud))
+        bus.schedule.at(start, partial(bus.answer, data, device.baud, device.identifier))
 
 
 def _sync_write(parameters: bytes, bus: Bus) -> None:
@@ -187,45 +180,8 @@ def _word(data: bytes, at: int) -> int:
     return int.from_bytes(data[at : at + 2], "little")
 
 
-def _answering(turn: Turn, bus: Bus, fast: bool) -> list[Device]:
-    return [
-        device
-        for device in bus.listeners(turn.identifier)
-        if device.identifier == turn.identifier
-        and device.return_level >= READS
-        and (device.fast or not fast)
-    ]
-
-
-def _in_turns(turns: list[Turn], bus: Bus) -> None:
-    """Answer a sync or bulk read: one status frame after the other."""
-    who = [_answering(turn, bus, fast=False) for turn in turns]
-    for devices in who:
-        for device in devices:
-            device.sample()
-    _go_on(iter([*zip(turns, who, strict=True)]), bus, bus.schedule.now)
-
-
-def _go_on(left: Iterator[tuple[Turn, list[Device]]], bus: Bus, end: float) -> None:
-    """Let the next device answer; the one before it was through at `end` s."""
-    for turn, devices in left:
-        if devices:
-            start = end + devices[0].return_delay + bus.timing.turnaround
-            bus.schedule.at(start, partial(_take_turn, turn, devices, left, bus))
-            return
-        if bus.timing.waits:
-            return
-        end += (turn.size + STATUS_BYTES) * 10.0 / bus.baud
-
-
-def _take_turn(
-    turn: Turn, devices: list[Device], left: Iterator[tuple[Turn, list[Device]]], bus: Bus
-) -> None:
-    end = bus.schedule.now
-    for device in devices:
-        error, data = device.read(turn.address, turn.size, end)
-        end = max(end, bus.answer(encode_status(turn.identifier, error, data), device.baud))
-    _go_on(left, bus, end)
+def _take(turns: list[Turn], bus: Bus) -> None:
+    take_turns(turns, Round(bus, encode_status, STATUS_BYTES))
 
 
 def _chained(turns: list[Turn], bus: Bus) -> None:
@@ -233,7 +189,7 @@ def _chained(turns: list[Turn], bus: Bus) -> None:
 
     Every part ends with a CRC over everything so far; the last one is the frame's.
     """
-    who = [_answering(turn, bus, fast=True) for turn in turns]
+    who = [answering(turn, bus, fast=True) for turn in turns]
     for devices in who:
         for device in devices[:1]:
             device.sample()
@@ -272,5 +228,5 @@ def _add_part(
     part = head + bytes((error, turn.identifier)) + data.ljust(turn.size, b"\0")
     crc = crc16(part, crc)
     tail = crc.to_bytes(2, "little")
-    end = bus.answer(part + tail, device.baud)
+    end = bus.answer(part + tail, device.baud, device.identifier)
     _chain_on(left, b"", crc16(tail, crc), bus, end)

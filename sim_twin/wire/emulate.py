@@ -13,13 +13,14 @@ import select
 import time as wall
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from hal.errors import UsageError
 from sim_twin.wire.address import Address
 from sim_twin.wire.build import build_world
 from sim_twin.wire.bus import Bus
-from sim_twin.wire.link import Link, Pty, Tcp
+from sim_twin.wire.link import Link, Pty, Tcp, free_port
 from sim_twin.wire.world import World
 
 AHEAD = 0.002  # s by which replies may be worked out before their time
@@ -28,8 +29,10 @@ CHUNK_TIME = 0.0006  # s of bytes that go out together in the middle of an answe
 QUIET = 0.00015  # s without anything due, that a step of the physics may take
 SPIN = 0.00008  # s before the ends of an answer that are not slept through
 HOP = 0.000025  # s that a pseudo-terminal takes each way, which the wire does not have
+SLIP = 0.1  # s behind the wall, from which time stands still instead
 IDLE = 0.002  # s; the longest sleep
 PR_SET_TIMERSLACK = 29
+PRIORITY = 10  # among real-time processes; servos do not wait for other programs
 
 Journal = Callable[[float, int], None]
 
@@ -40,13 +43,26 @@ class Outlet:
 
     Attributes:
         bus: The bus.
-        link: The plug.
+        make: Makes its plug, at the start and each time that the adapter is plugged in again.
+        link: The plug; None while the adapter is unplugged.
+        name: What a program has to open.
         sent: When bytes went out last, s.
     """
 
     bus: Bus
-    link: Link
+    make: Callable[[], Link]
+    link: Link | None = None
+    name: str = ""
     sent: float = -math.inf
+
+    def settle(self) -> None:
+        """Pull the plug, or put it in, as the bus has it."""
+        if self.bus.plugged and self.link is None:
+            self.link = self.make()
+            self.name = self.link.name
+        elif not self.bus.plugged and self.link is not None:
+            self.link.close()
+            self.link = None
 
     def due(self, more: bool) -> float:
         """Return when bytes should go out next, s.
@@ -62,15 +78,19 @@ class Outlet:
 
     def send(self, now: float) -> None:
         """Send what has arrived."""
-        if data := self.bus.read(self.bus.available()):
+        if (data := self.bus.read(self.bus.available())) and self.link is not None:
             self.link.send(data)
             self.sent = now
 
     def receive(self) -> None:
-        """Take in what the program has sent."""
-        data = self.link.receive()
-        if data:
-            if baud := self.link.baud():
+        """Take in what the program has sent: not before it had what it answers to.
+
+        A fast program is back sooner than the two hops, and would talk into the answer's end.
+        """
+        schedule, link = self.bus.schedule, self.link
+        schedule.now = max(schedule.now, self.sent)
+        if link is not None and (data := link.receive()):
+            if baud := link.baud():
                 self.bus.baud = baud
             self.bus.write(data)
 
@@ -81,18 +101,24 @@ class Emulator:
     Args:
         world: The world.
         journal: Called with the time and the number of driven motors whenever that changes.
+
+    Attributes:
+        outlets: The plugs.
+        slipped: By how much time has stood still because the machine was too slow, s.
     """
 
     def __init__(self, world: World, journal: Journal | None = None) -> None:
         self.world, self.journal = world, journal
         self.outlets: list[Outlet] = []
+        self.slipped = 0.0
         self._wake_read, self._wake_write = os.pipe()
         self._running = True
         self._driven = -1
 
-    def plug(self, bus: str, link: Link) -> None:
-        """Connect a link to a bus."""
-        self.outlets.append(Outlet(self.world.bus(bus), link))
+    def plug(self, bus: str, make: Callable[[], Link]) -> None:
+        """Connect a bus to the link that `make` makes, now and whenever it is plugged in again."""
+        self.outlets.append(Outlet(self.world.bus(bus), make))
+        self.outlets[-1].settle()
 
     def stop(self) -> None:
         """End `run`; signal handlers and threads may call this."""
@@ -111,7 +137,11 @@ class Emulator:
                 schedule.now = now
             more = schedule.next <= now + AHEAD
             due = self._send(now, more)
-            if more or self._step(now, due):
+            if more:
+                continue
+            if self._step(now, due):
+                self._wait(0.0, start)
+                start += self._slip(now)
                 continue
             step = self.world.physics_time + self.world.physics.timestep
             wake = min(due, schedule.next - MARGIN, max(step, now + QUIET), now + IDLE)
@@ -121,7 +151,8 @@ class Emulator:
     def close(self) -> None:
         """Pull the plugs."""
         for outlet in self.outlets:
-            outlet.link.close()
+            if outlet.link is not None:
+                outlet.link.close()
         os.close(self._wake_read)
         os.close(self._wake_write)
 
@@ -146,6 +177,9 @@ class Emulator:
         if late < 0.0 or (due - now < QUIET and late < 2.0 * world.physics.timestep):
             return False
         world.step()
+        for outlet in self.outlets:
+            if outlet.bus.plugged is (outlet.link is None):
+                outlet.settle()
         if self.journal is not None:
             driven = sum(device.driving for device in world.devices)
             if driven != self._driven:
@@ -153,9 +187,22 @@ class Emulator:
                 self.journal(now, driven)
         return True
 
+    def _slip(self, now: float) -> float:
+        """Return by how much time has to stand still, s: who is far behind does not catch up.
+
+        It would have no time to listen, and its servos would rush.
+        """
+        late = now - self.world.physics_time
+        if late < SLIP:
+            return 0.0
+        self.slipped += late
+        return late
+
     def _wait(self, seconds: float, start: float) -> None:
         """Sleep until something comes, or for some time."""
-        places = {place: out for out in self.outlets for place in out.link.descriptors()}
+        places = {
+            place: out for out in self.outlets if out.link for place in out.link.descriptors()
+        }
         ready, _, _ = select.select([*places, self._wake_read], [], [], seconds)
         self.world.schedule.now = wall.perf_counter() - start - HOP
         for place in ready:
@@ -186,9 +233,9 @@ def emulate(
         for k, bus in enumerate(emulator.world.buses):
             if pty is not None:
                 alone = len(emulator.world.buses) == 1
-                emulator.plug(bus, Pty(pty if alone else Path(f"{pty}-{bus}")))
+                emulator.plug(bus, partial(Pty, pty if alone else Path(f"{pty}-{bus}")))
             elif tcp is not None:
-                emulator.plug(bus, Tcp(tcp + k if tcp else 0))
+                emulator.plug(bus, partial(Tcp, tcp + k if tcp else free_port()))
         if on_ready is not None:
             on_ready(emulator)
         emulator.run()
@@ -198,6 +245,8 @@ def _be_punctual() -> None:
     """Ask the kernel for exact sleeps, and Python not to tidy up in the middle of an answer."""
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 1)
+    with contextlib.suppress(OSError, AttributeError):
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(PRIORITY))
     gc.collect()
     gc.freeze()
     gc.disable()

@@ -14,6 +14,8 @@ from typing import Final, NamedTuple
 HEADER: Final = b"\xff\xff\xfd\x00"
 BROADCAST: Final = 0xFE
 STATUS: Final = 0x55
+ID_AT: Final = 4
+LENGTH_AT: Final = 5
 
 LENGTH_MAX = 4096  # bytes; longer frames are taken for noise
 SMALLEST = 3  # instruction and CRC
@@ -36,6 +38,7 @@ def _crc_table() -> tuple[int, ...]:
 
 
 _CRC = _crc_table()
+_HEADS: dict[tuple[int, int], tuple[bytes, int]] = {}
 
 
 def crc16(data: bytes | bytearray, crc: int = 0) -> int:
@@ -66,8 +69,21 @@ def encode(identifier: int, instruction: int, parameters: bytes = b"") -> bytes:
 
 
 def encode_status(identifier: int, error: int, parameters: bytes = b"") -> bytes:
-    """Return a status frame."""
-    return encode(identifier, STATUS, bytes((error,)) + parameters)
+    """Return a status frame; its head and the CRC of that are kept for the next one."""
+    body = bytes((error,)) + parameters
+    if _PATTERN in body:
+        return encode(identifier, STATUS, body)
+    key = (identifier, len(body))
+    known = _HEADS.get(key)
+    if known is None:
+        head = HEADER + bytes((identifier, *(len(body) + 3).to_bytes(2, "little"), STATUS))
+        known = _HEADS[key] = head, crc16(head)
+    return known[0] + body + crc16(body, known[1]).to_bytes(2, "little")
+
+
+def seal(frame: bytes) -> bytes:
+    """Return `frame` with the CRC that it should have."""
+    return frame[:-2] + crc16(frame[:-2]).to_bytes(2, "little")
 
 
 class Frame(NamedTuple):

@@ -17,6 +17,12 @@ OVERLOAD_LEVEL = 0.8  # of the stall torque at the present supply
 OVERLOAD_TIME = 1.0  # s
 
 
+def warmed(temperature: float, current: float, resistance: float, dt: float) -> float:
+    """Return the temperature of a motor after `dt` s with a current, degrees C."""
+    heat = current * current * resistance - (temperature - AMBIENT) / HEAT_RESISTANCE
+    return temperature + dt * heat / HEAT_CAPACITY
+
+
 @dataclass
 class Health:
     """Watches one servo.
@@ -47,10 +53,7 @@ class Health:
         get = loop.registers.get
         torque = abs(torque) if driving else 0.0
         current = torque / loop.constant
-        warmth = (
-            current * current * loop.resistance - (self.temperature - AMBIENT) / HEAT_RESISTANCE
-        )
-        self.temperature += dt * warmth / HEAT_CAPACITY
+        self.temperature = warmed(self.temperature, current, loop.resistance, dt)
         stall = loop.constant / loop.resistance * loop.supply
         strained = driving and torque >= OVERLOAD_LEVEL * stall
         self._overloaded = self._overloaded + dt if strained else 0.0

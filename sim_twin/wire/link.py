@@ -101,6 +101,12 @@ class Pty:
         os.close(self._slave)
 
 
+def free_port(host: str = "127.0.0.1") -> int:
+    """Return a TCP port that nobody uses now."""
+    with socket.create_server((host, 0)) as server:
+        return int(server.getsockname()[1])
+
+
 class Tcp:
     """A TCP port on this machine, for one program at a time; the bus keeps its baud rate."""
 

@@ -172,7 +172,7 @@ class OpenCr:
         motion = self._motion
         motion[0:3] = self.imu.angular_velocity * BODY_TO_CHIP / GYRO_UNIT
         motion[3:6] = self.imu.acceleration * BODY_TO_CHIP / ACCELERATION_UNIT
-        motion[6:9] = 10.0 * np.degrees(_roll_pitch_yaw(self.imu.orientation))
+        motion[6:9] = 10.0 * np.degrees(roll_pitch_yaw(self.imu.orientation))
 
     def read(self, address: int, count: int, now: float) -> tuple[int, bytes]:
         """Return the error byte and the data of a read."""
@@ -220,6 +220,9 @@ class OpenCr:
         """It has nothing to clear."""
         return BAD_RANGE
 
+    def overload(self, now: float) -> None:
+        """It drives nothing that could be too heavy."""
+
     def control(self, now: float, dt: float) -> None:
         """It controls nothing."""
 
@@ -240,7 +243,7 @@ class OpenCr:
             self.on_power(on)
 
 
-def _roll_pitch_yaw(quaternion: Array) -> Array:
+def roll_pitch_yaw(quaternion: Array) -> Array:
     """Return (3,) rad: the turns about x, then y, then z of a wxyz quaternion."""
     w, x, y, z = quaternion
     return np.array(

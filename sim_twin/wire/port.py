@@ -12,6 +12,8 @@ from sim_twin.wire.bus import Bus
 from sim_twin.wire.world import RealClock, World
 from sim_twin.wire.worlds import Running, enter, leave
 
+PATIENCE = 60.0  # s of virtual time without an answer, in a read without a time-out
+
 
 class TwinSerial(serial.SerialBase):  # type: ignore[misc]
     """``twin://`` as a pyserial port.
@@ -34,6 +36,10 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
         except WindupError as error:
             raise serial.SerialException(str(error)) from error
         self._bus: Bus = self._running.world.bus(address.bus)
+        if not self._bus.plugged:
+            leave(self._running, address)
+            raise serial.SerialException(f"the adapter of {self._port} is unplugged")
+        self._address, self._plugs = address, self._bus.plugs
         self.is_open = True
         self._reconfigure_port()
         self.reset_input_buffer()
@@ -42,7 +48,7 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
         """Leave the world."""
         if self.is_open:
             self.is_open = False
-            leave(self._running)
+            leave(self._running, self._address if self._plugs != self._bus.plugs else None)
 
     @property
     def world(self) -> World:
@@ -75,16 +81,19 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
         self._check()
         bus, clock = self._bus, self._running.clock
         limit = math.inf if self._timeout is None else clock.now() + self._timeout
+        patience = clock.now() + PATIENCE
         schedule = self._running.world.schedule
         while (now := clock.now()) < limit and (arrival := bus.arrival(size)) > now:
             target = min(arrival, limit)
             if arrival == math.inf:
                 target = min(limit, max(schedule.next, now))
-            if target == math.inf:
-                if not isinstance(clock, RealClock):
+            if target == math.inf or now > patience:
+                if not isinstance(clock, RealClock) and limit == math.inf:
                     raise serial.SerialException("a read without a time-out, and nobody answers")
-                target = now + 0.001
+                target = min(target, now + 0.001)
             clock.wait_until(target)
+            self._check_plug()
+        clock.settle()
         return bus.read(size)
 
     def write(self, data: bytes | bytearray | memoryview) -> int:
@@ -110,7 +119,13 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
         """Refuse a closed port, and let a real clock catch up."""
         if not self.is_open:
             raise serial.PortNotOpenError()
+        self._check_plug()
         self._running.clock.settle()
+
+    def _check_plug(self) -> None:
+        """Refuse a port whose adapter has been pulled out since it was opened."""
+        if self._plugs != self._bus.plugs:
+            raise serial.SerialException("the adapter has been unplugged")
 
     def _reconfigure_port(self) -> None:
         self._bus.baud = cast(int, self._baudrate)

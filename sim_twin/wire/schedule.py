@@ -14,7 +14,7 @@ class Schedule:
 
     def __init__(self) -> None:
         self.now = 0.0
-        self._queue: list[tuple[float, int, Callable[[], None]]] = []
+        self._queue: list[tuple[float, int, Callable[[], object]]] = []
         self._count = 0
 
     @property
@@ -22,7 +22,7 @@ class Schedule:
         """When the next action is due, s; infinity if there is none."""
         return self._queue[0][0] if self._queue else math.inf
 
-    def at(self, time: float, action: Callable[[], None]) -> None:
+    def at(self, time: float, action: Callable[[], object]) -> None:
         """Have `action` called at `time` s; now, if that has passed."""
         self._count += 1
         heapq.heappush(self._queue, (max(time, self.now), self._count, action))

@@ -2,6 +2,7 @@
 
 from hal.servo_model import ServoModel
 from sim_twin.wire.firmware import Firmware
+from sim_twin.wire.health import OVERLOAD
 from sim_twin.wire.present import MOTION
 from sim_twin.wire.register_file import BAD_ACCESS, BAD_INSTRUCTION, BAD_RANGE, FAILED, OK
 from sim_twin.wire.shaft import Shaft
@@ -89,6 +90,11 @@ class Servo:
         """Whether it really drives its motor now."""
         return self.firmware.driving
 
+    @property
+    def supply(self) -> float:
+        """Its supply voltage, V."""
+        return self.firmware.loop.supply
+
     def listens(self, now: float) -> bool:
         """Whether it is powered and has booted."""
         return self.firmware.powered and now >= self._ready
@@ -169,6 +175,11 @@ class Servo:
         self.firmware.loop.encoder.forget_turns(self.firmware.present.position)
         self.firmware.hold_here()
         return self.firmware.alert
+
+    def overload(self, now: float) -> None:
+        """Take itself for overloaded."""
+        self.firmware.health.inject(OVERLOAD)
+        self.firmware.protect(now)
 
     def control(self, now: float, dt: float) -> None:
         """Do one step of the control loop; needed while `busy`."""

@@ -54,6 +54,7 @@ class World:
         physics: What moves the shafts.
         schedule: What will happen.
         supply: Voltage of the servos, V. Set it with `set_supply`.
+        dead: What will never work again.
     """
 
     def __init__(
@@ -66,9 +67,13 @@ class World:
     ) -> None:
         self.physics, self.schedule, self.buses, self.supply = physics, schedule, buses, supply
         self.owned = tuple(owned)  # such as the twin, for whoever wants the truth
+        self._full: list[float] | None = None  # supplies before a brown-out
+        self.dead: list[Device] = []
         self._steps = 0
         self._watched = 0.0
         self._devices = [(bus, device) for bus in buses.values() for device in bus.devices]
+        for bus in buses.values():
+            bus.faults.attach(self)
 
     @property
     def now(self) -> float:
@@ -121,8 +126,32 @@ class World:
     def set_supply(self, volts: float) -> None:
         """Change the supply voltage of everything."""
         self.supply = volts
-        for _, device in self._devices:
-            device.set_supply(volts, self.now)
+        self._supply([volts] * len(self._devices))
+
+    def sag(self, volts: float) -> None:
+        """Let the supply of everything sink to `volts` V, until `recover`."""
+        if self._full is None:
+            self._full = [device.supply for _, device in self._devices]
+        self._supply([min(volts, full) for full in self._full])
+
+    def recover(self) -> None:
+        """Give everything the supply that it had before it sank."""
+        if self._full is not None:
+            full, self._full = self._full, None
+            self._supply(full)
+
+    def _supply(self, volts: list[float]) -> None:
+        for (_, device), supply in zip(self._devices, volts, strict=True):
+            if device not in self.dead:
+                device.set_supply(supply, self.now)
+        for bus in self.buses.values():
+            bus.refresh()
+
+    def kill(self, device: Device) -> None:
+        """Let a device die: it has no power any more."""
+        if device not in self.dead:
+            self.dead.append(device)
+            device.set_supply(0.0, self.now)
 
 
 class VirtualClock:

@@ -1,6 +1,6 @@
 """The worlds that are open in this process, so that two opens of one world share it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hal.errors import UnknownNameError, UsageError
 from sim_twin.wire.address import Address
@@ -54,7 +54,9 @@ def drop_world(name: str) -> None:
 def enter(address: Address) -> Running:
     """Return the running world of an address, built if need be, with one port more."""
     name = address.world or f"{address.robot} ({address.clock})"
-    running = _running.get(name)
+    running = _running.get(name) or _running.pop(_lost_name(address), None)
+    if running is not None:
+        _running[name] = running
     if running is None:
         running = _start(build_world(address), address.clock, keep=bool(address.world))
         _running[name] = running
@@ -68,12 +70,21 @@ def enter(address: Address) -> Running:
     return running
 
 
-def leave(running: Running) -> None:
-    """Count one port less; a world without a name of its own ends with its last port."""
+def leave(running: Running, lost: Address | None = None) -> None:
+    """Count one port less; a world without a name of its own ends with its last port.
+
+    Unless that port was lost, by unplugging: who opens its address again finds the world.
+    """
     running.ports -= 1
     if running.ports == 0 and not running.keep:
         for name in [name for name, other in _running.items() if other is running]:
             del _running[name]
+        if lost is not None:
+            _running[_lost_name(lost)] = running
+
+
+def _lost_name(address: Address) -> str:
+    return repr(replace(address, bus=""))
 
 
 def _start(world: World, clock: str, keep: bool) -> Running:

@@ -13,7 +13,8 @@ from control.side import SideControl
 from control.style import Styling
 from hal.errors import UnknownNameError, UsageError
 from robots import load_robot
-from tools.build import amounts, find_gait
+from tools.build import find_gait
+from tools.steer import amounts
 
 
 @pytest.fixture(scope="module")

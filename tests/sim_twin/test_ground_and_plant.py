@@ -102,3 +102,28 @@ def test_a_velocity_step_moves_the_whole_robot(op3: RobotDescription) -> None:
     mujoco.mj_subtreeVel(twin.model, twin.data)
     velocity = twin.data.subtree_linvel[1]
     assert velocity[:2] == pytest.approx([0.0, 0.4], abs=1e-3)
+
+
+def test_a_push_on_the_whole_robot_gives_its_impulse_whatever_its_instants(
+    op3: RobotDescription,
+) -> None:
+    twin = Twin(op3)
+    twin.data.qpos[2] += 1.0
+    mass = float(twin.model.body_mass.sum())
+    twin.push(Push.velocity_step(0.4, mass, 0.0, start=0.0007, duration=0.0051))
+    twin.step(10)
+    mujoco.mj_forward(twin.model, twin.data)
+    velocity = twin.data.sensor("com_velocity").data
+    np.testing.assert_allclose(velocity[:2], [0.4, 0.0], atol=1e-3)
+
+
+def test_a_foot_that_sinks_into_the_floor_stands_on_the_floor(human: RobotDescription) -> None:
+    level = FootLevel(human)
+    twin = Twin(human)
+    twin.step(500)
+    observation = TwinBackend(twin).read()
+    assert observation.base is not None
+    observation.base.position[2] -= 0.008
+    assert level.of(observation) == 0.0
+    observation.base.position[2] += 0.048
+    assert level.of(observation) == pytest.approx(0.04, abs=0.005)

@@ -14,7 +14,7 @@ from sim_twin.wire.emulate import Emulator, emulate
 
 def ready(emulator: Emulator) -> None:
     signal.signal(signal.SIGTERM, lambda *_: emulator.stop())
-    print(emulator.outlets[0].link.name, flush=True)
+    print(emulator.outlets[0].name, flush=True)
 
 pty = Path(sys.argv[2]) if len(sys.argv) > 2 else None
 emulate(parse_address(sys.argv[1]), pty=pty, tcp=None if pty else 0, on_ready=ready)

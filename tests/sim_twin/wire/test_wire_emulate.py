@@ -7,12 +7,11 @@ from typing import Any
 
 import dynamixel_sdk
 import pytest
+import rustypot
 import serial
 
 from sim_twin.wire.frames import encode
 from tests.sim_twin.wire.emulator_process import emulator
-
-rustypot = pytest.importorskip("rustypot")
 
 BUS = "twin://bench?servos=XL430-W250:1-3,XM430-W350:4&return_delay=0"
 POSITION = 132
@@ -58,7 +57,11 @@ def test_the_sdk_pings_reads_writes_and_sees_errors(port: Any, sdk: Any) -> None
 
 
 def test_the_sdk_scans_by_broadcast(port: Any, sdk: Any) -> None:
-    found, result = sdk.broadcastPing(port)
+    # The SDK's own patience for a broadcast cannot be raised: give a busy machine a few goes.
+    for _ in range(10):
+        found, result = sdk.broadcastPing(port)
+        if result == dynamixel_sdk.COMM_SUCCESS and len(found) == 4:
+            break
     assert result == dynamixel_sdk.COMM_SUCCESS
     assert {k: model for k, (model, _) in found.items()} == {1: 1060, 2: 1060, 3: 1060, 4: 1020}
 

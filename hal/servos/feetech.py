@@ -1,4 +1,4 @@
-"""Feetech STS.
+"""Feetech STS and SCS.
 
 The law is ``duty = P x counts of error / 4000``: 0.16297 of duty per rad and unit of P, which an
 oscilloscope (Rhoban bam: 0.166) and K-Scale's fits (0.16293) confirm. Torque and speed are
@@ -6,6 +6,10 @@ Feetech's data sheets; the sheets of the 7.4 V type disagree with measurement (b
 3.25 N m at 7.4 V), so weigh a robot's own torque before trusting it. Armature and friction are
 bam's model M1 of the 7.4 V type (Apache-2.0); nobody has published a physical fit of the other
 two, which borrow them.
+
+Of the SCS0009 torque, speed and default gains are from memory, and neither its duty law nor its
+armature and friction are published: its line takes the STS's law for the same angle and scales the
+STS3215's armature and friction by stall torque. Identify it before trusting a twin of it.
 """
 
 from math import pi
@@ -18,10 +22,15 @@ GAIN = 4096 / (2.0 * pi) / 4000
 STS3215_7V4 = (Row.of(6.0, 1.6, 55 * 6.0 / 7.4), Row.of(7.4, 1.91, 55))
 STS3215_12V = (Row.of(12.0, 2.94, 45, 2.7),)
 STS3250_12V = (Row.of(12.0, 4.9, 75),)
+SCS0009_6V = (Row.of(6.0, 0.226, 100),)
+SCS_COUNTS_PER_REV = 1024 * 360 / 300
 
 # name, model number, rows, duty per rad and P, default P, armature kg m2, friction N m
-FEETECH_STS = (
+FEETECH = (
     ServoModel("STS3215-7.4V", 777, STS3215_7V4, GAIN, 32, 0.0284, 0.0524, pwm_limit=0.97),
     ServoModel("STS3215-12V", 777, STS3215_12V, GAIN, 32, 0.0284, 0.0524),
+    ServoModel(
+        "SCS0009", 1284, SCS0009_6V, GAIN, 15, 0.0034, 0.0062, SCS_COUNTS_PER_REV, 0.97, 1024
+    ),
     ServoModel("STS3250", 2825, STS3250_12V, GAIN, 32, 0.0284, 0.0524, pwm_limit=0.97),
 )

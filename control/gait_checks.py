@@ -1,0 +1,71 @@
+"""What the tables of a gait file say of each other; every error names the file and the key."""
+
+from collections.abc import Iterable
+from itertools import pairwise
+from pathlib import Path
+
+from control.gait_file import GaitFile
+from control.regulation import regulation_variables
+from hal.errors import ConfigError, UnknownNameError
+from hal.joints import Joints
+
+
+def check_gait(path: Path, file: GaitFile, joints: Joints) -> None:
+    """Check the names that tables of a gait file have of each other.
+
+    Raises:
+        ConfigError: A table names something that is not there, or holds nothing.
+    """
+    names = [item.name for item in file.perturbation]
+    parts = [(item.name, item.states and sorted(item.states)) for item in file.perturbation]
+    for number, (name, states) in enumerate(parts):
+        if (name, states) in parts[:number]:
+            why = "this name stands twice; give each its own, or other states"
+            raise _error(path, f"perturbation.{name}", why)
+    if file.balance is not None:
+        _known(path, "balance.perturbations", file.balance.perturbations, names)
+        try:
+            regulation_variables([*file.balance.regulation, *file.balance.targets])
+        except UnknownNameError as error:
+            raise _error(path, "balance.regulation", str(error)) from None
+    if file.speed is not None:
+        _check_speed(path, file, names)
+    if file.side is not None:
+        _known(path, "side.scale", file.side.scale, names)
+        _known(path, "side.spread", file.side.spread, names)
+    if file.heading is not None:
+        _known(path, "heading.perturbation", [file.heading.perturbation], names)
+    if file.turn is not None:
+        _known(path, "turn.perturbation", filter(None, [file.turn.perturbation]), names)
+        _known(path, "turn.spread", file.turn.spread, names)
+    for style in file.style:
+        _known(path, f"style.{style.name}.scale", style.scale, names)
+    if file.torso_servo is not None:
+        _known(path, "torso_servo.joint", [file.torso_servo.joint], joints.names, "joint")
+
+
+def _check_speed(path: Path, file: GaitFile, names: list[str]) -> None:
+    assert file.speed is not None
+    speeds = [row.speed for row in file.speed.rows]
+    if not speeds:
+        raise _error(path, "speed.rows", "a speed table needs at least one row")
+    if any(after <= before for before, after in pairwise(speeds)):
+        raise _error(path, "speed.rows", "the speeds have to rise from row to row")
+    for row in file.speed.rows:
+        _known(path, "speed.rows.scale", row.scale, names)
+
+
+def _known(
+    path: Path,
+    key: str,
+    wanted: Iterable[str],
+    known: Iterable[str],
+    kind: str = "perturbation",
+) -> None:
+    for name in wanted:
+        if name not in known:
+            raise _error(path, key, str(UnknownNameError(kind, name, known)))
+
+
+def _error(path: Path, key: str, message: str) -> ConfigError:
+    return ConfigError(f"{path}: {key}: {message}")

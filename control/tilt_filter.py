@@ -1,0 +1,154 @@
+"""A Kalman filter over tilt, velocity and gyro bias, fed by an IMU and by feet that stand still.
+
+The errors of a floating base obey, for a tilt error about one horizontal axis, the velocity error
+along the other, and the gyro's bias about the first (g is gravity; signs as for pitch and x)::
+
+    d tilt / dt = -bias        d velocity / dt = g tilt        d bias / dt = 0
+
+and the velocity is measured. Both horizontal axes have the same noise, so one covariance (3, 3)
+serves both. It is what is left of Bloesch 2012 ("State estimation for legged robots") once nothing
+may be learned about the yaw, which nobody measures. The accelerometer's vertical is seen only
+through the velocity that it integrates to, so that walking does not look like leaning.
+"""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+from hal.joints import Array
+
+GRAVITY = 9.81
+
+
+@dataclass(frozen=True)
+class ImuNoise:
+    """What the filter believes about the IMU; standard deviations, densities in a root of hertz.
+
+    Attributes:
+        gyro: rad/s; little noise, mostly what sampling loses of fast motion.
+        acceleration: m/s2; mostly what sampling loses of impacts.
+        drift: Of the gyro's bias, rad/s2.
+        start_tilt: Tilt at the start, rad.
+        start_velocity: Velocity at the start, m/s.
+        start_bias: Bias of the gyro at the start, rad/s.
+        fused: Tilt of the IMU's own orientation, rad.
+    """
+
+    gyro: float = 2e-3
+    acceleration: float = 0.05
+    drift: float = 2e-4
+    start_tilt: float = 0.035
+    start_velocity: float = 0.1
+    start_bias: float = 0.02
+    fused: float = 0.05
+
+
+class TiltFilter:
+    """Attitude and horizontal velocity of the point where the IMU sits, and the gyro's bias.
+
+    Args:
+        noise: See `ImuNoise`.
+
+    Attributes:
+        orientation: (4,) wxyz, body to world.
+        frame: (3, 3) the same as a matrix.
+        velocity: (3,) m/s in the world; its vertical part is only ever integrated here.
+        bias: (3,) of the gyro, rad/s in the body.
+    """
+
+    def __init__(self, noise: ImuNoise | None = None) -> None:
+        self.noise = noise or ImuNoise()
+        self.bias = np.zeros(3)
+        self._dt = 0.0
+        self.start(np.array([0.0, 0.0, 1.0]))
+
+    def start(self, up: Array) -> None:
+        """Begin at rest, facing along x, with the vertical (3,) as the body sees it.
+
+        What is known of the bias stays.
+        """
+        self.orientation = np.empty(4)
+        mujoco.mju_quatZ2Vec(self.orientation, up)
+        self.orientation[1:] *= -1.0
+        self.velocity = np.zeros(3)
+        noise = self.noise
+        start = [noise.start_tilt, noise.start_velocity, noise.start_bias]
+        self._covariance = np.diag(np.square(start))
+        self._yaw_variance = noise.start_bias**2
+        self._look()
+
+    @property
+    def deviation(self) -> tuple[float, float]:
+        """Standard deviations of the tilt, rad, and of the velocity, m/s."""
+        return float(self._covariance[0, 0] ** 0.5), float(self._covariance[1, 1] ** 0.5)
+
+    def predict(self, turn: Array, boost: Array, dt: float, doubt: float = 1.0) -> None:
+        """Let `dt` s pass.
+
+        Args:
+            turn: (3,) integral of the gyro, rad.
+            boost: (3,) integral of the accelerometer, m/s.
+            dt: s.
+            doubt: Multiplies the samples' noise.
+        """
+        before = self.frame
+        mujoco.mju_quatIntegrate(self.orientation, turn - self.bias * dt, 1.0)
+        self._look()
+        self.velocity = self.velocity + 0.5 * ((before + self.frame) @ boost)
+        self.velocity[2] -= GRAVITY * dt
+        if dt != self._dt:
+            self._prepare(dt)
+        p = self._step @ self._covariance @ self._step.T
+        p += self._spread * doubt * doubt
+        self._yaw_variance += self.noise.drift**2 * dt
+        self._covariance = p
+
+    def measure_velocity(self, velocity: Array, deviation: float) -> None:
+        """Take a measured velocity (3,) m/s in the world; only its horizontal parts count."""
+        x, y, _ = (velocity - self.velocity).tolist()
+        # What turns the base so that gravity shows as this velocity: pitch for x, -roll for y.
+        self._correct(1, deviation, self.frame.T @ (-y, x, 0.0), np.array([x, y, 0.0]))
+
+    def measure_up(self, up: Array) -> None:
+        """Take the vertical (3,) as the body sees it, from the IMU's own fusion."""
+        a, b = up.tolist(), self.frame[2].tolist()
+        axis = np.array(
+            [
+                a[1] * b[2] - a[2] * b[1],
+                a[2] * b[0] - a[0] * b[2],
+                a[0] * b[1] - a[1] * b[0],
+            ]
+        )
+        x, y, _ = (self.frame @ axis).tolist()
+        self._correct(0, self.noise.fused, axis, np.array([y, -x, 0.0]))
+
+    def measure_yaw_bias(self, bias: Array, deviation: float) -> None:
+        """Take a measured bias (3,) rad/s of the gyro; only its part along the vertical counts."""
+        gain = self._yaw_variance / (self._yaw_variance + deviation**2)
+        up = self.frame[2]
+        self.bias = self.bias + gain * float((bias - self.bias) @ up) * up
+        self._yaw_variance *= 1.0 - gain
+
+    def _prepare(self, dt: float) -> None:
+        """Work out what `dt` s do to the errors."""
+        noise, fall = self.noise, GRAVITY * dt
+        self._dt = dt
+        self._step = np.array([[1.0, 0.0, -dt], [fall, 1.0, -0.5 * fall * dt], [0.0, 0.0, 1.0]])
+        self._spread = np.diag(np.square([noise.gyro, noise.acceleration, noise.drift])) * dt
+
+    def _correct(self, row: int, deviation: float, axis: Array, along: Array) -> None:
+        """Correct all by an error seen in state `row`: as a rotation and as a velocity."""
+        p = self._covariance
+        gain = p[row] / (p[row, row] + deviation**2)
+        tilt, velocity, bias = gain.tolist()
+        mujoco.mju_quatIntegrate(self.orientation, axis, tilt)
+        self.velocity = self.velocity + velocity * along
+        self.bias = self.bias + bias * axis
+        self._covariance = p - gain[:, None] * p[row]
+        self._look()
+
+    def _look(self) -> None:
+        flat = np.empty(9)
+        mujoco.mju_quat2Mat(flat, self.orientation)
+        self.frame = flat.reshape(3, 3)

@@ -1,0 +1,40 @@
+"""Families of servos: what differs between makes, one object each."""
+
+from hal.errors import UnknownNameError
+from hal.families.dynamixel_1 import DYNAMIXEL_1
+from hal.families.dynamixel_x import DYNAMIXEL_X
+from hal.families.family import Block, Family, Want
+from hal.families.feetech import FEETECH_SCS, FEETECH_STS
+
+FAMILIES = (DYNAMIXEL_X, DYNAMIXEL_1, FEETECH_STS, FEETECH_SCS)
+
+_OF_MODEL = {name: family for family in FAMILIES for name in family.numbers.values()}
+
+
+def family_of(model: str) -> Family:
+    """Return the family of a servo; what follows a dash may be its winding.
+
+    >>> family_of("STS3215-7.4V").name, family_of("MX-28").name
+    ('Feetech STS', 'Dynamixel AX/MX')
+
+    Raises:
+        UnknownNameError: No family has such a servo.
+    """
+    name = model if model in _OF_MODEL else model.split("-")[0]
+    try:
+        return _OF_MODEL[name]
+    except KeyError:
+        raise UnknownNameError("servo", model, _OF_MODEL) from None
+
+
+__all__ = [
+    "DYNAMIXEL_1",
+    "DYNAMIXEL_X",
+    "FAMILIES",
+    "FEETECH_SCS",
+    "FEETECH_STS",
+    "Block",
+    "Family",
+    "Want",
+    "family_of",
+]

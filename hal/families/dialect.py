@@ -1,0 +1,199 @@
+"""How the servos of a bus are spoken to: one dialect for each protocol and maker."""
+
+import contextlib
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from hal.errors import HardwareError
+from hal.port import Port
+from hal.protocols import protocol1, protocol2
+from hal.protocols.batched import BlockRead, BlockWrite
+from hal.protocols.batched1 import ChainRead, GoalWrite, bulk_read, sync_read
+from hal.protocols.cyclic import CyclicRead, CyclicWrite
+from hal.protocols.protocol2 import Span
+from hal.registers import Register
+from hal.sdk import DynamixelLink, Link
+from hal.sdk1 import Dynamixel1Link, FeetechLink
+
+PING_SLOT = 3e-3
+"""Servos answer a broadcast ping of protocol 2 one after the other, each in its slot of this, s."""
+PING_TIME = 3e-3
+"""What a servo may take to answer a ping of its own, return delay and driver included, s."""
+
+
+class Answered(NamedTuple):
+    """Who answered a ping, and what it is."""
+
+    id: int
+    model_number: int
+    firmware: int
+
+
+class Dialect(ABC):
+    """One protocol as one maker speaks it.
+
+    Attributes:
+        last_id: The largest id a servo can have.
+        weak: Is the checksum so short that a good frame proves little?
+    """
+
+    last_id: int
+    weak: bool
+
+    @abstractmethod
+    def link(self, port: Port) -> Link:
+        """Return what speaks to one servo at a time."""
+
+    @abstractmethod
+    def read(self, spans: Sequence[Span], fast: bool = False) -> CyclicRead:
+        """Return a cyclic read; `fast` is one that not all servos of the family may know."""
+
+    @abstractmethod
+    def write(self, ids: Sequence[int], register: Register) -> CyclicWrite:
+        """Return a cyclic write of one register."""
+
+    @abstractmethod
+    def sync_write(self, data: Mapping[int, bytes], address: int, size: int) -> list[bytes]:
+        """Return the frames that write `size` bytes at `address` of each id in `data`."""
+
+    @abstractmethod
+    def who(self, port: Port, link: Link) -> list[Answered]:
+        """Return who is there at the port's present baud rate."""
+
+
+class Protocol2(Dialect):
+    """Dynamixel protocol 2. Fast is the fast sync read."""
+
+    last_id, weak = protocol2.LAST_ID, False
+
+    def link(self, port: Port) -> Link:
+        """Return what speaks to one servo at a time."""
+        return DynamixelLink(port)
+
+    def read(self, spans: Sequence[Span], fast: bool = False) -> CyclicRead:
+        """Return a sync read, or a bulk read where the spans differ."""
+        return BlockRead(spans, fast)
+
+    def write(self, ids: Sequence[int], register: Register) -> CyclicWrite:
+        """Return a cyclic write of one register."""
+        return BlockWrite(ids, register.address, register.size)
+
+    def sync_write(self, data: Mapping[int, bytes], address: int, size: int) -> list[bytes]:
+        """Return the frame that writes `size` bytes at `address` of each id in `data`."""
+        return [protocol2.sync_write(data, address, size)]
+
+    def who(self, port: Port, link: Link) -> list[Answered]:
+        """Ping everybody at once; every reply that is whole counts."""
+        port.flush_input()
+        port.write(protocol2.ping())
+        slots = PING_SLOT * protocol2.LAST_ID + 2.0 * port.latency
+        longest = (protocol2.LAST_ID + 1) * (protocol2.OVERHEAD + 3)
+        stream = port.read(longest, port.clock.now() + slots + longest * 10.0 / port.baud)
+        answers = {item.id: item.params for item in protocol2.salvage(stream)}
+        return [
+            Answered(id, int.from_bytes(params[:2], "little"), params[2])
+            for id, params in sorted(answers.items())
+            if len(params) == 3
+        ]
+
+
+class Protocol1(Dialect):
+    """What Dynamixel protocol 1 and Feetech have alike.
+
+    Args:
+        model_number: Where a servo says what it is.
+        firmware: Where it says which firmware it runs.
+        longest: Bytes of the longest frame a servo takes.
+    """
+
+    last_id, weak = protocol1.LAST_ID, True
+
+    def __init__(self, model_number: Register, firmware: Register, longest: int) -> None:
+        self.model_number, self.firmware, self.longest = model_number, firmware, longest
+
+    def read(self, spans: Sequence[Span], fast: bool = False) -> CyclicRead:
+        """Return the common read where all know one and `fast` says so, else single reads."""
+        if fast and len(spans) > 1 and self._room_for(len(spans)):
+            return self._common(spans)
+        return ChainRead(spans)
+
+    def write(self, ids: Sequence[int], register: Register) -> CyclicWrite:
+        """Return a cyclic write of one register."""
+        return GoalWrite(ids, register, self.longest)
+
+    def sync_write(self, data: Mapping[int, bytes], address: int, size: int) -> list[bytes]:
+        """Return the frames that write `size` bytes at `address` of each id in `data`."""
+        return protocol1.split_sync_write(data, address, size, self.longest)
+
+    def who(self, port: Port, link: Link) -> list[Answered]:
+        """Ping one id after the other: all who hear a common ping would answer at once."""
+        found, firmware = [], self.firmware
+        for id in range(self.last_id + 1):
+            # Noise, or two servos with this id, may pass for an answer; they have no model.
+            if _pings(port, id):
+                with contextlib.suppress(HardwareError):
+                    version = link.read(id, firmware.address, firmware.size)
+                    found.append(Answered(id, link.ping(id), firmware.decode(version)))
+        return found
+
+    @abstractmethod
+    def _common(self, spans: Sequence[Span]) -> CyclicRead:
+        """Return one read for all."""
+
+    @abstractmethod
+    def _room_for(self, servos: int) -> bool:
+        """Does the request of a common read of so many fit into a servo's buffer?"""
+
+
+class Dynamixel1(Protocol1):
+    """AX and MX. The common read is the bulk read, which no AX knows."""
+
+    def link(self, port: Port) -> Link:
+        """Return what speaks to one servo at a time."""
+        return Dynamixel1Link(port, self.model_number)
+
+    def _common(self, spans: Sequence[Span]) -> CyclicRead:
+        return bulk_read(spans)
+
+    def _room_for(self, servos: int) -> bool:
+        return 3 * servos + protocol1.OVERHEAD + 1 <= self.longest
+
+
+class Feetech(Protocol1):
+    """STS, SMS and SCS. The common read is the sync read.
+
+    Args:
+        model_number: Where a servo says what it is.
+        firmware: Where it says which firmware it runs.
+        always_sync: Do all servos of the family know it?
+    """
+
+    def __init__(self, model_number: Register, firmware: Register, always_sync: bool) -> None:
+        super().__init__(model_number, firmware, protocol1.LONGEST_FEETECH)
+        self.always_sync = always_sync
+
+    def link(self, port: Port) -> Link:
+        """Return what speaks to one servo at a time."""
+        return FeetechLink(port, self.model_number)
+
+    def read(self, spans: Sequence[Span], fast: bool = False) -> CyclicRead:
+        """Return a sync read where all know one, else single reads."""
+        return super().read(spans, fast or self.always_sync)
+
+    def _common(self, spans: Sequence[Span]) -> CyclicRead:
+        alike = len({(span.address, span.size) for span in spans}) == 1
+        return sync_read(spans) if alike else ChainRead(spans)
+
+    def _room_for(self, servos: int) -> bool:
+        return servos + protocol1.OVERHEAD + 2 <= self.longest
+
+
+def _pings(port: Port, id: int) -> bool:
+    request = protocol1.ping(id)
+    port.flush_input()
+    port.write(request)
+    wire = (len(request) + protocol1.OVERHEAD) * 10.0 / port.baud
+    deadline = port.clock.now() + wire + 2.0 * port.latency + PING_TIME
+    stream = port.read(protocol1.OVERHEAD, deadline)
+    return any(True for _ in protocol1.salvage(stream, {id: 0}))

@@ -1,0 +1,68 @@
+"""Dynamixel AX and MX under protocol 1, mixed on a bus as Poppy and Darwin have them."""
+
+from hal.families.dialect import Dynamixel1
+from hal.families.family import Block, Family, Want
+from hal.families.gain import Gain, slope_pair, slope_steps
+from hal.protocols.protocol1 import LONGEST_DYNAMIXEL
+from hal.servo_model import ServoModel
+from hal.servos.mx_registers import (
+    BAUD_CODES,
+    COMMON,
+    FAST_CODES,
+    HARDWARE_ERRORS,
+    NUMBERS,
+    mx_registers,
+)
+
+FULL = 1023
+"""Torque limit that limits nothing."""
+STATE = (
+    COMMON["present_position"],
+    COMMON["present_velocity"],
+    COMMON["present_load"],
+)
+
+_P_GAIN = Gain(mx_registers("MX-28")["position_p_gain"], 254)
+_SLOPES = Gain(mx_registers("AX-12A")["compliance_slopes"], 512, slope_steps, slope_pair)
+
+
+def _wanted(model: ServoModel) -> tuple[Want, ...]:
+    """Return the settings; those a model does not have are passed over."""
+    return (
+        Want("return_delay", 0),
+        Want("drive_mode", 0),
+        Want("min_position_limit", 0),
+        Want("max_position_limit", model.last_count),
+        Want("multi_turn_offset", 0),
+        Want("resolution_divider", 1),
+        Want("max_torque", FULL),
+        Want("status_return_level", 2),
+        Want("torque_mode", 0),
+        Want("torque_limit", FULL),
+        Want("goal_speed", 0),  # no limit
+        Want("goal_acceleration", 0),
+        Want("position_i_gain", 0),
+        Want("position_d_gain", 0),
+        Want("cw_compliance_margin", 0),
+        Want("ccw_compliance_margin", 0),
+    )
+
+
+def _gain(model: str) -> Gain:
+    return _SLOPES if "compliance_slopes" in mx_registers(model) else _P_GAIN
+
+
+DYNAMIXEL_1 = Family(
+    name="Dynamixel AX/MX",
+    dialect=Dynamixel1(COMMON["model_number"], COMMON["firmware_version"], LONGEST_DYNAMIXEL),
+    registers=COMMON,
+    table=mx_registers,
+    numbers=NUMBERS,
+    bauds=BAUD_CODES | FAST_CODES,
+    state=Block(36, 6, STATE),
+    health=Block(36, 8, STATE),
+    wanted=_wanted,
+    gain=_gain,
+    alert=sum(1 << bit for bit in HARDWARE_ERRORS),
+    errors=HARDWARE_ERRORS,
+)

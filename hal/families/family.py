@@ -1,0 +1,137 @@
+"""A family of servos: everything in which one make differs from another, as one object.
+
+Whatever works on servos (bus, line, settings, torque switch, units) asks the family and knows no
+maker by name.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from hal.errors import UsageError
+from hal.families.dialect import Dialect
+from hal.families.gain import Gain
+from hal.protocols.protocol2 import Span
+from hal.registers import Register, RegisterTable
+from hal.servo_model import ServoModel
+
+
+class Want(NamedTuple):
+    """What the stack needs a register to be; `mask` says which bits matter, None all."""
+
+    name: str
+    value: int
+    mask: int | None = None
+
+
+@dataclass(frozen=True)
+class Block:
+    """A run of registers that is read in one piece.
+
+    Attributes:
+        address: Of its first byte.
+        size: Bytes.
+        state: Position, velocity, and current or load.
+    """
+
+    address: int
+    size: int
+    state: tuple[Register, Register, Register]
+
+    @cached_property
+    def dtype(self) -> np.dtype[Any]:
+        """The record of one servo: fields "f0", "f1" and "f2" in the order of `state`."""
+        names = [f"f{index}" for index in range(len(self.state))]
+        return np.dtype(
+            {
+                "names": names,
+                "formats": [register.dtype for register in self.state],
+                "offsets": [register.address - self.address for register in self.state],
+                "itemsize": self.size,
+            }
+        )
+
+    def counts(self, records: npt.NDArray[np.void]) -> tuple[Any, Any, Any]:
+        """Return three (n,) arrays, in the order of `state`, from (n,) records of `dtype`."""
+        first, second, third = self.state
+        return (
+            first.values(records["f0"]),
+            second.values(records["f1"]),
+            third.values(records["f2"]),
+        )
+
+    def span(self, id: int) -> Span:
+        """Return the block of one servo."""
+        return Span(id, self.address, self.size)
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Servos that share protocol, register addresses and rules.
+
+    Attributes:
+        name: For people.
+        dialect: How they are spoken to.
+        registers: What all models have at the same place, by name; units are the model's.
+        table: Model name to all of its registers.
+        numbers: Model number to model name.
+        bauds: Baud rate to the value of its register.
+        state: What a cycle reads.
+        current: What a cycle reads where torque is to come from it; None where `state` will do or
+            nothing measures current.
+        health: `state`, read on to voltage and temperature.
+        health_alone: Can one servo be read further on than the others?
+        wanted: The settings the stack relies on, in the order in which they are written.
+        gain: How stiffness is set on a model.
+        alert: Bits of an answer's error byte that say the servo is unwell.
+        errors: Bit of an error to its meaning.
+        errors_in_answers: Are the bits of the error byte the errors themselves? Else they stand in
+            the register `hardware_error`.
+        goal_wakes: May a goal switch torque on?
+    """
+
+    name: str
+    dialect: Dialect
+    registers: Mapping[str, Register]
+    table: Callable[[str], RegisterTable]
+    numbers: Mapping[int, str]
+    bauds: Mapping[int, int]
+    state: Block
+    health: Block
+    wanted: Callable[[ServoModel], Sequence[Want]]
+    gain: Callable[[str], Gain]
+    alert: int
+    errors: Mapping[int, str]
+    current: Block | None = None
+    health_alone: bool = False
+    errors_in_answers: bool = True
+    goal_wakes: bool = True
+
+    def model_name(self, number: int) -> str:
+        """Return the name behind a model number, or "model 999"."""
+        return self.numbers.get(number, f"model {number}")
+
+    def explain(self, bits: int) -> tuple[str, ...]:
+        """Return what the bits of an error byte or hardware error register mean."""
+        return tuple(what for bit, what in self.errors.items() if bits >> bit & 1)
+
+    def baud_code(self, baud: int) -> int:
+        """Return the register value of a baud rate.
+
+        Raises:
+            UsageError: No servo of the family has this rate.
+        """
+        if baud not in self.bauds:
+            rates = ", ".join(str(rate) for rate in self.bauds)
+            raise UsageError(f"baud rate {baud} cannot be; there are {rates}")
+        return self.bauds[baud]
+
+    def cycle(self, models: Sequence[ServoModel]) -> tuple[Block, Block]:
+        """Return what the cycle of a line of `models` reads, and what it reads for health."""
+        if self.current is not None and all(model.torque_constant for model in models):
+            return self.current, self.current
+        return self.state, self.health

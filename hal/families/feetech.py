@@ -1,0 +1,99 @@
+"""Feetech STS (and SMS): little-endian, 4096 counts; SCS: big-endian, 1024 counts.
+
+Gains and limits live in the EEPROM area behind the lock. While the lock is 1 a write there holds
+until the power goes, so the loop may change gains without wearing anything.
+"""
+
+from hal.families.dialect import Feetech
+from hal.families.family import Block, Family, Want
+from hal.families.gain import Gain
+from hal.servo_model import ServoModel
+from hal.servos.feetech_registers import (
+    BAUD_CODES,
+    HARDWARE_ERRORS,
+    MULTI_TURN,
+    SCS,
+    SCS_NUMBERS,
+    STEP_SPEED,
+    STS,
+    STS_NUMBERS,
+    feetech_registers,
+)
+
+FULL = 1000
+"""Torque limit that limits nothing."""
+LARGEST_P = 254
+_ALERT = sum(1 << bit for bit in HARDWARE_ERRORS)
+
+
+def _sts_wanted(model: ServoModel) -> tuple[Want, ...]:
+    return (
+        *_wanted(model),
+        Want("phase", STEP_SPEED, STEP_SPEED | MULTI_TURN),  # steps a second, one turn
+        Want("operating_mode", 0),
+        Want("acceleration", 0),  # no profile
+        Want("torque_limit", FULL),
+    )
+
+
+def _wanted(model: ServoModel) -> tuple[Want, ...]:
+    return (
+        Want("return_delay", 0),
+        Want("status_return_level", 1),
+        Want("min_position_limit", 0),
+        Want("max_position_limit", model.last_count),
+        Want("max_torque", FULL),
+        Want("position_d_gain", 0),
+        Want("position_i_gain", 0),
+        Want("goal_time", 0),
+        Want("goal_speed", 0),  # no limit
+        Want("lock", 1),
+    )
+
+
+_STS_GAIN = Gain(STS["position_p_gain"], LARGEST_P)
+_SCS_GAIN = Gain(SCS["position_p_gain"], LARGEST_P)
+
+
+def _sts_gain(model: str) -> Gain:
+    return _STS_GAIN
+
+
+def _scs_gain(model: str) -> Gain:
+    return _SCS_GAIN
+
+
+_STS_STATE = (STS["present_position"], STS["present_velocity"], STS["present_load"])
+_STS_CURRENT = (STS["present_position"], STS["present_velocity"], STS["present_current"])
+_SCS_STATE = (SCS["present_position"], SCS["present_velocity"], SCS["present_load"])
+
+FEETECH_STS = Family(
+    name="Feetech STS",
+    dialect=Feetech(STS["model_number"], STS["firmware_version"], always_sync=True),
+    registers=STS,
+    table=feetech_registers,
+    numbers=STS_NUMBERS,
+    bauds=BAUD_CODES,
+    state=Block(56, 6, _STS_STATE),
+    current=Block(56, 15, _STS_CURRENT),
+    health=Block(56, 8, _STS_STATE),
+    wanted=_sts_wanted,
+    gain=_sts_gain,
+    alert=_ALERT,
+    errors=HARDWARE_ERRORS,
+)
+
+FEETECH_SCS = Family(
+    name="Feetech SCS",
+    dialect=Feetech(SCS["model_number"], SCS["firmware_version"], always_sync=False),
+    registers=SCS,
+    table=feetech_registers,
+    numbers=SCS_NUMBERS,
+    bauds=BAUD_CODES,
+    state=Block(56, 6, _SCS_STATE),
+    health=Block(56, 8, _SCS_STATE),
+    wanted=_wanted,
+    gain=_scs_gain,
+    alert=_ALERT,
+    errors=HARDWARE_ERRORS,
+)

@@ -1,0 +1,161 @@
+"""BNO080, BNO085 and BNO086 in UART-RVC mode: 100 frames a second at 115,200 baud, nothing to ask.
+
+A frame of 19 bytes, all numbers little-endian::
+
+    AA AA | index | yaw, pitch, roll (0.01 deg) | ax, ay, az (0.001 g) | 3 reserved | checksum
+
+The checksum is the sum of the bytes from the index to the last reserved one. The angles are those
+of the chip's maker, who turns pitch about x and roll about y: ``R = Rz(yaw) Rx(pitch) Ry(roll)``.
+The data sheet's own example says so: pitch -1.10 and roll 20.85 degrees go with an acceleration of
+(-0.371, -0.020, 0.977) g, where the common order, roll about x, would put the 0.371 on y.
+
+There is no gyroscope in a frame. The body's rates are the rotation between two frames over the
+time between them, which the index counts in steps of 10 ms: half a frame late, and 0.01 degree of
+resolution makes 0.017 rad/s of noise.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from hal.imu.quaternion import between, conjugate, euler_zxy, multiply, rotate
+from hal.joints import Array
+from hal.observation import ImuState
+from hal.port import Port
+
+HEADER = b"\xaa\xaa"
+LENGTH = 19
+PERIOD = 0.01
+"""Time from one frame to the next, s."""
+BAUD = 115_200
+DEGREE = 0.01 * np.pi / 180.0
+"""rad of one count of an angle."""
+ACCELERATION = 1e-3 * 9.80665
+"""m/s2 of one count."""
+LARGEST: Array = np.radians([180.0, 90.0, 180.0]) + 1e-9
+"""Largest yaw, pitch and roll, rad."""
+FASTEST = 35.0
+"""rad/s: no IMU of this kind follows a faster turn, but a broken frame may say one."""
+LONGEST_GAP = 10
+"""Frames; behind a longer gap the index says nothing, and rates start anew."""
+IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
+IDENTITY.setflags(write=False)
+
+
+class Frame(NamedTuple):
+    """One sample as the chip sends it.
+
+    Attributes:
+        number: Counts frames, modulo 256.
+        angles: (3,) yaw, pitch and roll, rad.
+        acceleration: (3,) m/s2 in the chip's axes.
+    """
+
+    number: int
+    angles: Array
+    acceleration: Array
+
+
+class FrameParser:
+    """Frames out of a stream that may begin anywhere and lose bytes.
+
+    Attributes:
+        corrupt: Headers that no good frame followed.
+    """
+
+    def __init__(self) -> None:
+        self._rest = b""
+        self.corrupt = 0
+
+    def feed(self, data: bytes) -> Iterator[Frame]:
+        """Yield the frames that `data` completes. What is no frame costs one byte."""
+        stream = self._rest + data
+        at = 0
+        while (at := stream.find(HEADER, at)) >= 0 and at + LENGTH <= len(stream):
+            frame = stream[at : at + LENGTH]
+            if sum(frame[2:18]) & 0xFF == frame[18]:
+                yield decode(frame)
+                at += LENGTH
+            else:
+                self.corrupt += 1
+                at += 1
+        self._rest = stream[at:] if at >= 0 else stream[-1:]
+
+
+def decode(frame: bytes) -> Frame:
+    """Return the sample in one whole frame.
+
+    >>> decode(bytes.fromhex("AAAADE010092FF25088DFEECFFD103000000E7")).number
+    222
+    """
+    counts = np.frombuffer(frame, "<i2", count=6, offset=3).astype(np.float64)
+    return Frame(frame[2], counts[:3] * DEGREE, counts[3:] * ACCELERATION)
+
+
+class Bno08xRvc:
+    """The IMU in the body frame.
+
+    Args:
+        url: Its port.
+        mounting: (4,) wxyz, chip to body; by default their axes are the same.
+
+    Attributes:
+        parser: Bytes to frames, and how many were corrupt.
+        implausible: Frames that said what cannot be; an 8-bit checksum passes one in 256.
+    """
+
+    baud = BAUD
+
+    def __init__(self, url: str, mounting: Array = IDENTITY) -> None:
+        self.url = url
+        self.mounting = np.asarray(mounting, dtype=np.float64) / np.linalg.norm(mounting)
+        self._back = conjugate(self.mounting)
+        self.parser = FrameParser()
+        self._port: Port | None = None
+        self._state: ImuState | None = None
+        self._index, self._at = 0, -np.inf
+        self.implausible = 0
+
+    def attach(self, port: Port) -> None:
+        """Listen on `port` from now on; a frame begun on another port is forgotten."""
+        self._port = port
+        self.parser = FrameParser()
+        self._at = -np.inf
+
+    def poll(self) -> None:
+        """Take in what has come; waits for nothing.
+
+        Raises:
+            PortError: The port went away.
+        """
+        if self._port is None:
+            return
+        now = self._port.clock.now()
+        for frame in self.parser.feed(self._port.read(64 * LENGTH, now)):
+            self._take(frame, now)
+
+    def state(self, now: float) -> ImuState | None:
+        """Return the last sample, aged to `now` s, or None before the first."""
+        last = self._state
+        if last is None:
+            return None
+        return ImuState(last.orientation, last.angular_velocity, last.acceleration, now - self._at)
+
+    def _take(self, frame: Frame, now: float) -> None:
+        orientation = multiply(euler_zxy(*frame.angles), self._back)
+        rates = self._rates(frame.number, orientation, now)
+        if (np.abs(frame.angles) > LARGEST).any() or np.linalg.norm(rates) > FASTEST:
+            self.implausible += 1
+            return
+        acceleration = rotate(self.mounting, frame.acceleration)
+        self._state = ImuState(orientation, rates, acceleration, 0.0)
+        self._index, self._at = frame.number, now
+
+    def _rates(self, index: int, orientation: Array, now: float) -> Array:
+        """Return the body's rates (3,) rad/s since the last frame; 0 where that is too old."""
+        last, frames = self._state, (index - self._index) % 256
+        recent = now - self._at < LONGEST_GAP * PERIOD and 0 < frames <= LONGEST_GAP
+        if last is None or last.orientation is None or not recent:
+            return np.zeros(3)
+        return between(last.orientation, orientation) / (frames * PERIOD)

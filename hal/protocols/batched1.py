@@ -1,0 +1,161 @@
+"""The cyclic codec of protocol 1: all checksums of a cycle at once, all goals in one frame.
+
+In the manner of `hal.protocols.batched`. A whole frame, header and checksum included, sums to
+0xFD modulo 256, so one `add.reduceat` over bytes checks every reply.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from hal.protocols import protocol1
+from hal.protocols.cyclic import Bytes, CyclicRead, Index
+from hal.protocols.protocol2 import Span, Status
+from hal.registers import Register
+
+FRAME_SUM = 0xFD
+"""Sum of the bytes of any whole frame, modulo 256."""
+_ID, _ERROR, _PARAMS = 2, 4, 5
+"""Places in a status frame."""
+_FIRST = 8
+"""Place of the first value in a sync write."""
+
+
+class StatusRead(CyclicRead):
+    """One request that several servos, or one, answer with frames of protocol 1."""
+
+    def __init__(self, spans: Sequence[Span], request: bytes) -> None:
+        super().__init__(spans)
+        self.request = request
+        self._sizes = {span.id: span.size for span in self.spans}
+        sizes = np.array([span.size for span in self.spans])
+        self._widths = sizes + protocol1.OVERHEAD
+        self.length = self.longest = int(self._widths.sum())
+        self._starts: Index = np.cumsum(self._widths) - self._widths
+        self._error_at = self._starts + _ERROR
+        where = zip(self._starts.tolist(), sizes.tolist(), strict=True)
+        self._payload_at = np.concatenate(
+            [np.arange(at + _PARAMS, at + _PARAMS + size) for at, size in where]
+        )
+        self._heads: Index = (self._starts[:, None] + np.arange(_ERROR)).ravel()
+        self._head = b"".join(
+            protocol1.status(span.id, bytes(span.size))[:_ERROR] for span in self.spans
+        )
+
+    def answered(self) -> int:
+        """Return how many bytes the good replies to the last request had."""
+        return int(self._widths[self.valid].sum())
+
+    def _sound(self, data: Bytes) -> bool:
+        if data.take(self._heads).tobytes() != self._head:
+            return False
+        sums = np.add.reduceat(data, self._starts, dtype=np.uint8)
+        return bool((sums == FRAME_SUM).all())
+
+    def _statuses(self, stream: bytes) -> list[Status]:
+        """Return the replies to believe: good, from who was asked, once each, and in order.
+
+        A servo answers once, in its turn. Two frames with one id, or one out of its turn, mean
+        that a wrong id or a late reply has passed the checksum.
+        """
+        found = list(protocol1.salvage(stream, self._sizes))
+        often = Counter(item.id for item in found)
+        return self._in_turn([item for item in found if often[item.id] == 1])
+
+    def _in_turn(self, items: list[Status]) -> list[Status]:
+        """Return the longest run of `items` whose rows rise."""
+        best: list[list[Status]] = []
+        for item in items:
+            row = self._rows[item.id]
+            before = [run for run in best if self._rows[run[-1].id] < row]
+            best.append([*max(before, key=len, default=[]), item])
+        return max(best, key=len, default=[])
+
+
+class ChainRead(CyclicRead):
+    """Reads of one servo each, the next asked as soon as the one before has answered.
+
+    What is left where servos know no common read (AX-12, SCS), or where a servo is missing and
+    those behind it would wait for it.
+
+    Attributes:
+        parts: The reads, in the order of `spans`.
+    """
+
+    def __init__(self, spans: Sequence[Span]) -> None:
+        super().__init__(spans)
+        self.parts = tuple(StatusRead([span], protocol1.read(*span)) for span in self.spans)
+        self.request = self.parts[0].request
+        self.length = self.longest = sum(part.length for part in self.parts)
+
+    def begin(self) -> None:
+        """Forget who has answered."""
+        self.valid.fill(False)
+        self.complete = False
+
+    def collected(self, row: int) -> None:
+        """Take over what the part at `row` has got."""
+        part = self.parts[row]
+        if part.complete:
+            self._take(row, Status(part.spans[0].id, int(part.error[0]), part.payload.tobytes()))
+        self.complete = bool(self.valid.all())
+
+    def answered(self) -> int:
+        """Return how many bytes the good replies to the last request had."""
+        return sum(part.answered() for part in self.parts)
+
+    def _sound(self, data: Bytes) -> bool:
+        """Only parts are decoded at full length."""
+        return False
+
+    def _statuses(self, stream: bytes) -> list[Status]:
+        sizes = {span.id: span.size for span in self.spans}
+        return list(protocol1.salvage(stream, sizes))
+
+
+def sync_read(spans: Sequence[Span]) -> StatusRead:
+    """Return Feetech's sync read; the spans must be alike but for the id."""
+    first = spans[0]
+    request = protocol1.sync_read([span.id for span in spans], first.address, first.size)
+    return StatusRead(spans, request)
+
+
+def bulk_read(spans: Sequence[Span]) -> StatusRead:
+    """Return Dynamixel's bulk read."""
+    return StatusRead(spans, protocol1.bulk_read(spans))
+
+
+class GoalWrite:
+    """Sync writes of one register to n servos, built once and patched each time.
+
+    Attributes:
+        values: (n,) integers as the register spells them: assign, then call `frames`.
+    """
+
+    def __init__(self, ids: Sequence[int], register: Register, longest: int) -> None:
+        self.ids, self.register = tuple(ids), register
+        self.values: npt.NDArray[np.int64] = np.zeros(len(self.ids), dtype=np.int64)
+        zero = dict.fromkeys(ids, bytes(register.size))
+        frames = protocol1.split_sync_write(zero, register.address, register.size, longest)
+        self._parts: list[tuple[bytearray, npt.NDArray[np.int64], slice]] = []
+        row = 0
+        for raw in frames:
+            frame, width = bytearray(raw), register.size + 1
+            count = (len(frame) - _FIRST) // width
+            view: npt.NDArray[np.int64] = np.ndarray(
+                (count,), register.dtype, frame, _FIRST, (width,)
+            )
+            self._parts.append((frame, view, slice(row, row + count)))
+            row += count
+
+    def frames(self) -> list[bytes]:
+        """Return the frames for the present `values`."""
+        values, bit = self.values, self.register.sign_bit
+        if bit is not None and values.min() < 0:
+            values = np.where(values < 0, -values | 1 << bit, values)
+        for frame, view, rows in self._parts:
+            view[...] = values[rows]
+            frame[-1] = ~sum(frame[2:-1]) & 0xFF
+        return [bytes(frame) for frame, _, _ in self._parts]

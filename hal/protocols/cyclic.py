@@ -1,0 +1,119 @@
+"""What all cyclic reads are: one request, n replies, and the last good bytes of each."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Sequence
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from hal.joints import Mask
+from hal.protocols.protocol2 import Span, Status
+
+Bytes = npt.NDArray[np.uint8]
+Index = npt.NDArray[np.intp]
+
+
+class CyclicRead(ABC):
+    """One request and the n replies to it.
+
+    An answer that fits the expected layout to the byte is checked at once; anything else goes to
+    the resynchronising parser of the protocol, which keeps the replies that are good.
+
+    Attributes:
+        spans: What is read of whom, in the order of the replies.
+        request: The frame to send.
+        length: Bytes of a complete answer.
+        longest: Bytes of the longest answer there can be.
+        valid: (n,) bool: who answered the last request.
+        complete: Did all?
+        error: (n,) error bytes, and what the properties below show: as of each servo's last
+            good answer.
+        payload: The parameters of all replies, one behind the other.
+    """
+
+    request: bytes
+    length: int
+    longest: int
+    _payload_at: Index
+    _error_at: Index
+
+    def __init__(self, spans: Sequence[Span]) -> None:
+        self.spans = tuple(spans)
+        self._rows = {span.id: row for row, span in enumerate(self.spans)}
+        self._ends: list[int] = np.cumsum([span.size for span in self.spans]).tolist()
+        self.valid: Mask = np.zeros(len(self.spans), dtype=bool)
+        self.complete = False
+        self.error: Bytes = np.zeros(len(self.spans), dtype=np.uint8)
+        self.payload: Bytes = np.zeros(self._ends[-1], dtype=np.uint8)
+
+    def column(self, offset: int, dtype: str, rows: slice = slice(None)) -> npt.NDArray[np.int64]:
+        """Return a live view of one field of the chosen rows, which must be of equal size.
+
+        `offset` counts bytes from the start of each span; the view is updated by `decode`.
+        """
+        chosen = range(len(self.spans))[rows]
+        size = self.spans[chosen[0]].size
+        start = self._ends[chosen[0]] - size + offset
+        return np.ndarray((len(chosen),), dtype, self.payload.data, start, (size,))
+
+    def params(self, row: int) -> bytes:
+        """Return the last good parameters of one row."""
+        return self.payload[self._ends[row] - self.spans[row].size : self._ends[row]].tobytes()
+
+    def decode(self, stream: bytes) -> Mask:
+        """Take in an answer and return (n,) bool: whose reply was in it and good."""
+        if len(stream) == self.length:
+            data = np.frombuffer(stream, dtype=np.uint8)
+            if self._sound(data):
+                data.take(self._payload_at, out=self.payload, mode="clip")
+                data.take(self._error_at, out=self.error, mode="clip")
+                if not self.complete:
+                    self.valid.fill(True)
+                    self.complete = True
+                return self.valid
+        self._salvage(stream)
+        return self.valid
+
+    @abstractmethod
+    def answered(self) -> int:
+        """Return how many bytes the good replies to the last request had."""
+
+    @abstractmethod
+    def _sound(self, data: Bytes) -> bool:
+        """Return whether an answer of the full length is what it should be, all of it."""
+
+    @abstractmethod
+    def _statuses(self, stream: bytes) -> Iterable[Status]:
+        """Return the good replies in a dirty stream."""
+
+    def _salvage(self, stream: bytes) -> None:
+        self.valid.fill(False)
+        for item in self._statuses(stream):
+            if self._fits(item):
+                self._take(self._rows[item.id], item)
+        self.complete = bool(self.valid.all())
+
+    def _take(self, row: int, item: Status) -> None:
+        end = self._ends[row]
+        self.payload[end - len(item.params) : end] = np.frombuffer(item.params, np.uint8)
+        self.error[row] = item.error
+        self.valid[row] = True
+
+    def _fits(self, item: Status) -> bool:
+        row = self._rows.get(item.id)
+        return row is not None and len(item.params) == self.spans[row].size
+
+
+class CyclicWrite(Protocol):
+    """A sync write of one register, built once and patched each time.
+
+    Attributes:
+        values: (n,) integers: assign to it, then call `frames`.
+    """
+
+    values: npt.NDArray[np.int64]
+
+    def frames(self) -> list[bytes]:
+        """Return the frames to send for the present `values`."""
+        ...

@@ -1,0 +1,149 @@
+"""Protocol 1 of Dynamixel and of Feetech: frames to bytes, and status frames out of a dirty stream.
+
+A frame, with a checksum that makes its bytes from the id on sum to 255::
+
+    FF FF | id | length | instruction | parameters ... | checksum
+
+`length` counts from the instruction to the end. A status frame has an error byte in the place of
+the instruction. Nothing is stuffed, so FF FF may stand inside a frame, and one wrong frame in 256
+has a good checksum: whoever knows what he asked for should say so (`sizes`).
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from enum import IntEnum
+
+from hal.protocols.protocol2 import Span, Status
+
+HEADER = b"\xff\xff"
+BROADCAST = 0xFE
+LAST_ID = 0xFD
+OVERHEAD = 6
+"""Bytes of a status frame without parameters."""
+LONGEST_FEETECH = 250
+"""Bytes of the longest frame that feetech-servo-sdk sends."""
+LONGEST_DYNAMIXEL = 143
+"""Bytes of the receive buffer of an AX-12."""
+
+
+class Instruction(IntEnum):
+    """Instruction bytes."""
+
+    PING = 0x01
+    READ = 0x02
+    WRITE = 0x03
+    REG_WRITE = 0x04
+    ACTION = 0x05
+    FACTORY_RESET = 0x06
+    """Feetech calls it recovery."""
+    RESET_TURNS = 0x0A
+    """Feetech: forget whole turns."""
+    SYNC_READ = 0x82
+    """Feetech."""
+    SYNC_WRITE = 0x83
+    BULK_READ = 0x92
+    """Dynamixel MX."""
+
+
+def frame(id: int, instruction: int, params: bytes = b"") -> bytes:
+    """Return a whole frame; a status frame has its error byte for `instruction`.
+
+    >>> frame(1, Instruction.PING).hex(" ")
+    'ff ff 01 02 01 fb'
+    """
+    body = bytes([id, len(params) + 2, instruction]) + params
+    return HEADER + body + bytes([~sum(body) & 0xFF])
+
+
+def status(id: int, params: bytes = b"", error: int = 0) -> bytes:
+    """Return the frame that servo `id` answers with."""
+    return frame(id, error, params)
+
+
+def ping(id: int) -> bytes:
+    """Return the frame that asks one servo whether it is there."""
+    return frame(id, Instruction.PING)
+
+
+def read(id: int, address: int, size: int) -> bytes:
+    """Return the frame that reads `size` bytes at `address`."""
+    return frame(id, Instruction.READ, bytes([address, size]))
+
+
+def write(id: int, address: int, data: bytes) -> bytes:
+    """Return the frame that writes `data` at `address`."""
+    return frame(id, Instruction.WRITE, bytes([address]) + data)
+
+
+def reg_write(id: int, address: int, data: bytes) -> bytes:
+    """Return the frame that stores a write until `action`."""
+    return frame(id, Instruction.REG_WRITE, bytes([address]) + data)
+
+
+def action(id: int = BROADCAST) -> bytes:
+    """Return the frame that carries out stored writes."""
+    return frame(id, Instruction.ACTION)
+
+
+def factory_reset(id: int) -> bytes:
+    """Return the frame that puts all registers back (Feetech: recovery)."""
+    return frame(id, Instruction.FACTORY_RESET)
+
+
+def reset_turns(id: int) -> bytes:
+    """Return Feetech's frame that makes a servo forget whole turns."""
+    return frame(id, Instruction.RESET_TURNS)
+
+
+def sync_read(ids: Iterable[int], address: int, size: int) -> bytes:
+    """Return Feetech's frame that reads the same registers of several servos."""
+    return frame(BROADCAST, Instruction.SYNC_READ, bytes([address, size, *ids]))
+
+
+def sync_write(data: Mapping[int, bytes], address: int, size: int) -> bytes:
+    """Return the frame that writes `size` bytes at `address` of each id in `data`."""
+    body = b"".join(bytes([id]) + value for id, value in data.items())
+    return frame(BROADCAST, Instruction.SYNC_WRITE, bytes([address, size]) + body)
+
+
+def split_sync_write(
+    data: Mapping[int, bytes], address: int, size: int, longest: int
+) -> list[bytes]:
+    """Return as many sync writes as it takes for none to have more than `longest` bytes."""
+    items = list(data.items())
+    each = (longest - OVERHEAD - 2) // (size + 1)
+    return [
+        sync_write(dict(items[at : at + each]), address, size) for at in range(0, len(items), each)
+    ]
+
+
+def bulk_read(spans: Iterable[Span]) -> bytes:
+    """Return Dynamixel's frame that reads other registers of each servo. No id may come twice."""
+    body = b"".join(bytes([span.size, span.id, span.address]) for span in spans)
+    return frame(BROADCAST, Instruction.BULK_READ, b"\x00" + body)
+
+
+def salvage(stream: bytes, sizes: Mapping[int, int] | None = None) -> Iterator[Status]:
+    """Yield every good status frame of `stream`, whatever lies between them.
+
+    Never raises. What is no frame costs its header only: the search goes on one byte behind it, so
+    a corrupt length swallows nothing.
+
+    Args:
+        stream: The bytes.
+        sizes: Id to the bytes of parameters it was asked for; anything else is no frame. By
+            default every id and every length may be.
+    """
+    at = stream.find(HEADER)
+    while 0 <= at <= len(stream) - OVERHEAD:
+        id, length = stream[at + 2], stream[at + 3]
+        end = at + 4 + length
+        expected = length == sizes.get(id, -9) + 2 if sizes is not None else length >= 2
+        if expected and id <= LAST_ID and end <= len(stream) and _sums_up(stream[at + 2 : end]):
+            yield Status(id, stream[at + 4], stream[at + 5 : end - 1])
+            at = stream.find(HEADER, end)
+        else:
+            at = stream.find(HEADER, at + 1)
+
+
+def _sums_up(body: bytes) -> bool:
+    return sum(body) & 0xFF == 0xFF

@@ -1,0 +1,120 @@
+"""What happens once, between opening the ports of a robot and the first tick of its loop."""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from hal.backend import Clock
+from hal.bus import Bus
+from hal.clock import WallClock
+from hal.errors import UsageError
+from hal.families import family_of
+from hal.imu.opencr import POWER, POWER_UP_TIME, OpenCr
+from hal.imu.source import ImuSource
+from hal.joints import Array, Joints, Mask
+from hal.plausibility import Plausibility
+from hal.port import Port
+from hal.replug import Opener
+from hal.servo_line import ServoLine
+from hal.servo_link import BusPort, ImuLink, ServoLink
+from hal.servo_model import ServoMount
+from hal.servo_settings import assert_settings
+from hal.units import Units
+from hal.wiring import check_servos, row_groups
+
+BuildLine = Callable[[Port], ServoLine]
+
+
+def one_clock(clocks: Sequence[Clock]) -> Clock:
+    """Return the clock that all ports of a robot live on.
+
+    Raises:
+        UsageError: Some live on the wall's time and some in a virtual world, or in two worlds.
+    """
+    first = clocks[0]
+    wall = isinstance(first, WallClock)
+    for clock in clocks[1:]:
+        if clock is not first and not (wall and isinstance(clock, WallClock)):
+            raise UsageError("the buses of one robot have to live in one world, on one clock")
+    return first
+
+
+def lines_of(
+    mounts: Sequence[ServoMount], units: Units, board: OpenCr | None
+) -> dict[str, BuildLine]:
+    """Return bus name to what makes its line from its port."""
+
+    def build(name: str, rows: list[int]) -> BuildLine:
+        here = [mounts[row] for row in rows]
+        family = family_of(here[0].model.name)
+        check = None
+        if family.dialect.weak:
+            check = Plausibility(units.last[rows], units.speed[rows], units.speed_unit[rows])
+        ours = board if board is not None and board.bus == name else None
+        return lambda port: ServoLine(Bus(port, family), here, rows, ours, check)
+
+    return {name: build(name, rows) for name, rows in row_groups(mounts).items()}
+
+
+def open_links(
+    lines: Mapping[str, BuildLine],
+    ports: Mapping[str, BusPort],
+    imu: ImuSource | None,
+    watchdog: float,
+    opener: Opener,
+) -> tuple[list[ServoLink], ImuLink | None, Clock]:
+    """Return the open buses, the IMU's port if it has one, and the clock they live on.
+
+    Raises:
+        PortError: One cannot be opened; the others are closed again.
+        UsageError: They do not live on one clock.
+    """
+    links: list[ServoLink] = []
+    beside: ImuLink | None = None
+    try:
+        for name, build in lines.items():
+            links.append(ServoLink(ports[name], opener, build, watchdog))
+        if imu is not None:
+            beside = ImuLink(imu, opener)
+        clocks = [link.clock for link in (*links, beside) if link is not None]
+        return links, beside, one_clock(clocks)
+    except BaseException:
+        for link in (*links, beside):
+            if link is not None:
+                link.close()
+        raise
+
+
+def set_up(
+    joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, Bus], board: OpenCr | None
+) -> None:
+    """Give the servos power, check all of them, then write the settings that differ.
+
+    Raises:
+        HardwareError: Something is not as wired; nothing has been written.
+    """
+    if board is not None:
+        power_up(buses[board.bus], board)
+    for bus, id, settings in check_servos(joints, mounts, buses, board):
+        assert_settings(bus, id, settings)
+
+
+def power_up(bus: Bus, board: OpenCr) -> None:
+    """Give the servos power where an OpenCR switches it."""
+    if bus.read(board.id, POWER) != 1:
+        bus.write(board.id, POWER, 1)
+        clock = bus.port.clock
+        clock.wait_until(clock.now() + POWER_UP_TIME)
+
+
+def read_health(line: ServoLine, health: Array) -> None:
+    """Fill voltage and temperature of the joints of a line into (2, n); the cycle refreshes it."""
+    for row, name in enumerate(("present_voltage", "present_temperature")):
+        register = line.bus.family.registers[name]
+        counts, valid = line.bus.sync_read(line.ids, register)
+        health[row, line.rows[valid]] = counts[valid] * register.unit
+
+
+def names_of(joints: Joints, which: Mask) -> str:
+    """Return the names of some joints, with commas."""
+    return ", ".join(np.array(joints.names)[which])

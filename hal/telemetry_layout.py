@@ -1,0 +1,148 @@
+"""How the telemetry ring lies in its file, and where the file is.
+
+The numbers are little-endian::
+
+    offset  bytes  what
+    0       8      magic
+    8       16     version, offset of the first slot, number of slots, bytes of a slot
+    24      8      sequence number of the newest tick, from 1; 0 before any
+    32      4      1 when the run has ended, else 0
+    36      128    why it ended, UTF-8, zero-padded
+    164     4      bytes of the JSON that follows, a `Header`
+    168     ..     JSON
+
+and then the slots; tick s lies in slot s modulo their number. A slot is the sequence number, a
+CRC-32 of the numbers behind it (begun with the sequence number), four bytes unused, and float64
+numbers, whose names and shapes stand in the JSON.
+"""
+
+import os
+import re
+import stat
+import struct
+import tempfile
+import zlib
+from pathlib import Path
+
+import msgspec
+import numpy as np
+
+from hal.command import FIELDS
+from hal.errors import TelemetryError
+
+MAGIC = b"WINDUPTR"
+VERSION = 1
+FIXED = struct.Struct("<8sIIIIQI128sI")
+SIZES = struct.Struct("<IIII")
+SIZES_AT, HEAD_AT, ENDED_AT = 8, 24, 32
+ENDED = struct.Struct("<I128s")
+HEAD = struct.Struct("<Q")
+PAYLOAD_AT = 16
+ALIGNMENT = 64
+
+Field = tuple[str, tuple[int, ...]]
+
+
+class Header(msgspec.Struct, frozen=True, kw_only=True):
+    """What stays the same from tick to tick.
+
+    Attributes:
+        robot: Its name.
+        port: The URL of its port, or None for a twin.
+        rate_hz: Rate of the loop, Hz.
+        joints: Names of the n joints.
+        contacts: Names of the k contact sensors.
+        errors: Kinds of bus errors that are counted.
+        alerts: What the bits of `alert` mean, lowest first.
+        pid: The process that writes.
+        started: When it began, s since 1970.
+        clamps: Names of the clamps that are counted.
+    """
+
+    robot: str
+    port: str | None
+    rate_hz: float
+    joints: tuple[str, ...]
+    contacts: tuple[str, ...]
+    errors: tuple[str, ...]
+    alerts: tuple[str, ...]
+    pid: int
+    started: float
+    clamps: tuple[str, ...] = FIELDS
+
+    def fields(self) -> list[Field]:
+        """Return the names and shapes of a tick's numbers, in their order.
+
+        time s on the backend's clock, wall s since 1970, tick and missed ticks of the run,
+        tick_time s | the joints: rad, rad/s, N m, V, degrees C, s | command: target position, rad
+        | clamped: commands in which each joint was clamped | alert: bits | IMU: wxyz, rad/s,
+        m/s2 | contacts: N | base: m, wxyz, m/s, rad/s. What nobody measures is not a number.
+        """
+        n = (len(self.joints),)
+        scalars = ("time", "wall", "tick", "missed", "tick_time", "imu_age", "base_confidence")
+        joints = ("position", "velocity", "torque", "voltage", "temperature", "age")
+        return [
+            *((name, ()) for name in scalars),
+            ("clamps", (len(self.clamps),)),
+            ("errors", (len(self.errors),)),
+            *((name, n) for name in (*joints, "command", "clamped", "alert")),
+            ("contacts", (len(self.contacts),)),
+            ("imu_orientation", (4,)),
+            ("imu_angular_velocity", (3,)),
+            ("imu_acceleration", (3,)),
+            ("base_position", (3,)),
+            ("base_orientation", (4,)),
+            ("base_linear_velocity", (3,)),
+            ("base_angular_velocity", (3,)),
+        ]
+
+    def dtype(self) -> np.dtype[np.void]:
+        """Return a slot as NumPy sees it."""
+        numbers = [(name, "<f8", shape) for name, shape in self.fields()]
+        return np.dtype([("sequence", "<u8"), ("checksum", "<u4"), ("unused", "<u4"), *numbers])
+
+
+def checksum(sequence: int, payload: bytes | memoryview) -> int:
+    """Return the CRC-32 of a slot's numbers."""
+    return zlib.crc32(payload, sequence & 0xFFFFFFFF)
+
+
+def ring_path(robot: str, port: str | None = None) -> Path:
+    """Return the ring of `robot` on `port`; None is its twin.
+
+    >>> ring_path("op3", "/dev/ttyUSB0").name
+    'op3@dev_ttyUSB0-6fb529ce.ring'
+    """
+    place = "twin"
+    if port is not None:
+        plain = re.sub(r"\W+", "_", port).strip("_")[:64]
+        place = f"{plain}-{zlib.crc32(port.encode()):08x}"
+    return runtime_folder() / f"{re.sub(r'[^A-Za-z0-9_-]', '_', robot)}@{place}.ring"
+
+
+def runtime_folder() -> Path:
+    """Return the user's folder for rings, made and private.
+
+    It is best kept in memory: a disk that writes a page holds up whoever changes it.
+
+    Raises:
+        TelemetryError: It belongs to somebody else, or cannot be made.
+    """
+    folder = _runtime_base()
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        found = folder.lstat()
+    except OSError as error:
+        raise TelemetryError(f"{folder}: cannot be made: {error.strerror}") from None
+    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid():
+        raise TelemetryError(f"{folder}: is not your folder; remove it or set XDG_RUNTIME_DIR")
+    return folder
+
+
+def _runtime_base() -> Path:
+    given = os.environ.get("XDG_RUNTIME_DIR")
+    if given and Path(given).is_dir():
+        return Path(given) / "windup"
+    memory = Path("/dev/shm")
+    base = memory if os.access(memory, os.W_OK) else Path(tempfile.gettempdir())
+    return base / f"windup-{os.getuid()}"

@@ -1,0 +1,64 @@
+"""A BNO08x IMU in UART-RVC mode: it sends a frame a hundred times a second, and hears nothing.
+
+Frame: ``AA AA, index, yaw, pitch, roll, acceleration x y z, three reserved bytes, checksum``. Words
+are signed, low byte first; angles in 0.01 degrees, turned about z, then y, then x; accelerations
+in 0.001 g. The checksum is the sum of what lies between it and the header.
+"""
+
+import math
+import struct
+from functools import partial
+from typing import Final
+
+from sim_twin.wire.bus import Bus, Heard
+from sim_twin.wire.opencr import GRAVITY, ImuSource, roll_pitch_yaw
+
+HEADER: Final = b"\xaa\xaa"
+BAUD: Final = 115_200
+PERIOD: Final = 0.01  # s
+ANGLE_UNIT = math.radians(0.01)  # rad
+ACCELERATION_UNIT = 1e-3 * GRAVITY  # m/s2
+BUFFER = 4096  # bytes that a host's driver keeps
+_BODY = struct.Struct("<B6h3x")
+
+
+def encode_rvc(index: int, imu: ImuSource) -> bytes:
+    """Return the frame of what `imu` feels now."""
+    roll, pitch, yaw = roll_pitch_yaw(imu.orientation) / ANGLE_UNIT
+    words = [yaw, pitch, roll, *(imu.acceleration / ACCELERATION_UNIT)]
+    body = _BODY.pack(index & 0xFF, *(max(-32768, min(32767, round(word))) for word in words))
+    return HEADER + body + bytes((sum(body) & 0xFF,))
+
+
+class Mute:
+    """The language of who does not listen."""
+
+    id_at, length_at = 2, 2
+
+    def seal(self, frame: bytes) -> bytes:
+        """Return `frame` with its checksum."""
+        return frame[:-1] + bytes((sum(frame[2:-1]) & 0xFF,))
+
+    def feed(self, chunk: bytes) -> list[Heard]:
+        """Hear nothing."""
+        return []
+
+    def reset(self) -> None:
+        """Nothing has begun."""
+
+    def execute(self, frame: Heard, bus: Bus) -> bool:
+        """Do nothing."""
+        return False
+
+
+def start_rvc(bus: Bus, imu: ImuSource, start: float = PERIOD) -> None:
+    """Let an IMU send on `bus` from `start` s on, for ever."""
+    bus.schedule.at(start, partial(_send, bus, imu, 0, start))
+
+
+def _send(bus: Bus, imu: ImuSource, count: int, start: float) -> None:
+    if bus.queued > BUFFER:
+        bus.discard()
+    bus.answer(encode_rvc(count, imu), BAUD, count & 0xFF)
+    count += 1
+    bus.schedule.at(start + count * PERIOD, partial(_send, bus, imu, count, start))

@@ -1,0 +1,20 @@
+import pytest
+from hypothesis import settings
+
+from robots import RobotDescription, load_robot
+
+pytest_plugins = ["pytester"]
+
+# The same examples on every machine, and no clock in them.
+settings.register_profile("windup", deadline=None, database=None, derandomize=True, max_examples=40)
+settings.load_profile("windup")
+
+
+@pytest.fixture(scope="session")
+def op3() -> RobotDescription:
+    return load_robot("op3")
+
+
+@pytest.fixture(scope="session")
+def human() -> RobotDescription:
+    return load_robot("human")

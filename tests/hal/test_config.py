@@ -1,0 +1,71 @@
+from pathlib import Path
+
+import pytest
+
+from hal.config import Record, load_toml
+from hal.errors import ConfigError
+
+
+class Wheel(Record, frozen=True):
+    radius: float
+    spokes: int = 8
+
+
+class Cart(Record, frozen=True):
+    name: str
+    wheels: list[Wheel] = []
+
+
+GOOD = 'name = "cart"\nwheels = [{ radius = 0.5 }]\n'
+
+
+def load(folder: Path, text: str) -> Cart:
+    path = folder / "cart.toml"
+    path.write_text(text)
+    return load_toml(path, Cart)
+
+
+def test_a_file_becomes_a_typed_record(tmp_path: Path) -> None:
+    assert load(tmp_path, GOOD) == Cart(name="cart", wheels=[Wheel(radius=0.5)])
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('nam = "cart"', "unknown key 'nam'; did you mean 'name'? known: name, radius, spokes, "),
+        (
+            'name = "cart"\nwheels = [{ radius = 1.0, spoke = 3 }]',
+            "unknown key 'wheels[0].spoke'; did you mean 'spokes'? known: name, radius, spokes, ",
+        ),
+        ("name = 3", "name: Expected `str`, got `int`"),
+        (
+            'name = "cart"\nwheels = [{ radius = "big" }]',
+            "wheels[0].radius: Expected `float`, got `str`",
+        ),
+        ("", "missing required field `name`"),
+        ('name = "cart', "not TOML: "),
+    ],
+    ids=["unknown key", "unknown key inside", "wrong type", "wrong type inside", "missing", "TOML"],
+)
+def test_what_does_not_fit_is_one_line_with_file_and_key(
+    tmp_path: Path, text: str, message: str
+) -> None:
+    with pytest.raises(ConfigError) as error:
+        load(tmp_path, text)
+    assert str(error.value).startswith(f"{tmp_path / 'cart.toml'}: ")
+    assert message in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_missing_file_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "none.toml"
+    with pytest.raises(ConfigError) as error:
+        load_toml(path, Cart)
+    assert str(error.value) == f"{path}: cannot be read: No such file or directory"
+
+
+def test_a_file_that_is_no_text_is_an_error_of_ours(tmp_path: Path) -> None:
+    path = tmp_path / "cart.toml"
+    path.write_bytes(b'name = "\xff\xfe"')
+    with pytest.raises(ConfigError, match="not TOML"):
+        load_toml(path, Cart)

@@ -1,0 +1,37 @@
+import pytest
+
+from hal import errors
+from hal.errors import UnknownNameError, WindupError, suggest
+
+
+@pytest.mark.parametrize(
+    ("kind", "status"),
+    [
+        (errors.WindupError, 1),
+        (errors.UnsafeCommandError, 1),
+        (errors.DivergedError, 1),
+        (errors.ConfigError, 2),
+        (errors.UsageError, 2),
+        (errors.StateMissingError, 2),
+        (errors.UnknownNameError, 2),
+        (errors.StaleStateError, 3),
+        (errors.HardwareError, 3),
+    ],
+)
+def test_every_error_knows_its_exit_status(kind: type[WindupError], status: int) -> None:
+    assert issubclass(kind, WindupError)
+    assert kind.exit_status == status
+
+
+def test_every_error_of_the_stack_is_a_windup_error() -> None:
+    own = [kind for kind in vars(errors).values() if isinstance(kind, type)]
+    assert all(issubclass(kind, WindupError) for kind in own if issubclass(kind, Exception))
+
+
+def test_a_likely_word_is_offered_only_where_there_is_one() -> None:
+    assert suggest("knee", ["l_knee", "neck"]) == "; did you mean 'l_knee'? known: l_knee, neck"
+    assert suggest("zzz", ["b", "a"]) == "; known: a, b"
+    assert suggest("zzz", []) == "; known: none"
+    assert str(UnknownNameError("pose", "stnd", ["stand"])) == (
+        "unknown pose 'stnd'; did you mean 'stand'? known: stand"
+    )

@@ -1,0 +1,158 @@
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from hal.command import FIELDS, JointCommand
+from hal.errors import HardwareError, StaleStateError, UnsafeCommandError
+from hal.guard import GuardedBackend, SafetyLimits, StopPolicy
+from hal.joints import Joint, Joints
+from tests.small_world import JOINTS, FakeBackend, N
+
+
+def guarded(stop: StopPolicy = "limp", crouch: float | None = None) -> GuardedBackend:
+    pose = None if crouch is None else np.full(N, crouch)
+    return GuardedBackend(FakeBackend(), SafetyLimits.of(JOINTS), stop, pose)
+
+
+def fake(guard: GuardedBackend) -> FakeBackend:
+    assert isinstance(guard.backend, FakeBackend)
+    return guard.backend
+
+
+def hold(change: Callable[[JointCommand], None] = lambda command: None) -> JointCommand:
+    command = JointCommand.hold(JOINTS, np.full(N, 0.5))
+    change(command)
+    return command
+
+
+def test_a_command_within_the_limits_passes_as_it_is() -> None:
+    guard = guarded()
+    command = hold()
+    np.testing.assert_array_equal(guard.write(command).block, command.block)
+    assert guard.clamps == dict.fromkeys(FIELDS, 0)
+
+
+@pytest.mark.parametrize(
+    ("name", "joint", "value", "got"),
+    [
+        ("position", 1, 1.5, 1.0),
+        ("position", 2, -0.5, 0.0),
+        ("velocity", 0, 9.0, 5.0),
+        ("velocity", 0, -9.0, -5.0),
+        ("torque", 3, 5.0, 4.0),
+        ("stiffness", 0, 1000.0, 80.0),
+        ("stiffness", 0, -1.0, 0.0),
+        ("damping", 4, 100.0, 4.0),
+    ],
+)
+def test_every_clamp_has_a_name_and_a_counter(
+    name: str, joint: int, value: float, got: float
+) -> None:
+    guard = guarded()
+    row = FIELDS.index(name)
+    command = hold()
+    command.block[row, joint] = value
+    for _ in range(3):
+        real = guard.write(command)
+    assert real.block[row, joint] == got
+    assert guard.clamps == {**dict.fromkeys(FIELDS, 0), name: 3}
+    np.testing.assert_array_equal(guard.clamped_joints, 3.0 * (np.arange(N) == joint))
+    assert command.block[row, joint] == value, "the caller's own command is left alone"
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_what_is_no_number_is_refused_and_not_sent(value: float) -> None:
+    guard = guarded()
+    command = hold()
+    command.block[2, 4] = value
+    with pytest.raises(UnsafeCommandError) as error:
+        guard.write(command)
+    assert str(error.value) == f"the controller asked joint 'r_knee' for torque {value}; refused"
+    assert fake(guard).written == []
+
+
+def test_infinity_is_refused_at_a_joint_without_a_limit_too() -> None:
+    free = Joints((Joint("hip", -1.0, 1.0, stiffness=1.0, damping=1.0),))
+    backend = FakeBackend(joints=free)
+    guard = GuardedBackend(backend, SafetyLimits.of(free))
+    command = JointCommand.hold(free, np.zeros(1))
+    command.block[FIELDS.index("torque")] = np.inf
+    with pytest.raises(UnsafeCommandError, match="asked joint 'hip' for torque inf; refused"):
+        guard.write(command)
+    assert backend.written == []
+
+
+@pytest.mark.parametrize("shape", [(5, N + 1), (4, N), (N,), (1, 5, N)])
+def test_a_command_of_another_shape_is_refused(shape: tuple[int, ...]) -> None:
+    guard = guarded()
+    with pytest.raises(UnsafeCommandError) as error:
+        guard.write(JointCommand(np.zeros(shape)))
+    assert str(error.value) == (f"a command of shape {shape} for {N} joints; it has to be {(5, N)}")
+    assert fake(guard).written == []
+
+
+def test_a_joint_that_has_not_answered_for_too_long_is_named() -> None:
+    guard = guarded()
+    fake(guard).age[3] = 0.25
+    guard.read()
+    fake(guard).age[3] = 0.3
+    with pytest.raises(StaleStateError) as error:
+        guard.read()
+    assert str(error.value) == (
+        "joint 'r_hip' has not answered for 0.30 s (limit 0.25 s); check its cable and power, "
+        "then run `windup health`"
+    )
+
+
+def test_stop_hold_keeps_the_pose_last_read_with_the_torque_on() -> None:
+    guard = guarded("hold")
+    fake(guard).position = np.full(N, 0.7)
+    guard.read()
+    assert guard.stop().all()
+    last = fake(guard).written[-1]
+    np.testing.assert_array_equal(last.position, np.full(N, 0.7))
+    np.testing.assert_array_equal(last.stiffness, JOINTS.stiffness)
+    assert fake(guard).powered
+
+
+def test_stop_hold_does_not_ask_for_a_pose_outside_the_limits() -> None:
+    guard = guarded("hold")
+    fake(guard).position = np.full(N, 3.0)
+    guard.stop()
+    np.testing.assert_array_equal(fake(guard).written[-1].position, JOINTS.upper)
+
+
+def test_stop_limp_switches_the_torque_off_at_once() -> None:
+    guard = guarded("limp")
+    assert not guard.stop().any()
+    assert not fake(guard).powered
+    assert fake(guard).written == []
+    assert fake(guard).clock.now() == 0.0
+
+
+def test_stop_crouch_glides_there_and_then_goes_limp() -> None:
+    guard = guarded("crouch", crouch=0.8)
+    guard.read()
+    assert not guard.stop().any()
+    way = np.array([command.position[0] for command in fake(guard).written])
+    assert way[0] == 0.0
+    assert way[-1] == pytest.approx(0.8, abs=1e-3)
+    assert (np.diff(way) > 0.0).all()
+    assert np.diff(way).max() < 0.01, "no jump"
+    assert fake(guard).clock.now() == pytest.approx(1.5, abs=0.01)
+    assert not fake(guard).powered
+
+
+def test_a_stop_may_be_told_another_policy_than_the_robots_own() -> None:
+    guard = guarded("hold")
+    assert not guard.stop("limp").any()
+    assert not fake(guard).powered
+
+
+def test_stop_names_the_joints_whose_torque_stays_on() -> None:
+    guard = guarded("limp")
+    fake(guard).stuck[[1, 4]] = True
+    with pytest.raises(HardwareError) as error:
+        guard.stop()
+    assert str(error.value) == "torque is still on at l_hip, r_knee; cut the servo power"

@@ -1,0 +1,46 @@
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from tools.cli import run
+from tools.robot import Robot
+
+
+def test_the_estimate_of_a_walking_and_pushed_op3_is_within_its_limits(tmp_path: Path) -> None:
+    target = tmp_path / "estimate.json"
+    status = run(
+        ["estimate", "op3", "--steps", "12", "--pushes", "2", "--json", str(target)],
+    )
+    result = json.loads(target.read_text())
+    assert status == 0 and result["passed"]
+    assert {(row["trial"], row["state"]) for row in result["rows"]} == {
+        (trial, state)
+        for trial in ("stand", "pushed", "walk", "walk pushed")
+        for state in ("true", "estimated")
+    }
+    for row in result["rows"]:
+        assert row["attitude_rms_deg"] <= 1.0
+        assert row["velocity_rms_m_s"] <= 0.03
+
+
+def test_an_estimate_over_its_limits_fails(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tools.estimate.VELOCITY_LIMIT", 1e-6)
+    monkeypatch.setattr("tools.estimate.TRIALS", ("stand",))
+    assert run(["estimate", "op3"]) == 1
+
+
+@pytest.mark.parametrize("switches", [True, False])
+@pytest.mark.parametrize(("rate", "delay"), [(None, None), (125.0, 0.016)])
+def test_op3_walks_on_its_own_sensors(
+    switches: bool, rate: float | None, delay: float | None
+) -> None:
+    from tools.build import build_estimator
+
+    with Robot.open("op3", rate=rate, delay=delay, noise=0.2, state="estimated") as robot:
+        estimator = build_estimator(robot.description, switches=switches)
+        robot.stack = replace(robot.stack, estimator=estimator)
+        report = robot.walk(steps=30)
+    assert report.done
+    assert report.speed is not None and report.speed > 0.15

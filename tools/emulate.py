@@ -1,0 +1,70 @@
+"""`windup emulate`: serve a robot's emulated servo buses to other programs, in real time."""
+
+import signal
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from hal.errors import UsageError
+from sim_twin.wire import Address, parse_address
+from sim_twin.wire.address import SCHEME
+from sim_twin.wire.emulate import Emulator, Outlet, emulate
+from tools.output import console
+
+
+@dataclass(frozen=True, kw_only=True)
+class Emulate:
+    """Serve the servos of a robot's twin to any program, until Ctrl-C."""
+
+    robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
+    """A robot's name, the path of its folder, or a whole twin:// URL (twin://bench?servos=...)."""
+    pty: Path | None = None
+    """Serve on a pseudo-terminal, to be found under this path."""
+    tcp: int | None = None
+    """Serve on this TCP port of this machine; 0: any."""
+    faults: str = ""
+    """What goes wrong: drop:0.01,unplug:at=5:seconds=1,...; see docs of `sim_twin.wire.faults`."""
+    seed: int = 0
+    """Seed of the faults."""
+    supply: float | None = None
+    """Voltage of the servos, V; the robot's own by default."""
+
+    def run(self) -> int:
+        """Serve; returns the exit status."""
+        if self.supply is not None and not self.supply > 0.0:
+            raise UsageError(f"--supply {self.supply:g}: give more than 0 V")
+        emulate(self._address(), self.pty, self.tcp, on_ready=_on_ready)
+        console.print("windup emulate: stopped")
+        return 0
+
+    def _address(self) -> Address:
+        """Return the world to serve; options win over the URL."""
+        url = self.robot if "://" in self.robot else f"{SCHEME}://{self.robot}"
+        address = parse_address(url)
+        return replace(
+            address,
+            clock="real",
+            faults=self.faults or address.faults,
+            seed=self.seed or address.seed,
+            supply=address.supply if self.supply is None else self.supply,
+        )
+
+
+def _on_ready(emulator: Emulator) -> None:
+    """Say where it serves, and end cleanly when told to."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: emulator.stop())
+    for outlet in emulator.outlets:
+        console.print(_describe(outlet), markup=False, soft_wrap=True)
+    console.print("Ctrl-C ends it", markup=False)
+
+
+def _describe(outlet: Outlet) -> str:
+    bus = outlet.bus
+    if not bus.devices:
+        what = f"bus {bus.name!r} (it sends by itself at {bus.baud} baud)"
+        return f"{what} on {outlet.name}; try: python -m serial.tools.miniterm {outlet.name}"
+    what = f"bus {bus.name!r} ({len(bus.devices)} devices at {bus.baud} baud)"
+    return f"{what} on {outlet.name}; try: windup scan {outlet.name} --baud {bus.baud}"

@@ -1,0 +1,64 @@
+"""Laszlo 1996, chapters 3 to 5: one module a group of figures."""
+
+from pathlib import Path
+
+import control
+import robots
+import sim_twin
+from tools.reproduce.figure import Study
+from tools.reproduce.laszlo import (
+    discrete,
+    open_loop,
+    phase,
+    ranges,
+    responses,
+    speed,
+    stance_com,
+    step_length,
+    turning,
+    work,
+)
+
+
+def _here(package: object) -> Path:
+    return Path(str(getattr(package, "__file__", ""))).parent
+
+
+LASZLO = Study(
+    name="laszlo",
+    title="Limit-cycle walking: Laszlo 1996 again",
+    source="J. Laszlo, Controlling Bipedal Locomotion for Computer Animation, University of "
+    "Toronto, 1996, chapters 3 to 5.",
+    setting="The thesis' human of 19 joints on its base graph (appendix C), balanced as the thesis "
+    "does it: stance hip pitch and roll once a step, two samples each. No heading is held, as in "
+    "the thesis. Unlike there, every run begins with 0.2 degrees of noise on the start pose, "
+    "and ranges come from several seeds. Turns are by the gait's own turning perturbation, which "
+    "may differ from the thesis' (Fig. 5.5).",
+    figures=(
+        *open_loop.FIGURES,
+        *responses.FIGURES,
+        *phase.FIGURES,
+        *ranges.FIGURES,
+        *discrete.FIGURES,
+        *step_length.FIGURES,
+        *stance_com.FIGURES,
+        *speed.FIGURES,
+        *turning.FIGURES,
+    ),
+    work=work.work,
+    sources=(
+        _here(control),
+        _here(sim_twin),
+        _here(robots) / "human",
+        Path(work.__file__),
+        Path(work.__file__).with_name("recorder.py"),
+        Path(work.__file__).with_name("laws.py"),
+    ),
+    missing={
+        "3.9": "running by hold times of 0.1 s: this human does not run yet",
+        "4.17, 4.18": "running: the robo-bird is not among the robots of this version",
+        "5.10, 5.11": "the walk has no point and path following in this version",
+        "5.12 - 5.14": "the walk has no stride rate in this version",
+        "5.15 - 5.20": "the walk has no styles and blends in this version",
+    },
+)

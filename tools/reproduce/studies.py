@@ -1,0 +1,10 @@
+"""The papers that can be reproduced. A new one is a package beside `laszlo` and a line here."""
+
+from tools.reproduce.figure import Study
+
+
+def studies() -> dict[str, Study]:
+    """Return the papers by name; loaded only when somebody asks."""
+    from tools.reproduce.laszlo import LASZLO
+
+    return {study.name: study for study in (LASZLO,)}

@@ -1,0 +1,190 @@
+"""A session on a backend: arm, run controllers in the loop, and stop whatever happens."""
+
+import logging
+from collections.abc import Callable
+from contextlib import nullcontext
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from control.loop import LoopReport, Until, run_loop
+from hal.clock import punctual
+from hal.controller import Controller, Stopwatch
+from hal.errors import (
+    ControllerError,
+    HardwareError,
+    TelemetryError,
+    UsageError,
+    WindupError,
+)
+from hal.guard import GuardedBackend
+from hal.observation import BaseState, Observation
+from hal.telemetry import TelemetryWriter
+from robots import RobotDescription
+from sim_twin.backend import TwinClock
+from tools.stack import Stack
+
+# Called once a tick with the observation.
+Watch = Callable[[Observation], None]
+
+
+@dataclass
+class Session:
+    """A stack that controllers run on.
+
+    Attributes:
+        description: What robot it is.
+        stack: Its backend and what belongs to it.
+        period: Period of the control loop, s.
+        paced: Its time is real time.
+        loop: Report of the last run.
+        watch: Called with every observation, for whoever draws or logs.
+        base: Base state last seen: the truth on a twin, an estimate on a robot.
+        telemetry: Where everybody else can read how it goes, once it runs.
+    """
+
+    description: RobotDescription
+    stack: Stack
+    period: float
+    paced: bool = False
+    loop: LoopReport = field(default_factory=LoopReport, init=False)
+    watch: Watch | None = field(default=None, init=False)
+    base: BaseState | None = field(default=None, init=False)
+    telemetry: TelemetryWriter | None = field(default=None, init=False)
+    armed: bool = field(default=False, init=False)
+
+    @property
+    def backend(self) -> GuardedBackend:
+        """The guarded backend."""
+        return self.stack.backend
+
+    @property
+    def fallen(self) -> bool:
+        """True when the robot has fallen."""
+        if self.stack.twin is not None:
+            return self.stack.twin.fallen
+        if self.base is None:
+            return False
+        fall = self.description.fall
+        _, x, y, _ = self.base.orientation
+        tilted = 1.0 - 2.0 * (x * x + y * y) < np.cos(fall.tilt)
+        return bool(self.base.position[2] < fall.height or tilted)
+
+    def arm(self) -> None:
+        """Switch the torque on at the present pose, where there are servos to switch.
+
+        Raises:
+            UsageError: The port is real and `arm` was not given; nothing has moved.
+            HardwareError: A servo did not take it; all torque is off again.
+        """
+        if self.armed or not self.stack.wired:
+            return
+        if not self.stack.may_arm:
+            raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
+        self.armed = True
+        on = self.backend.set_torque(True)
+        if not on.all():
+            names = ", ".join(np.array(self.description.joints.names)[~on])
+            raise HardwareError(f"torque does not come on at {names}; run `windup scan`")
+
+    def stop(self, *, limp: bool = False) -> None:
+        """Carry out the stop policy at once; with `limp`, just switch the torque off.
+
+        Raises:
+            HardwareError: Torque was told to go off and a joint read back on.
+        """
+        on = self.backend.stop("limp" if limp else None)
+        self.armed = bool(on.any())
+
+    def run(
+        self,
+        controller: Controller,
+        seconds: float | None = None,
+        *,
+        until: Until | None = None,
+        rollouts: Stopwatch | None = None,
+    ) -> LoopReport:
+        """Run a controller until the time is over, `until` gives a reason, or the robot falls.
+
+        Args:
+            controller: The controller.
+            seconds: How long, s of the backend's clock; for ever if None.
+            until: Called with each observation; a reason ends the run.
+            rollouts: Time to leave out of the ticks.
+
+        Raises:
+            WindupError: From the guard, the backend or the controller; the stop policy has run.
+        """
+        self.arm()
+        begin = self.backend.clock.now()
+
+        def end(observation: Observation) -> str | None:
+            self.base = observation.base
+            if self.watch is not None:
+                self.watch(observation)
+            if self.fallen:
+                return "fell"
+            if until is not None and (reason := until(observation)) is not None:
+                return reason
+            over = seconds is not None and observation.time >= begin + seconds - 1e-9
+            return "done" if over else None
+
+        self.loop = LoopReport()
+        self._publish()
+        try:
+            with punctual() if self.paced else nullcontext():
+                if isinstance(self.backend.clock, TwinClock):
+                    self.backend.clock.align()
+                run_loop(
+                    self.backend,
+                    controller,
+                    period=self.period,
+                    until=end,
+                    estimator=self.stack.estimator,
+                    rollouts=rollouts,
+                    report=self.loop,
+                    recorder=self.telemetry,
+                )
+        except WindupError as error:
+            self.loop.reason = str(error)
+            self._stop_after_error()
+            raise
+        except KeyboardInterrupt:
+            self.loop.reason = "interrupted"
+            self._stop_after_error()
+            raise
+        except Exception as error:
+            self.loop.reason = f"the controller failed: {type(error).__name__}: {error}"
+            self._stop_after_error()
+            raise ControllerError(self.loop.reason) from error
+        finally:
+            if self.telemetry is not None:
+                self.telemetry.end(self.loop.reason)
+        return self.loop
+
+    def _publish(self) -> None:
+        """Say to everybody that a run begins; a robot runs without them all the same."""
+        try:
+            self.telemetry = self.telemetry or TelemetryWriter(
+                self.description.name,
+                self.backend,
+                self.description.contacts,
+                1.0 / self.period,
+                port=self.stack.port,
+            )
+            self.telemetry.begin()
+        except TelemetryError as error:
+            logging.getLogger(__name__).warning("no telemetry: %s", error)
+
+    def _stop_after_error(self) -> None:
+        """Carry out the stop policy; a twin that has diverged can no longer do it."""
+        try:
+            self.stop()
+        except WindupError as error:
+            self.loop.reason += f"; and the stop failed: {error}"
+
+    def close(self) -> None:
+        """Disconnect; call it when the torque is off."""
+        self.stack.close()
+        if self.telemetry is not None:
+            self.telemetry.close()

@@ -1,0 +1,115 @@
+"""`windup sweep`: any command over a grid of its options, or at random ones."""
+
+import shlex
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from hal.errors import UsageError
+from tools.output import check_writable, console
+from tools.parallel import side_by_side
+from tools.sweep_grid import parse_axis, points
+from tools.sweep_run import Run, check_line, play
+from tools.sweep_table import Row, Table, open_table
+
+OWN = ("--grid", "--random", "--seed", "--seeds", "--out", "--jobs")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sweep:
+    """Run a command at many values of its options; one row for each run.
+
+    Rows that are in the file already are not run again: after Ctrl-C, or with a larger grid, the
+    same line goes on where it was.
+
+    windup sweep walk human --rv up --grid target=.1:.4:7 --grid sampling=sp,fl,lf --seeds 8 --out
+    walks.csv
+    """
+
+    line: Annotated[tuple[str, ...], tyro.conf.Positional, tyro.conf.arg(metavar="COMMAND ARGS")]
+    """The command and its options; all that is not an option of the sweep's own."""
+    grid: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
+    """An option and its values: name=v1,v2,.. or name=low:high:count; join several values of one
+    option with '+'. May stand often."""
+    random: int | None = None
+    """Draw this many random points from the grid's ranges and lists, instead of all of them."""
+    seed: int = 0
+    """Seed of the random points."""
+    seeds: int = 1
+    """Run seeds 0 .. N-1 at each point."""
+    out: Path
+    """File for the rows, .csv or .parquet."""
+    jobs: int | None = None
+    """Processes; one a core by default."""
+
+    def run(self) -> int:
+        """Sweep; returns 1 if a run ended in an error, else 0."""
+        if self.seeds < 1:
+            raise UsageError(f"--seeds {self.seeds}: give 1 or more")
+        axes = [parse_axis(text) for text in self.grid]
+        places = points(axes, self.random, self.seed)
+        check_line(list(self.line), axes)
+        check_writable(self.out)
+        table = open_table(self.out)
+        command = shlex.join(self.line)
+        runs = [Run(command, place, seed) for place in places for seed in range(self.seeds)]
+        todo = list(_missing(runs, table.rows))
+        console.print(f"{len(runs)} runs, {len(runs) - len(todo)} of them in {self.out} already")
+        errors = self._collect(table, todo)
+        console.print(f"rows: {self.out}", markup=False)
+        if errors:
+            console.print(
+                f"{len(errors)} runs ended in an error, the first: {errors[0]}", markup=False
+            )
+        return 1 if errors else 0
+
+    def _collect(self, table: Table, todo: list[Run]) -> list[str]:
+        """Run what is missing, put each row into the table, and return the errors."""
+        errors = []
+        try:
+            for _, row in side_by_side(play, todo, label="runs", jobs=self.jobs):
+                table.append(row)
+                if row["error"] is not None:
+                    errors.append(row["error"])
+        finally:
+            if todo:
+                table.close()
+        return errors
+
+
+def _missing(runs: list[Run], rows: list[Row]) -> Iterator[Run]:
+    """Yield the runs that have no row, each once."""
+    names = list(runs[0].key)
+    seen = {tuple(row.get(name) for name in names) for row in rows}
+    for run in runs:
+        key = tuple(run.key.values())
+        if key not in seen:
+            seen.add(key)
+            yield run
+
+
+def separate(arguments: list[str] | None) -> list[str]:
+    """Return the command line with a sweep's own options before those of its command.
+
+    >>> separate(["sweep", "walk", "op3", "--rv", "up", "--out", "a.csv"])
+    ['sweep', '--out', 'a.csv', '--', 'walk', 'op3', '--rv', 'up']
+    """
+    arguments = list(sys.argv[1:] if arguments is None else arguments)
+    if arguments[:1] != ["sweep"] or "--" in arguments:
+        return arguments
+    if {"-h", "--help"} & set(arguments):
+        return ["sweep", "--help"]
+    own, line = [], []
+    rest = iter(arguments[1:])
+    for word in rest:
+        if word in OWN:
+            own += [word, *(value for value in [next(rest, None)] if value is not None)]
+        elif word.partition("=")[0] in OWN:
+            own.append(word)
+        else:
+            line.append(word)
+    return ["sweep", *own, *(["--", *line] if line else [])]

@@ -1,0 +1,171 @@
+"""The file of a sweep: rows that outlive Ctrl-C, as CSV or Parquet."""
+
+import csv
+import io
+from os import replace
+from pathlib import Path
+from time import monotonic
+from typing import Any, Protocol
+
+from hal.errors import UsageError
+
+Row = dict[str, Any]
+KEY = ("command", "seed")  # columns that every row has
+EVERY = 5.0  # s between writes of a Parquet file, which cannot be appended to
+
+
+class Table(Protocol):
+    """Rows in a file."""
+
+    rows: list[Row]
+
+    def append(self, row: Row) -> None:
+        """Add a row; it is in the file at once, or soon after."""
+        ...
+
+    def close(self) -> None:
+        """See to it that every row is in the file."""
+        ...
+
+
+def open_table(path: Path) -> Table:
+    """Return the table at `path` with the rows that are there already.
+
+    Raises:
+        UsageError: The suffix is another one, or the file is no sweep's.
+    """
+    if path.suffix == ".csv":
+        return CsvTable(path)
+    if path.suffix == ".parquet":
+        return ParquetTable(path)
+    raise UsageError(f"--out {path}: name it .csv or .parquet")
+
+
+def typed(text: str) -> Any:
+    """Return what a cell stands for.
+
+    >>> [typed(text) for text in ("", "true", "3", "0.25", "sp")]
+    [None, True, 3, 0.25, 'sp']
+    """
+    if text in ("true", "false", ""):
+        return {"true": True, "false": False}.get(text)
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
+
+
+class CsvTable:
+    """A CSV file, appended to row by row; rewritten whole only for a column that is new.
+
+    Args:
+        path: The file; it need not be there.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        text = path.read_text(encoding="utf-8") if path.exists() else ""
+        whole = text[: text.rfind("\n") + 1]  # without a row that a kill has torn
+        reader = csv.DictReader(io.StringIO(whole))
+        self.columns = list(reader.fieldnames or [])
+        self.rows: list[Row] = [{k: typed(v or "") for k, v in row.items()} for row in reader]
+        _check(path, self.columns, empty=not text)
+        if whole != text:
+            self._write_all()
+
+    def append(self, row: Row) -> None:
+        """Add a row; it is in the file when this returns."""
+        self.rows.append(row)
+        new = [name for name in row if name not in self.columns]
+        if new:
+            self.columns += new
+            self._write_all()
+            return
+        with self.path.open("a", encoding="utf-8", newline="") as file:
+            file.write(self._text([row]))
+
+    def close(self) -> None:
+        """Do nothing: every row is in the file."""
+
+    def _write_all(self) -> None:
+        whole = self.path.with_name(self.path.name + ".new")
+        header = _line(self.columns)
+        whole.write_text(header + self._text(self.rows), encoding="utf-8", newline="")
+        replace(whole, self.path)
+
+    def _text(self, rows: list[Row]) -> str:
+        return "".join(_line([_cell(row.get(name)) for name in self.columns]) for row in rows)
+
+
+class ParquetTable:
+    """A Parquet file, rewritten every few seconds and at the end.
+
+    Args:
+        path: The file; it need not be there.
+
+    Raises:
+        UsageError: polars is not installed, or the file is no sweep's.
+    """
+
+    def __init__(self, path: Path) -> None:
+        try:
+            import polars
+        except ImportError:
+            raise UsageError(
+                f"--out {path}: Parquet needs polars: pip install 'windup[sweep]', or name it .csv"
+            ) from None
+        self._polars = polars
+        self.path = path
+        self.rows: list[Row] = []
+        self._written = monotonic()
+        if path.exists():
+            try:
+                frame = polars.read_parquet(path)
+            except polars.exceptions.PolarsError as error:
+                raise UsageError(f"--out {path}: {str(error).splitlines()[0]}") from None
+            _check(path, frame.columns, empty=False)
+            self.rows = frame.to_dicts()
+
+    def append(self, row: Row) -> None:
+        """Add a row; it is in the file within a few seconds."""
+        self.rows.append(row)
+        if monotonic() > self._written + EVERY:
+            self.close()
+
+    def close(self) -> None:
+        """Write all rows."""
+        whole = self.path.with_name(self.path.name + ".new")
+        names = list(dict.fromkeys(name for row in self.rows for name in row))
+        columns = {name: _column([row.get(name) for row in self.rows]) for name in names}
+        self._polars.DataFrame(columns, strict=False).write_parquet(whole)
+        replace(whole, self.path)
+        self._written = monotonic()
+
+
+def _check(path: Path, columns: list[str], *, empty: bool) -> None:
+    if not empty and not set(KEY) <= set(columns):
+        raise UsageError(f"--out {path}: this file is no sweep's; name another one")
+
+
+def _column(values: list[Any]) -> list[Any]:
+    """Return a column of one type: text where numbers and words are mixed."""
+    kinds = {type(value) for value in values if value is not None}
+    if str in kinds and len(kinds) > 1:
+        return [None if value is None else _cell(value) for value in values]
+    return values
+
+
+def _line(cells: list[str]) -> str:
+    buffer = io.StringIO()
+    csv.writer(buffer, lineterminator="\n").writerow(cells)
+    return buffer.getvalue()
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return " ".join(str(value).splitlines())  # a row is one line
