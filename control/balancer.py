@@ -11,13 +11,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from control.body import Body
-from control.course import Course
 from control.gait import Gait
 from control.planner import Planner, StepRequest
 from control.policy import policy_input
 from control.pose_tracker import PoseTracker
 from control.regulation import RegulationVariable
-from control.speed import SpeedControl
+from control.shaken import Shaken
+from control.steering import Steering
 from control.step_record import StepRecord, StepStart
 from control.torso_servo import TorsoServo
 from hal.command import JointCommand
@@ -42,11 +42,12 @@ class Balancer:
         regulation: The r regulation variables.
         perturbations: Names of the r perturbations that control them.
         planner: Chooses their scalings, or None for open loop.
+        steering: Speed, side, course and style.
         targets: Targets by name of the regulation variable.
-        fixed_targets: Targets that win over the speed table, by name.
-        speed: Speed table and feedback.
-        course: Heading hold, or None.
+        fixed_targets: Targets that win over the steering's, by name.
         torso_servo: The torso servo, or None.
+        shaken: Says when a step has to be planned again, or None.
+        replans: How often that was.
         records: Finished steps.
         late: Steps whose answer came too late to act in time, or never.
     """
@@ -58,11 +59,12 @@ class Balancer:
     regulation: list[RegulationVariable]
     perturbations: list[str]
     planner: Planner | None
-    speed: SpeedControl
+    steering: Steering
     targets: dict[str, float] = field(default_factory=dict)
     fixed_targets: dict[str, float] = field(default_factory=dict)
-    course: Course | None = None
     torso_servo: TorsoServo | None = None
+    shaken: Shaken | None = None
+    replans: int = field(default=0, init=False)
     records: list[StepRecord] = field(default_factory=list, init=False)
     late: int = field(default=0, init=False)
 
@@ -91,7 +93,10 @@ class Balancer:
         self._asked = False
         self._kept: dict[int, Array] = {}
         self._turned = 0.0
-        self.speed.reset()
+        self.steering.reset()
+        self.replans = 0
+        if self.shaken is not None:
+            self.shaken.reset()
         self.records.clear()
         self.late = 0
         if self.planner is not None:
@@ -105,6 +110,8 @@ class Balancer:
             here = self.body.measure(observation)
             self._end_step(observation.time, here, self._start)
             self._begin_step(observation, here, dt)
+        elif self.shaken is not None:
+            self._look_again(observation, self._start, self.shaken, dt)
         if self._asked:
             self._take_answer(observation.time)
         goals = self._tracker.step(policy_input(observation), dt)[0]
@@ -118,21 +125,38 @@ class Balancer:
         """Remember where the step begins and ask for its scalings."""
         start = StepStart(observation.time, int(self._tracker.stance()[0]), here)
         self._start = start
-        self.speed.begin_step()
-        scale = self.speed.scale()
-        if self.course is not None:
-            turn = self.gait.index(self.course.perturbation)
-            scale[turn] += self.course.scale(start.heading, start.position)
-        self._target = self._wanted()
+        self.steering.begin_step(start)
+        scale = self.steering.scale(start)
+        self._target = self._wanted(start)
         self._scale = scale
         if self.planner is None:
             self._tracker.rescale(scale[None])
             return
         self.late += self._asked
-        flight = RolloutStart(observation, np.array(self._sent), dt)
         before = self._before(start.stance)
         self._tracker.rescale(before[None])
-        request = StepRequest(flight, self._tracker.now, start.stance, scale, before, self._target)
+        self._ask(observation, start, before, dt)
+
+    def _look_again(
+        self, observation: Observation, start: StepStart, shaken: Shaken, dt: float
+    ) -> None:
+        """Plan the rest of the step anew, if something has happened since it began."""
+        state = int(self._tracker.state[0])
+        if not shaken.entered(state):
+            return
+        here = self.body.measure(observation)
+        if shaken.by(state, here.com_velocity[0], start.heading) and self.planner is not None:
+            self.replans += 1
+            self._ask(observation, start, self._tracker.scale[0], dt)
+
+    def _ask(self, observation: Observation, start: StepStart, before: Array, dt: float) -> None:
+        """Ask for the scalings of the step, or of what is left of it.
+
+        Those `before` (p,) stay in force until the answer acts.
+        """
+        assert self.planner is not None
+        flight, now = RolloutStart(observation, np.array(self._sent), dt), self._tracker.now
+        request = StepRequest(flight, now, start.stance, self._scale, before, self._target, start)
         self._asked, self._late_from = True, request.due(self.planner.latency) + dt
         self.planner.ask(request)
 
@@ -162,25 +186,26 @@ class Balancer:
         self._tracker.rescale(scale[None])
 
     def _end_step(self, time: float, end: Outcomes, start: StepStart) -> None:
-        """Write down how the step went, and tell the speed feedback."""
+        """Write down how the step went, and tell the steering."""
         duration = time - start.time
         self._turned += start.turned(end)
-        speed = start.speed(end, duration)
-        self.speed.measured(speed)
-        self.records.append(
-            StepRecord(
-                time=time,
-                duration=duration,
-                position=end.base_position[0].copy(),
-                heading=self._turned,
-                speed=speed,
-                regulation=start.evaluate(end, self.regulation, self.contacts)[0],
-                target=self._target,
-                scale=self._tracker.scale[0].copy(),
-            )
+        forward, left = start.velocity(end, duration)
+        record = StepRecord(
+            time=time,
+            duration=duration,
+            position=end.base_position[0].copy(),
+            heading=self._turned,
+            speed=float(forward),
+            side=float(left),
+            regulation=start.evaluate(end, self.regulation, self.contacts)[0],
+            target=self._target,
+            scale=self._tracker.scale[0].copy(),
         )
+        self.records.append(record)
+        self.steering.end_step(record)
 
-    def _wanted(self) -> Array:
-        """Return the targets (r,) of this step."""
-        wanted = {**self.targets, **self.speed.targets(), **self.fixed_targets}
+    def _wanted(self, start: StepStart) -> Array:
+        """Return the targets (r,) of the step that begins."""
+        left = self.contacts.foot_names[1 - start.stance].startswith("l")
+        wanted = self.steering.targets(self.targets, swing_is_left=left) | self.fixed_targets
         return np.array([wanted.get(variable.name, 0.0) for variable in self.regulation])

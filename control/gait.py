@@ -62,8 +62,7 @@ def load_gait(path: Path, joints: Joints, contacts: ContactSensors, mirror: Mirr
     reader = _Reader(path, file, joints, contacts, mirror)
     graph = reader.graph()
     pose, hold = reader.perturbations(graph)
-    names = tuple(item.name for item in file.perturbation)
-    return Gait(path.stem, file, graph, names, pose, hold)
+    return Gait(path.stem, file, graph, _names(file), pose, hold)
 
 
 @dataclass(frozen=True)
@@ -101,18 +100,19 @@ class _Reader:
         )
 
     def perturbations(self, graph: PoseGraph) -> tuple[Array, Array]:
-        count = len(self.file.perturbation)
-        pose = np.zeros((count, *graph.pose.shape))
-        hold = np.zeros((count, len(graph)))
-        for row, item in enumerate(self.file.perturbation):
+        names = _names(self.file)
+        pose = np.zeros((len(names), *graph.pose.shape))
+        hold = np.zeros((len(names), len(graph)))
+        for item in self.file.perturbation:
+            row = names.index(item.name)
             change = np.radians(self._pose(item.pose, f"perturbation.{item.name}"))
             chosen = self._chosen(item, graph)
             foot = self._stance(item.stance, f"perturbation.{item.name}.stance")
             across = (-1.0 if item.opposite else 1.0) * self.mirror(change)
             for state in np.flatnonzero(chosen):
                 same = foot < 0 or graph.stance[state] == foot
-                pose[row, state] = change if same else across
-            hold[row, chosen & np.isfinite(graph.hold)] = item.hold
+                pose[row, state] += change if same else across
+            hold[row, chosen & np.isfinite(graph.hold)] += item.hold
         return pose, hold
 
     def _chosen(self, item: Perturbation, graph: PoseGraph) -> Mask:
@@ -197,6 +197,11 @@ class _Reader:
 
     def _unknown(self, where: str, error: UnknownNameError) -> ConfigError:
         return self._error(where, str(error))
+
+
+def _names(file: GaitFile) -> tuple[str, ...]:
+    """Return the names of the perturbations, each once."""
+    return tuple(dict.fromkeys(item.name for item in file.perturbation))
 
 
 def _or_forever(seconds: float | None) -> float:

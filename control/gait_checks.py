@@ -17,9 +17,11 @@ def check_gait(path: Path, file: GaitFile, joints: Joints) -> None:
         ConfigError: A table names something that is not there, or holds nothing.
     """
     names = [item.name for item in file.perturbation]
-    for name in names:
-        if names.count(name) > 1:
-            raise _error(path, f"perturbation.{name}", "this name stands twice; give each its own")
+    parts = [(item.name, item.states and sorted(item.states)) for item in file.perturbation]
+    for number, (name, states) in enumerate(parts):
+        if (name, states) in parts[:number]:
+            why = "this name stands twice; give each its own, or other states"
+            raise _error(path, f"perturbation.{name}", why)
     if file.balance is not None:
         _known(path, "balance.perturbations", file.balance.perturbations, names)
         try:
@@ -28,8 +30,16 @@ def check_gait(path: Path, file: GaitFile, joints: Joints) -> None:
             raise _error(path, "balance.regulation", str(error)) from None
     if file.speed is not None:
         _check_speed(path, file, names)
+    if file.side is not None:
+        _known(path, "side.scale", file.side.scale, names)
+        _known(path, "side.spread", file.side.spread, names)
     if file.heading is not None:
         _known(path, "heading.perturbation", [file.heading.perturbation], names)
+    if file.turn is not None:
+        _known(path, "turn.perturbation", filter(None, [file.turn.perturbation]), names)
+        _known(path, "turn.spread", file.turn.spread, names)
+    for style in file.style:
+        _known(path, f"style.{style.name}.scale", style.scale, names)
     if file.torso_servo is not None:
         _known(path, "torso_servo.joint", [file.torso_servo.joint], joints.names, "joint")
 

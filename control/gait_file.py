@@ -37,7 +37,7 @@ class Perturbation(Record, frozen=True):
 
     `pose` is added to the states of the steps that stand on `stance`; the steps on the other
     foot get the mirror image, or with `opposite` its negative, which is how one turns. `states`
-    narrows it down. `hold` changes hold times, in seconds.
+    narrows it down; entries of one name add up. `hold` changes hold times, in seconds.
     """
 
     name: str
@@ -52,7 +52,11 @@ class Perturbation(Record, frozen=True):
 
 
 class Balance(Record, frozen=True):
-    """How the gait keeps its balance; every entry can be overridden at the command line."""
+    """How the gait keeps its balance.
+
+    A step is planned again in its middle when the centre of mass is `replan` m/s faster or slower
+    than it was at the same state two steps ago.
+    """
 
     regulation: list[str] = []
     perturbations: list[str] = []
@@ -63,6 +67,8 @@ class Balance(Record, frozen=True):
     keep: float = 0.7
     regularisation: float = 1e-3
     weights: dict[str, float] = {}
+    drift: float = 0.5
+    replan: float | None = None
     horizon: float = 1.5
 
 
@@ -77,24 +83,78 @@ class SpeedRow(Record, frozen=True):
 class Speed(Record, frozen=True):
     """Commanded speed: rows that are interpolated, and feedback of the measured speed.
 
-    A walk begins at the first row and gains `ramp` m/s a step.
+    A walk begins at the speed `begin` and gains `ramp` m/s a step. Without a `default` the table
+    only counts when a speed is commanded. `correct` names the target or the perturbation that the
+    feedback moves, by `gain` times the error, m/s, each step; `also` names targets that move with
+    it, by so much for each unit (a slower robot leans forward, Eq. 5.1).
     """
 
-    default: float
     rows: list[SpeedRow]
+    default: float | None = None
+    begin: float = 0.0
     ramp: float = 1.0
     correct: str | None = None
+    also: dict[str, float] = {}
     gain: float = 0.0
     limit: float = 0.0
 
 
+class Side(Record, frozen=True):
+    """Commanded sideways speed: scalings and targets for 1 m/s to the left, before feedback.
+
+    `scale` follows the sign of the speed, `spread` does not (to keep the legs apart). `targets`
+    are lateral: they are added in steps that swing the foot on the side that one goes to, and
+    subtracted in the others. `limit` is the largest speed, m/s; it grows by `ramp` a step.
+    """
+
+    limit: float
+    ramp: float = 1.0
+    scale: dict[str, float] = {}
+    spread: dict[str, float] = {}
+    targets: dict[str, float] = {}
+    gain: float = 0.0
+    correction: float = 0.0
+
+
+class Turn(Record, frozen=True):
+    """Commanded turning; `limit` is the fastest, degrees/s.
+
+    `feed` is the scaling for each degree that one step shall turn, `spread` scalings for one
+    degree/s either way. The rate changes by `ramp` degrees/s a step. `perturbation` turns where
+    that of the heading is only good for holding a course. On a path, tight turns are walked at
+    `speed` m/s, and none tighter than `radius` m.
+    """
+
+    limit: float
+    ramp: float = 1000.0
+    feed: float = 0.0
+    spread: dict[str, float] = {}
+    perturbation: str | None = None
+    speed: float = 0.0
+    radius: float = 0.0
+
+
 class Heading(Record, frozen=True):
-    """Holding a course: a perturbation scaled by heading and turn rate, degrees a degree."""
+    """Holding a course: a perturbation scaled by the error of the heading, degrees a degree."""
 
     perturbation: str
     gain: float
-    rate: float = 0.0
     limit: float = 10.0
+
+
+class Style(Record, frozen=True):
+    """A way of walking that can be had by any amount: scalings and targets for an amount of one.
+
+    Styles compose by addition, and an amount between 0 and 1 blends (section 5.4). The amount
+    changes by at most 1 / `steps` a step.
+    """
+
+    name: str
+    scale: dict[str, float] = {}
+    targets: dict[str, float] = {}
+    steps: float = 8.0
+    least: float = 0.0
+    most: float = 1.0
 
 
 class TorsoServo(Record, frozen=True):
@@ -118,5 +178,8 @@ class GaitFile(Record, frozen=True):
     perturbation: list[Perturbation] = []
     balance: Balance | None = None
     speed: Speed | None = None
+    side: Side | None = None
+    turn: Turn | None = None
     heading: Heading | None = None
+    style: list[Style] = []
     torso_servo: TorsoServo | None = None

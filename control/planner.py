@@ -34,6 +34,7 @@ class StepRequest:
         scale: (p,) scalings of all perturbations before balance.
         before: (p,) scalings in force until the answer acts.
         target: (r,) wanted regulation variables.
+        origin: Where the step began, if that is not where `start` is.
     """
 
     start: RolloutStart
@@ -42,6 +43,7 @@ class StepRequest:
     scale: Array
     before: Array
     target: Array
+    origin: StepStart | None = None
 
     def ticks(self, latency: float) -> int:
         """Return the tick of the step, from 0, at which an answer may act after `latency` s."""
@@ -131,7 +133,7 @@ class StepPlanner:
 
     def plan(self, request: StepRequest) -> Array:
         """Return the scalings (r,) for the step."""
-        start = StepStart.of(request.start.observation, request.stance, self.body)
+        start = request.origin or StepStart.of(request.start.observation, request.stance, self.body)
 
         def sample(scalings: Array) -> tuple[Array, Mask]:
             scale = np.repeat(request.scale[None], len(scalings), axis=0)
@@ -141,7 +143,7 @@ class StepPlanner:
             values = start.evaluate(outcomes, self.regulation, self.contacts)
             return values, outcomes.fell | ~policy.done
 
-        return self.model.control(sample, request.target, request.stance)
+        return self.model.control(sample, request.target, request.stance, start.features())
 
     def policy(self, request: StepRequest, scale: Array) -> StepPolicy:
         """Return what plays the requested step with scalings (m, p)."""

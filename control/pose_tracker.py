@@ -76,6 +76,11 @@ class PoseTracker:
         """Where the trackers are."""
         return TrackerState(self._state, self._elapsed.copy(), self._steps)
 
+    @property
+    def state(self) -> Indices:
+        """(m,) index of the present states."""
+        return self._state
+
     def restart(self) -> None:
         """Go back to the first state."""
         at = TrackerState.begin(len(self.scale))

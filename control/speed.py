@@ -35,16 +35,31 @@ class SpeedControl:
                 )
             return
         self.speed = table.default if self.speed is None else self.speed
-        slowest, fastest = table.rows[0].speed, table.rows[-1].speed
+        if self.speed is None:
+            return
+        slowest, fastest = self.range
         if not slowest <= self.speed <= fastest:
             raise UsageError(
                 f"speed {self.speed:g} m/s is outside the range of gait {self.gait.name!r}: "
                 f"{slowest:g} .. {fastest:g} m/s"
             )
 
+    @property
+    def range(self) -> tuple[float, float]:
+        """Slowest and fastest speed of the gait, m/s; both 0 without a table."""
+        table = self.gait.file.speed
+        return (table.rows[0].speed, table.rows[-1].speed) if table is not None else (0.0, 0.0)
+
+    def command(self, speed: float | None) -> None:
+        """Aim for another speed within the gait's range, m/s; None changes nothing."""
+        if speed is not None:
+            self.speed = float(np.clip(speed, *self.range))
+
     def reset(self) -> None:
         """Begin again at rest."""
-        self.correction = self.present = 0.0
+        table = self.gait.file.speed
+        self.correction = 0.0
+        self.present = 0.0 if table is None else table.begin
 
     def begin_step(self) -> None:
         """Go one step up (or down) the ramp."""
@@ -58,6 +73,9 @@ class SpeedControl:
         scale = np.zeros(len(self.gait.perturbations))
         for name in self._names("scale"):
             scale[self.gait.index(name)] = self._at("scale", name)
+        table = self.gait.file.speed
+        if table is not None and table.correct in self.gait.perturbations:
+            scale[self.gait.index(table.correct)] += self.correction
         return scale
 
     def targets(self) -> dict[str, float]:
@@ -68,6 +86,12 @@ class SpeedControl:
             targets[table.correct] += self.correction
         return targets
 
+    def shifts(self) -> dict[str, float]:
+        """Return what the feedback adds to other targets."""
+        table = self.gait.file.speed
+        also = {} if table is None else table.also
+        return {name: value * self.correction for name, value in also.items()}
+
     def measured(self, speed: float) -> None:
         """Take the speed of the step that has just ended, m/s."""
         table = self.gait.file.speed
@@ -76,7 +100,7 @@ class SpeedControl:
             self.correction = float(np.clip(self.correction + change, -table.limit, table.limit))
 
     def _names(self, kind: str) -> list[str]:
-        rows = self.gait.file.speed.rows if self.gait.file.speed else []
+        rows = self.gait.file.speed.rows if self.gait.file.speed and self.speed is not None else []
         return sorted({name for row in rows for name in getattr(row, kind)})
 
     def _at(self, kind: str, name: str) -> float:

@@ -16,6 +16,7 @@ from typing import Literal
 
 import numpy as np
 
+from control.step_memory import Memory
 from hal.joints import Array, Mask
 
 Sampling = Literal["sp", "fl", "lf", "full"]
@@ -23,6 +24,7 @@ Sampling = Literal["sp", "fl", "lf", "full"]
 Sample = Callable[[Array], tuple[Array, Mask]]
 
 SINGULAR = 1e-6
+COUNTERS = ("retried", "dropped", "kept_last", "clipped", "sampled", "reused")
 
 
 @dataclass
@@ -38,6 +40,8 @@ class StepModel:
         from_last: Sample around `keep` times the same side's last K instead of around zero.
         keep: See `from_last`.
         regularisation: Damping of the least squares.
+        memory: Where "full" finds models to use again, or None.
+        drift: Weighted error from which a remembered model is sampled anew.
         counters: What was retried, dropped or kept, by name.
     """
 
@@ -49,9 +53,9 @@ class StepModel:
     from_last: bool = False
     keep: float = 0.7
     regularisation: float = 1e-3
-    counters: dict[str, int] = field(
-        default_factory=lambda: dict.fromkeys(("retried", "dropped", "kept_last", "clipped"), 0)
-    )
+    memory: Memory | None = None
+    drift: float = 0.5
+    counters: dict[str, int] = field(default_factory=lambda: dict.fromkeys(COUNTERS, 0))
     _last: dict[int, Array] = field(default_factory=dict, init=False)
     _jacobian: dict[int, Array] = field(default_factory=dict, init=False)
 
@@ -59,19 +63,26 @@ class StepModel:
         """Forget all steps."""
         self._last.clear()
         self._jacobian.clear()
+        if self.memory is not None:
+            self.memory.reset()
 
-    def control(self, sample: Sample, target: Array, side: int) -> Array:
+    def control(
+        self, sample: Sample, target: Array, side: int, start: Array | None = None
+    ) -> Array:
         """Return the scalings K (r,) that should end this step at `target` (r,).
 
         Args:
             sample: Plays steps.
             target: Wanted regulation variables.
             side: Index of the stance foot; the two sides remember their own K.
+            start: Features (f,) of the state that the step begins in, for a library.
         """
         last = self._last.get(side, np.zeros(len(self.samples)))
         origin = self.keep * last if self.from_last else np.zeros_like(last)
         if self.sampling == "full":
-            wanted = self._full(sample, target, side, origin)
+            start = np.zeros(0) if start is None else start
+            again = self._reused(sample, target, side, origin, start)
+            wanted = self._full(sample, target, side, origin, start) if again is None else again
         else:
             wanted = self._by_dimension(sample, target, origin, last)
         scalings = np.clip(wanted, -self.limits, self.limits)
@@ -143,8 +154,26 @@ class StepModel:
 
     # The whole Jacobian
 
-    def _full(self, sample: Sample, target: Array, side: int, origin: Array) -> Array:
+    def _reused(
+        self, sample: Sample, target: Array, side: int, origin: Array, start: Array
+    ) -> Array | None:
+        """Return K from a remembered model and one rollout; None where that will not do.
+
+        The model has drifted when the last K again would miss the target by too much.
+        """
+        jacobian = None if self.memory is None else self.memory.recall(side, start)
+        if jacobian is None or side not in self._last:
+            return None
+        values, fell = sample(origin[None])
+        miss = target - values[0] - jacobian @ (self._last[side] - origin)
+        if fell[0] or float(np.linalg.norm(self.weights * miss)) > self.drift:
+            return None
+        self.counters["reused"] += 1
+        return origin + self._solve(jacobian, target - values[0])
+
+    def _full(self, sample: Sample, target: Array, side: int, origin: Array, start: Array) -> Array:
         r = len(origin)
+        self.counters["sampled"] += 1
         steps = np.diag(self.samples)
         tried = origin + np.concatenate([np.zeros((1, r)), steps, -steps[: r * self.centred]])
         values, fell = sample(tried)
@@ -161,6 +190,8 @@ class StepModel:
             self.counters["kept_last"] += 1
             return self._last.get(side, origin)
         self._jacobian[side] = jacobian
+        if self.memory is not None:
+            self.memory.store(side, start, jacobian)
         return origin + self._solve(jacobian, target - values[0])
 
     def _differences(

@@ -22,6 +22,7 @@ class StepRecord:
         position: (3,) base position at its end, m.
         heading: Heading at its end, unwrapped from the start of the walk, rad.
         speed: Mean speed along its middle heading, m/s.
+        side: Mean speed to the left of it, m/s.
         regulation: (r,) regulation variables at its end.
         target: (r,) what they should have been.
         scale: (p,) scalings of the perturbations.
@@ -32,6 +33,7 @@ class StepRecord:
     position: Array
     heading: float
     speed: float
+    side: float
     regulation: Array
     target: Array
     scale: Array
@@ -81,13 +83,29 @@ class StepStart:
         columns = [variable.evaluate(end) for variable in variables]
         return np.stack(columns, axis=-1) if columns else np.zeros((len(outcomes.fell), 0))
 
+    def features(self) -> Array:
+        """Return where and how fast the centre of mass is over the stance foot, and the lean.
+
+        (7,) in the frame of the heading; velocities over omega = sqrt(g / height), so that all but
+        the lean are m. The lateral ones are positive toward the swing foot.
+        """
+        body = self.body
+        offset = body.com[0] - body.feet[0, self.stance]
+        slow = np.sqrt(max(float(offset[2]), 0.1) / 9.81)
+        c, s = np.cos(self.heading), np.sin(self.heading)
+        out = np.sign(body.feet[0, 1 - self.stance] @ [-s, c, 0.0] - body.com[0] @ [-s, c, 0.0])
+        turn = np.array([[c, s], [-s * out, c * out]])
+        flat = [offset[:2], slow * body.com_velocity[0, :2], 0.2 * body.torso[0, :2]]
+        return np.concatenate([turn @ part for part in flat] + [[offset[2]]])
+
     def turned(self, end: Outcomes) -> float:
         """Return the change of heading until `end`, rad."""
         change = float(heading(end.base_orientation)[0]) - self.heading
         return (change + np.pi) % (2.0 * np.pi) - np.pi
 
-    def speed(self, end: Outcomes, duration: float) -> float:
-        """Return the mean speed until `end` along the step's middle heading, m/s."""
+    def velocity(self, end: Outcomes, duration: float) -> Array:
+        """Return the mean velocity (2,) until `end`: along the middle heading, to its left, m/s."""
         angle = self.heading + 0.5 * self.turned(end)
+        c, s = np.cos(angle), np.sin(angle)
         way = end.base_position[0, :2] - self.position[:2]
-        return float(way @ [np.cos(angle), np.sin(angle)]) / max(duration, 1e-6)
+        return np.array([[c, s], [-s, c]]) @ way / max(duration, 1e-6)

@@ -79,9 +79,9 @@ class TwinBackend:
         delay = twin.robot.drive.sensor_delay if sensor_delay is None else sensor_delay
         self.sensors = Sensors(twin, delay=delay, true_base=true_base, imu_errors=imu_errors)
         self._drive: ServoDrive | TorqueDrive = (
-            ServoDrive(twin.model, twin.robot, twin.supply)
+            ServoDrive(twin.model, twin.robot, twin.supply, twin.world.plant.stiffness)
             if twin.robot.drive.kind == "servo"
-            else TorqueDrive(twin.model, twin.robot)
+            else TorqueDrive(twin.model, twin.robot, twin.world.plant.stiffness)
         )
         self._ctrl = twin.data.ctrl
 

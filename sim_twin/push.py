@@ -12,7 +12,7 @@ class Push:
     """A horizontal force on one body.
 
     Attributes:
-        body: Name of the body.
+        body: Name of the body, or "" for all of them, in proportion to their masses.
         force: (3,) N, in the world.
         start: When it begins, s.
         duration: How long it lasts, s.
@@ -38,6 +38,13 @@ class Push:
         """Return the push of `impulse` N s toward `direction` rad (0 forward, positive left)."""
         force = impulse / duration * np.array([np.cos(direction), np.sin(direction), 0.0])
         return cls(body, force, start, duration, height)
+
+    @classmethod
+    def velocity_step(
+        cls, speed: float, mass: float, direction: float, start: float, duration: float = 0.02
+    ) -> "Push":
+        """Return what gives a whole robot of `mass` kg `speed` m/s toward `direction` rad."""
+        return cls.impulse("", speed * mass, direction, start, duration)
 
     def share(self, time: float, step: float) -> float:
         """Return the part of the step from `time` to `time + step` s that the push lasts."""

@@ -17,7 +17,9 @@ from mujoco.batch import Batch
 from hal.controller import BatchPolicy, Outcomes, PolicyInput, RolloutStart, Stopwatch
 from hal.joints import Array, Mask
 from robots.description import RobotDescription
-from sim_twin.world import build_model
+from sim_twin.foot_level import FootLevel
+from sim_twin.terrain import Ground
+from sim_twin.world import World, build_model
 
 STAGE = int(mujoco.mjtStage.mjSTAGE_VEL)
 
@@ -30,6 +32,8 @@ class RolloutPredictor:
         delay: From a state being sensed to its command acting, s; the robot's own by default.
         supply: Voltage of the servos, V; the robot's own by default.
         threads: Threads that share the rollouts.
+        ground: The ground as far as it is known; else it is flat, at the height of the foot that
+            stands on it.
 
     Attributes:
         delay: From a state being sensed to its command acting, s.
@@ -42,12 +46,17 @@ class RolloutPredictor:
         delay: float | None = None,
         supply: float | None = None,
         threads: int = 1,
+        ground: Ground | None = None,
     ) -> None:
         self.robot = robot
+        self.ground = ground or Ground()
+        self._level = FootLevel(robot)
         if delay is None:
             delay = robot.drive.command_delay + robot.drive.sensor_delay
         self.delay = delay
-        self.model = build_model(robot, delay=delay, supply=supply, bare=True)
+        self.model = build_model(
+            robot, delay=delay, supply=supply, bare=True, world=World(self.ground)
+        )
         self.threads = threads
         self.stopwatch = Stopwatch()
         self._worlds: dict[int, _Worlds] = {}
@@ -57,9 +66,14 @@ class RolloutPredictor:
         began = wall.perf_counter()
         if policy.size not in self._worlds:
             self._worlds[policy.size] = _Worlds(
-                self.robot, self.model, policy.size, min(self.threads, policy.size)
+                self.robot,
+                self.model,
+                policy.size,
+                min(self.threads, policy.size),
+                self.ground,
             )
-        outcomes = self._worlds[policy.size].play(start, policy, horizon)
+        level = self._level.of(start.observation) if self.ground.flat else 0.0
+        outcomes = self._worlds[policy.size].play(start, policy, horizon, level)
         self.stopwatch.add(policy.size, wall.perf_counter() - began)
         return outcomes
 
@@ -68,9 +82,14 @@ class _Worlds:
     """A batch of m worlds."""
 
     def __init__(
-        self, robot: RobotDescription, model: mujoco.MjModel, size: int, threads: int
+        self,
+        robot: RobotDescription,
+        model: mujoco.MjModel,
+        size: int,
+        threads: int,
+        ground: Ground,
     ) -> None:
-        self.robot, self.model, self.size = robot, model, size
+        self.robot, self.model, self.size, self.ground = robot, model, size, ground
         self.batch = Batch(model, size, nthread=threads, persistent=True)
         bind = self.batch.bind
         self.qpos, self.qvel = bind("qpos"), bind("qvel")
@@ -95,9 +114,18 @@ class _Worlds:
         self.fresh = np.empty(mujoco.mj_stateSize(model, spec))
         mujoco.mj_getState(model, scratch, self.fresh, spec)
 
-    def play(self, start: RolloutStart, policy: BatchPolicy, horizon: float) -> Outcomes:
-        """Play `policy` from `start`; see `RolloutPredictor.predict`."""
+    def play(
+        self, start: RolloutStart, policy: BatchPolicy, horizon: float, level: float
+    ) -> Outcomes:
+        """Play `policy` from `start` on ground at `level` m; see `RolloutPredictor.predict`."""
         self._place(start)
+        self.qpos[:, 2] -= level
+        outcomes = self._run(start, policy, horizon)
+        for heights in (outcomes.base_position, outcomes.com, outcomes.feet):
+            heights[..., 2] += level
+        return outcomes
+
+    def _run(self, start: RolloutStart, policy: BatchPolicy, horizon: float) -> Outcomes:
         substeps = round(start.dt / self.model.opt.timestep)
         view = self._first_view(start)
         result = self._empty()
@@ -154,6 +182,9 @@ class _Worlds:
     def _fallen(self) -> Mask:
         fall = self.robot.fall
         low = self.qpos[:, 2] < fall.height
+        if not self.ground.flat:
+            ground = [self.ground.height(float(x)) for x in self.qpos[:, 0]]
+            low = self.qpos[:, 2] - ground < fall.height
         return low | ~(self.xmat[:, self.torso, 8] > np.cos(fall.tilt))
 
     def _empty(self) -> Outcomes:

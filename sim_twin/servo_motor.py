@@ -82,11 +82,13 @@ class ServoDrive:
         model: The twin's model; gains are written into it.
         robot: The robot.
         supply: Voltage of the servos, V.
+        factor: Stiffness of these servos over that of the data sheet.
     """
 
     model: mujoco.MjModel
     robot: RobotDescription
     supply: float
+    factor: float = 1.0
 
     def __post_init__(self) -> None:
         servos = [servo for servo in self.robot.servos if servo is not None]
@@ -124,7 +126,7 @@ class ServoDrive:
         """
         servos = [servo for servo in self.robot.servos if servo is not None]
         nominal = np.array([s.model.stiffness(1.0, self.robot.drive.supply) for s in servos])
-        self._realised[0] = np.rint(stiffness / nominal) * self._unit
+        self._realised[0] = self.factor * np.rint(stiffness / nominal) * self._unit
         self.model.actuator_gainprm[:, KP] = self._realised[0]
         self.sent_gains += 1
 
@@ -136,10 +138,12 @@ class TorqueDrive:
     Attributes:
         model: The twin's model; gains are written into it.
         robot: The robot.
+        factor: Stiffness of these joints over what was asked for.
     """
 
     model: mujoco.MjModel
     robot: RobotDescription
+    factor: float = 1.0
 
     def __post_init__(self) -> None:
         self._gains: bytes = b""
@@ -149,7 +153,7 @@ class TorqueDrive:
         block = command.block
         gains = block[3:].tobytes()
         if gains != self._gains:
-            self.model.actuator_biasprm[:, PID_KP] = -block[3]
+            self.model.actuator_biasprm[:, PID_KP] = -self.factor * block[3]
             self.model.actuator_biasprm[:, PID_KD] = -block[4]
             self._gains = gains
         ctrl.reshape(-1, 3)[:] = block[:3].T

@@ -12,7 +12,7 @@ from hal.joints import Array
 from hal.observation import BaseState
 from robots.description import RobotDescription
 from sim_twin.push import Push
-from sim_twin.world import build_model
+from sim_twin.world import World, build_model
 
 STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 WILD = 1e5  # squared speeds of all joints and the base above which something is going wrong
@@ -39,8 +39,10 @@ class Twin:
         robot: The robot.
         delay: From a write to the joint acting on it, s; the robot's own by default.
         supply: Voltage of the servos, V; the robot's own by default.
+        world: Ground, plant and self-collision; its plant's delay and supply win.
 
     Attributes:
+        world: See above.
         model: MuJoCo's model, with actuators.
         data: MuJoCo's state.
         up: (3,) unit vector along the torso, a live view.
@@ -49,12 +51,21 @@ class Twin:
     """
 
     def __init__(
-        self, robot: RobotDescription, *, delay: float | None = None, supply: float | None = None
+        self,
+        robot: RobotDescription,
+        *,
+        delay: float | None = None,
+        supply: float | None = None,
+        world: World | None = None,
     ) -> None:
         self.robot = robot
+        self.world = world or World()
+        plant = self.world.plant
+        supply = supply if plant.supply is None else plant.supply
+        delay = delay if plant.delay is None else plant.delay
         self.supply = robot.drive.supply if supply is None else supply
         self.delay = robot.drive.command_delay if delay is None else delay
-        self.model = build_model(robot, delay=self.delay, supply=self.supply)
+        self.model = build_model(robot, delay=self.delay, supply=self.supply, world=self.world)
         self.data = mujoco.MjData(self.model)
         self.timestep = float(self.model.opt.timestep)
         self.on_step: Callable[[], None] | None = None
@@ -111,7 +122,10 @@ class Twin:
     def fallen(self) -> bool:
         """True when the base is low or the torso is tilted, as the robot's file says."""
         fall = self.robot.fall
-        return bool(self._qpos[2] < fall.height or self.up[2] < np.cos(fall.tilt))
+        height = self._qpos[2]
+        if not self.world.ground.flat:
+            height -= self.world.ground.height(float(self._qpos[0]))
+        return bool(height < fall.height or self.up[2] < np.cos(fall.tilt))
 
     @property
     def powered(self) -> bool:
@@ -129,7 +143,7 @@ class Twin:
             UnknownNameError: The robot has no such body.
         """
         names = [self.model.body(i).name for i in range(1, self.model.nbody)]
-        if push.body not in names:
+        if push.body and push.body not in names:
             raise UnknownNameError("body", push.body, names)
         self._pushes.append(push)
 
@@ -189,6 +203,10 @@ class Twin:
             self._pushes.clear()
 
     def _apply(self, push: Push, force: Array) -> None:
+        if not push.body:
+            part = self.model.body_mass / self.model.body_mass.sum()
+            self.data.xfrc_applied[:, :3] += part[:, None] * force
+            return
         body = self.model.body(push.body).id
         self.data.xfrc_applied[body, :3] += force
         if push.height is not None:

@@ -1,9 +1,29 @@
 """The robot's MJCF, completed to something that can be simulated."""
 
+from dataclasses import dataclass, field
+from itertools import product
+
 import mujoco
 
 from robots.description import RobotDescription
+from sim_twin.plant import Plant
 from sim_twin.servo_motor import add_actuators
+from sim_twin.terrain import Ground
+
+
+@dataclass(frozen=True)
+class World:
+    """What a twin lives in, and how it differs from its files.
+
+    Attributes:
+        ground: The ground.
+        plant: The robot's differences.
+        self_collision: The two legs collide with each other.
+    """
+
+    ground: Ground = field(default_factory=Ground)
+    plant: Plant = field(default_factory=Plant)
+    self_collision: bool = False
 
 
 def build_model(
@@ -12,6 +32,7 @@ def build_model(
     delay: float | None = None,
     supply: float | None = None,
     bare: bool = False,
+    world: World | None = None,
 ) -> mujoco.MjModel:
     """Return the robot's model with actuators.
 
@@ -20,8 +41,14 @@ def build_model(
         delay: From a write to the joint acting on it, s; the robot's own by default.
         supply: Voltage of the servos, V; the robot's own by default.
         bare: Leave out what a rollout, which ends with a fall, does not need.
+        world: Ground, plant and self-collision; flat, as the files say, and none by default.
     """
+    world = world or World()
     spec = robot.spec()
+    world.plant.change(spec)
+    world.ground.build(spec)
+    if world.self_collision:
+        _part_legs(spec, robot)
     if bare:
         _strip(spec, robot)
     delay = robot.drive.command_delay if delay is None else delay
@@ -49,3 +76,28 @@ def _strip(spec: mujoco.MjSpec, robot: RobotDescription) -> None:
     for sensor in list(spec.sensors):
         if sensor.name not in kept:
             spec.delete(sensor)
+
+
+def _part_legs(spec: mujoco.MjSpec, robot: RobotDescription) -> None:
+    """Let the left leg collide with the right one, the largest geom of each body.
+
+    The robots' geoms meet the floor only (floor contype 1, conaffinity 0; robot 0 and 1), so the
+    legs get explicit pairs.
+    """
+    left, right = (_leg(spec, robot, foot.body) for foot in robot.feet[:2])
+    for one, other in product(left, right):
+        spec.add_pair(geomname1=one, geomname2=other, condim=3)
+
+
+def _leg(spec: mujoco.MjSpec, robot: RobotDescription, foot: str) -> list[str]:
+    """Return the names of the largest geoms of the bodies from `foot` up to the base."""
+    names = []
+    body = spec.body(foot)
+    while body.name != robot.base:
+        solid = [geom for geom in body.geoms if geom.type != mujoco.mjtGeom.mjGEOM_PLANE]
+        if solid:
+            geom = max(solid, key=lambda geom: float(max(geom.size)))
+            geom.name = geom.name or f"{body.name}_hull"
+            names.append(geom.name)
+        body = body.parent
+    return names

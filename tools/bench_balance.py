@@ -10,8 +10,9 @@ from control.planner import StepPlanner, StepRequest
 from hal.errors import WindupError
 from hal.joints import Array
 from sim_twin.rollouts import RolloutPredictor
-from tools.build import WalkOptions, build_walk
+from tools.build import build_walk
 from tools.robot import Robot
+from tools.walk_options import WalkOptions
 
 ROUNDS = 20
 ROLLOUTS = 5

@@ -8,8 +8,9 @@ from typing import Any
 import mujoco
 
 from hal.command import JointCommand
-from tools.build import WalkOptions, build_walk
+from tools.build import build_walk
 from tools.robot import Robot
+from tools.walk_options import WalkOptions
 
 ROUNDS = 20
 

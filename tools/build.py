@@ -1,6 +1,6 @@
 """Putting a walking controller together from a robot, a gait and what the user asked for."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isfinite
 
 import msgspec
@@ -8,15 +8,15 @@ import numpy as np
 
 from control.balancer import Balancer
 from control.body import Body
-from control.course import Course
 from control.estimator import BaseEstimator
 from control.foot_load import FootLoad
 from control.gait import Gait, load_gait
 from control.gait_file import Balance, Sampling
 from control.planner import Planner, StepPlanner
 from control.regulation import RegulationVariable, regulation_variables
+from control.shaken import Shaken
 from control.soles import Soles
-from control.speed import SpeedControl
+from control.step_memory import Reuse, memory_of
 from control.step_model import StepModel
 from control.tilt_filter import GRAVITY
 from control.torso_servo import TorsoServo
@@ -24,19 +24,8 @@ from hal.controller import Predictor
 from hal.errors import StateMissingError, UnknownNameError, UsageError
 from robots import RobotDescription
 from sim_twin.imu_errors import OPENCR
-
-
-@dataclass(frozen=True)
-class WalkOptions:
-    """How to walk. What is None is as the gait says."""
-
-    gait: str = "walk"
-    speed: float | None = None
-    rv: tuple[str, ...] | None = None
-    sampling: Sampling | None = None
-    target: tuple[str, ...] = ()
-    torso_servo: bool = True
-    open_loop: bool = False
+from tools.steer import steering_of
+from tools.walk_options import WalkOptions
 
 
 def find_gait(robot: RobotDescription, name: str) -> Gait:
@@ -121,13 +110,12 @@ def build_walk(
             body=body,
             regulation=variables,
             perturbations=names,
-            model=_step_model(gait, balance, variables, names),
+            model=_step_model(gait, balance, variables, names, options.model),
             predictor=predictor,
             torso_servo=torso_servo,
             horizon=balance.horizon,
             latency=latency,
         )
-    heading = None if options.open_loop else gait.file.heading
     return Balancer(
         gait=gait,
         joints=robot.joints,
@@ -136,11 +124,11 @@ def build_walk(
         regulation=variables,
         perturbations=names,
         planner=planner,
-        speed=SpeedControl(gait, options.speed),
+        steering=steering_of(robot, gait, options),
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
-        course=None if heading is None else Course(heading),
         torso_servo=torso_servo,
+        shaken=None if balance.replan is None or options.rv else Shaken(balance.replan),
     )
 
 
@@ -177,8 +165,14 @@ def _perturbations(
 
 
 def _step_model(
-    gait: Gait, balance: Balance, variables: list[RegulationVariable], names: list[str]
+    gait: Gait,
+    balance: Balance,
+    variables: list[RegulationVariable],
+    names: list[str],
+    reuse: Reuse,
 ) -> StepModel:
+    if reuse != "full" and balance.sampling != "full":
+        raise UsageError(f"--model {reuse} keeps whole Jacobians; it needs `--sampling full`")
     items = {item.name: item for item in gait.file.perturbation}
     for name in names:
         gait.index(name)
@@ -191,6 +185,8 @@ def _step_model(
         from_last=balance.from_last,
         keep=balance.keep,
         regularisation=balance.regularisation,
+        memory=memory_of(reuse),
+        drift=balance.drift,
     )
 
 

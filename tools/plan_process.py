@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import time as wall
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -18,8 +19,8 @@ from hal.errors import PlannerError
 from hal.joints import Array
 from robots import RobotDescription
 from sim_twin.rollouts import RolloutPredictor
-from tools.build import WalkOptions
 from tools.plan_worker import LARGEST, Answer, Question, Task
+from tools.walk_options import WalkOptions
 
 PATIENCE = 60.0
 """For the process to be built, on a machine that is busy, s."""
@@ -165,7 +166,9 @@ def plan_aside(
     robot: RobotDescription, options: WalkOptions, predictor: RolloutPredictor, period: float
 ) -> ProcessPlanner:
     """Return a process that plans what `predictor` would have played; its stopwatch counts."""
-    task = Task(robot.folder, options, predictor.delay, robot.model_latency, period)
+    options = replace(options, guide=None)  # who leads the walk plans nothing, and may not pickle
+    latency = robot.model_latency
+    task = Task(robot.folder, options, predictor.delay, latency, period, predictor.ground)
     return ProcessPlanner(task, predictor.stopwatch)
 
 

@@ -23,11 +23,14 @@ from hal.joints import Array
 from robots import load_robot
 from sim_twin.backend import TwinBackend
 from sim_twin.rollouts import RolloutPredictor
+from sim_twin.terrain import Ground
 from sim_twin.twin import Twin
-from tools.build import WalkOptions, build_walk
+from tools.build import build_walk
+from tools.walk_options import WalkOptions
 
 LARGEST = 1 << 17
 """More than any message, bytes."""
+FLAT = Ground()
 NICENESS = 1
 """Below the loop, and not below everybody else: a plan that is late costs balance."""
 
@@ -42,6 +45,7 @@ class Task:
         delay: From a state being sensed to its command acting, s.
         latency: From the start of a step to its scalings acting, s.
         period: Period of the loop, s.
+        ground: The ground as far as it is known.
     """
 
     robot: Path
@@ -49,6 +53,7 @@ class Task:
     delay: float
     latency: float
     period: float
+    ground: Ground = FLAT
 
 
 @dataclass(frozen=True)
@@ -93,7 +98,7 @@ def serve(link: socket.socket) -> None:
 def build(task: Task) -> tuple[StepPlanner, Stopwatch]:
     """Return the planner of a task, with its first rollouts behind it, and its stopwatch."""
     robot = load_robot(task.robot)
-    predictor = RolloutPredictor(robot, delay=task.delay)
+    predictor = RolloutPredictor(robot, delay=task.delay, ground=task.ground)
     walker = build_walk(robot, task.options, predictor, latency=task.latency)
     assert isinstance(walker.planner, StepPlanner), "an open loop has nothing to plan"
     _warm_up(walker, Twin(robot), task.period)

@@ -7,8 +7,10 @@ import numpy as np
 
 from control.balancer import Balancer
 from control.loop import LoopReport
+from control.navigation import PathFollower, PointFollower
+from control.planner import StepPlanner
 from hal.joints import Array
-from tools.build import WalkOptions
+from tools.walk_options import WalkOptions
 
 if TYPE_CHECKING:
     from tools.robot import Robot
@@ -44,8 +46,8 @@ class WalkReport:
 
     @property
     def done(self) -> bool:
-        """True when all steps were walked."""
-        return self.walker.steps >= self.requested and not self.fell
+        """True when the goal was reached, or all steps were walked."""
+        return self.loop.reason == "done"
 
     @property
     def path(self) -> Array:
@@ -55,10 +57,42 @@ class WalkReport:
     @property
     def speed(self) -> float | None:
         """Mean speed along the path over steps 11 to the end, m/s; None for a shorter walk."""
+        return self._mean("speed")
+
+    @property
+    def side(self) -> float | None:
+        """Mean speed to the left of the path over whole strides from step 11 on, m/s."""
+        return self._mean("side", whole_strides=True)
+
+    @property
+    def turn(self) -> float | None:
+        """Mean turn rate over whole strides from step 11 on, rad/s."""
         records = self.walker.records[SETTLED:]
+        records = records[(len(records) + 1) % 2 :]
+        if len(records) < 3:
+            return None
+        return (records[-1].heading - records[0].heading) / (records[-1].time - records[0].time)
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """How often the step model was sampled, used again, retried and so on."""
+        planner = self.walker.planner
+        return dict(planner.model.counters) if isinstance(planner, StepPlanner) else {}
+
+    @property
+    def clearance(self) -> float | None:
+        """Smallest distance between the feet, mm; negative where they crossed."""
+        look = self.robot.clearance
+        return None if look is None else 1e3 * look.smallest
+
+    def _mean(self, name: str, *, whole_strides: bool = False) -> float | None:
+        """Return the mean over time of a speed in the records, m/s."""
+        records = self.walker.records[SETTLED:]
+        if whole_strides:
+            records = records[len(records) % 2 :]
         if len(records) < 2:
             return None
-        ways = [record.speed * record.duration for record in records]
+        ways = [getattr(record, name) * record.duration for record in records]
         return float(sum(ways) / sum(record.duration for record in records))
 
     def _position(self) -> Array:
@@ -86,16 +120,31 @@ class WalkReport:
             "lateral_m": float(end[1]),
             "heading_deg": float(np.degrees(records[-1].heading)) if records else 0.0,
             "speed_m_s": self.speed,
+            "side_m_s": self.side,
+            "turn_deg_s": None if self.turn is None else float(np.degrees(self.turn)),
+            "foot_clearance_mm": self.clearance,
+            **self.route(),
             "sim_time_s": loop.sim_time,
             "wall_time_s": loop.wall_time,
             "rollouts": watch.count,
             "rollout_time_s": watch.seconds,
+            "rollouts_a_step": watch.count / max(walker.steps, 1),
+            "replans": walker.replans,
+            "step_model": self.counters,
             "tick_ms": loop.tick_ms(),
             "missed": loop.missed if robot.paced else None,
             "late_plans": walker.late if robot.paced else None,
             "clamps": {name: count for name, count in robot.backend.clamps.items() if count},
             "regulation": self.regulation(),
         }
+
+    def route(self) -> dict[str, Any]:
+        """Return whether a goal was reached and how near the corners were passed; or nothing."""
+        goal = self.walker.steering.guide
+        if not isinstance(goal, PathFollower | PointFollower) or not self.walker.records:
+            return {}
+        near = goal.passed(self.path[:, :2])
+        return {"reached": goal.done, "nearest_m": list(near), "farthest_corner_m": near.max()}
 
     def regulation(self) -> list[dict[str, Any]]:
         """Return target, mean and standard deviation of each regulation variable."""
@@ -114,7 +163,7 @@ class WalkReport:
 def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """Return what several seeds have in common."""
     speeds = [row["speed_m_s"] for row in rows if row["speed_m_s"] is not None]
-    done = [row for row in rows if row["steps"] >= row["steps_requested"] and not row["fell"]]
+    done = [row for row in rows if row["reason"] == "done"]
     headings = [abs(row["heading_deg"]) for row in rows]
     return {
         "runs": len(rows),
@@ -122,5 +171,20 @@ def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
         "speed_mean_m_s": float(np.mean(speeds)) if speeds else None,
         "speed_min_m_s": float(np.min(speeds)) if speeds else None,
         "heading_max_deg": float(np.max(headings)) if headings else None,
+        "side_mean_m_s": _mean_of(rows, "side_m_s"),
+        "turn_mean_deg_s": _mean_of(rows, "turn_deg_s"),
+        "foot_clearance_min_mm": min((clear(row) for row in rows), default=None),
+        "crossed": sum(clear(row) < 0.0 for row in rows),
         "steps_min": min(row["steps"] for row in rows),
     }
+
+
+def clear(row: dict[str, Any]) -> float:
+    """Return the smallest distance between the feet of a run, mm."""
+    value = row.get("foot_clearance_mm")
+    return float("inf") if value is None else float(value)
+
+
+def _mean_of(rows: list[dict[str, Any]], key: str) -> float | None:
+    values = [row[key] for row in rows if row.get(key) is not None]
+    return float(np.mean(values)) if values else None

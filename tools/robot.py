@@ -10,30 +10,28 @@ from dataclasses import dataclass, field, replace
 from types import TracebackType
 from typing import Self
 
-from control.balancer import Balancer
 from control.loop import LoopReport, Until
 from control.play import GraphPlayer, PoseHolder
 from hal.controller import Stopwatch
-from hal.errors import (
-    UnknownNameError,
-    UsageError,
-)
+from hal.errors import UnknownNameError, UsageError
 from hal.observation import Observation
 from robots import load_robot
+from sim_twin.clearance import FootClearance
 from sim_twin.push import Push
 from sim_twin.rollouts import RolloutPredictor
 from sim_twin.twin import Twin
-from tools.build import WalkOptions, build_walk, find_gait
+from sim_twin.world import World
+from tools.build import build_walk, find_gait
 from tools.plan_process import ProcessPlanner, plan_aside
 from tools.report import WalkReport
 from tools.session import Session
 from tools.stack import State, twin_stack, wire_stack
+from tools.walk_end import OnStep, WalkEnd
+from tools.walk_options import WalkOptions
 
 START_SECONDS = 1.0
 REST_SECONDS = 1.5
 PLAY_SECONDS = 5.0
-# Called at the end of a step with its number and its speed, m/s.
-OnStep = Callable[[int, float], None]
 
 
 @dataclass
@@ -44,11 +42,13 @@ class Robot(Session):
         predictor: Plays rollouts of it.
         noise: Noise of the start pose, degrees.
         seed: Seed of everything random.
+        clearance: How close the feet of a twin came in the last walk.
     """
 
     predictor: RolloutPredictor = field(kw_only=True)
     noise: float = 0.0
     seed: int = 0
+    clearance: FootClearance | None = field(default=None, init=False)
 
     @classmethod
     def open(
@@ -63,6 +63,8 @@ class Robot(Session):
         seed: int = 0,
         noise: float = 0.0,
         delay: float | None = None,
+        world: World | None = None,
+        known_ground: bool = False,
     ) -> Self:
         """Return a robot, connected and configured. Nothing moves.
 
@@ -76,6 +78,8 @@ class Robot(Session):
             seed: Seed of everything random.
             noise: Standard deviation of noise on the start pose, degrees.
             delay: Delay of the servos, s; the robot's own by default.
+            world: The twin's ground and how its plant differs; the controller does not know.
+            known_ground: The rollouts know the ground.
 
         Raises:
             WindupError: The robot's files, these options, or the bus cannot be.
@@ -85,8 +89,15 @@ class Robot(Session):
         steps = description.physics_steps(rate or wired)
         if port is None:
             stack = twin_stack(
-                description, state=state or "true", paced=realtime, delay=delay, seed=seed
+                description,
+                state=state or "true",
+                paced=realtime,
+                delay=delay,
+                seed=seed,
+                world=world,
             )
+        elif world is not None:
+            raise UsageError("only a twin has another ground or plant; leave --port away")
         else:
             stack = wire_stack(
                 description, port, state=state or "estimated", arm=arm, noise=noise, seed=seed
@@ -94,7 +105,11 @@ class Robot(Session):
         return cls(
             description=description,
             stack=stack,
-            predictor=RolloutPredictor(description, delay=stack.delay),
+            predictor=RolloutPredictor(
+                description,
+                delay=stack.delay,
+                ground=world.ground if world is not None and known_ground else None,
+            ),
             period=steps * description.timestep,
             noise=noise,
             seed=seed,
@@ -143,6 +158,11 @@ class Robot(Session):
         start = self.twin.time + delay
         self.twin.push(Push.impulse(self.description.torso, impulse, direction, start, duration))
 
+    def shove(self, speed: float, direction: float = 0.0, *, delay: float = 0.0) -> None:
+        """Give a whole twin `speed` m/s toward `direction` rad, `delay` s from now."""
+        mass = float(self.twin.model.body_mass.sum())
+        self.twin.push(Push.velocity_step(speed, mass, direction, self.twin.time + delay))
+
     def rest(self) -> None:
         """Crouch, if the robot has a pose for it, and switch the torque off."""
         crouch = self.description.crouch
@@ -172,6 +192,8 @@ class Robot(Session):
         steps: int = 40,
         options: WalkOptions | None = None,
         on_step: OnStep | None = None,
+        disturb: Callable[["Robot"], None] | None = None,
+        stand: float = 0.0,
     ) -> WalkReport:
         """Walk a number of steps and return how it went.
 
@@ -180,6 +202,8 @@ class Robot(Session):
             steps: How many.
             options: Everything else; `speed` wins.
             on_step: Called at the end of each step with its number and its speed, m/s.
+            disturb: Called before the first step, to arrange pushes on a twin.
+            stand: Then come to rest and stand for so long, s.
 
         Raises:
             UsageError: The options do not fit the gait; nothing has moved.
@@ -193,13 +217,20 @@ class Robot(Session):
         stopwatch = None if self.paced else self.predictor.stopwatch
         with ExitStack() as stack:
             walker = build_walk(self.description, options, self.predictor)
+            end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
             if self.paced and walker.planner is not None:
                 aside = plan_aside(self.description, options, self.predictor, self.period)
                 walker.planner = self._when_ready(stack.enter_context(aside))
             self.start_at(walker.gait.file.start)
+            self._watch_feet()
+            if disturb is not None:
+                disturb(self)
             report = WalkReport(self, walker, options, steps)
             with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far
-                self.run(walker, until=_walk_end(walker, steps, on_step), rollouts=stopwatch)
+                walked = self.run(walker, until=self._looking(end), rollouts=stopwatch)
+                if stand > 0.0 and walked.reason == "done":
+                    walked.reason = self.stand(stand).reason
+                    self.loop = walked
         report.loop = self.loop
         return report
 
@@ -211,6 +242,23 @@ class Robot(Session):
             self.run(holder, until=lambda _: "ready" if planner.ready() else None)
         return planner.wait_ready()
 
+    def _watch_feet(self) -> None:
+        """From now on remember how close the feet of a twin come."""
+        twin = self.stack.twin
+        self.clearance = None
+        if twin is not None:
+            self.clearance = FootClearance(self.description, twin.model, twin.data)
+
+    def _looking(self, end: Until) -> Until:
+        """Return `end`, with a look at the feet first."""
+
+        def until(observation: Observation) -> str | None:
+            if self.clearance is not None:
+                self.clearance.look()
+            return end(observation)
+
+        return until
+
     def start_at(self, name: str | None) -> None:
         """Put a fresh twin into a start pose, with noise; let anything else move there."""
         poses = self.description.poses
@@ -221,17 +269,3 @@ class Robot(Session):
             self.twin.reset(pose, noise=self.noise, seed=self.seed)
         else:
             self.run(PoseHolder(self.description.joints, pose), START_SECONDS)
-
-
-def _walk_end(walker: Balancer, steps: int, on_step: OnStep | None) -> Until:
-    """Return what ends a walk: enough steps."""
-    seen = 0
-
-    def until(observation: Observation) -> str | None:
-        nonlocal seen
-        if on_step is not None and walker.steps > seen:
-            seen = walker.steps
-            on_step(seen, walker.records[-1].speed)
-        return "done" if walker.steps >= steps else None
-
-    return until

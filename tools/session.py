@@ -22,8 +22,10 @@ from hal.observation import BaseState, Observation
 from hal.telemetry import TelemetryWriter
 from robots import RobotDescription
 from sim_twin.backend import TwinClock
+from tools.interrupts import asked_to_end
 from tools.stack import Stack
 
+INTERRUPTED = "interrupted"
 # Called once a tick with the observation.
 Watch = Callable[[Observation], None]
 
@@ -115,20 +117,30 @@ class Session:
         Raises:
             WindupError: From the guard, the backend or the controller; the stop policy has run.
         """
-        self.arm()
-        begin = self.backend.clock.now()
+        with asked_to_end() as asked:
+            self.arm()
+            begin = self.backend.clock.now()
 
-        def end(observation: Observation) -> str | None:
-            self.base = observation.base
-            if self.watch is not None:
-                self.watch(observation)
-            if self.fallen:
-                return "fell"
-            if until is not None and (reason := until(observation)) is not None:
-                return reason
-            over = seconds is not None and observation.time >= begin + seconds - 1e-9
-            return "done" if over else None
+            def end(observation: Observation) -> str | None:
+                self.base = observation.base
+                if self.watch is not None:
+                    self.watch(observation)
+                if asked():
+                    return INTERRUPTED
+                if self.fallen:
+                    return "fell"
+                if until is not None and (reason := until(observation)) is not None:
+                    return reason
+                over = seconds is not None and observation.time >= begin + seconds - 1e-9
+                return "done" if over else None
 
+            self._run(controller, end, rollouts)
+        if self.loop.reason == INTERRUPTED:
+            raise KeyboardInterrupt
+        return self.loop
+
+    def _run(self, controller: Controller, end: Until, rollouts: Stopwatch | None) -> None:
+        """Run the loop; stop the robot if it ends by an error or a wish."""
         self.loop = LoopReport()
         self._publish()
         try:
@@ -145,12 +157,14 @@ class Session:
                     report=self.loop,
                     recorder=self.telemetry,
                 )
+            if self.loop.reason == INTERRUPTED:
+                self._stop_after_error()
         except WindupError as error:
             self.loop.reason = str(error)
             self._stop_after_error()
             raise
         except KeyboardInterrupt:
-            self.loop.reason = "interrupted"
+            self.loop.reason = INTERRUPTED
             self._stop_after_error()
             raise
         except Exception as error:
@@ -160,7 +174,6 @@ class Session:
         finally:
             if self.telemetry is not None:
                 self.telemetry.end(self.loop.reason)
-        return self.loop
 
     def _publish(self) -> None:
         """Say to everybody that a run begins; a robot runs without them all the same."""

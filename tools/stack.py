@@ -19,6 +19,7 @@ from sim_twin.backend import TwinBackend
 from sim_twin.imu_errors import OPENCR, ImuErrors
 from sim_twin.sensors import Sensors
 from sim_twin.twin import Twin
+from sim_twin.world import World
 from tools.build import build_estimator
 
 State = Literal["true", "estimated"]
@@ -75,20 +76,29 @@ class Truth:
 
 
 def twin_stack(
-    robot: RobotDescription, *, state: State, paced: bool, delay: float | None, seed: int
+    robot: RobotDescription,
+    *,
+    state: State,
+    paced: bool,
+    delay: float | None,
+    seed: int,
+    world: World | None = None,
 ) -> Stack:
     """Return a stack on a twin of `robot`; where its state is estimated, its IMU is a real one.
+
+    What is odd about the twin's `world` nobody is told.
 
     Raises:
         UsageError: The delay is negative, or no whole number of physics steps.
     """
     _check_delay(delay, robot)
-    twin = Twin(robot, delay=delay)
+    twin = Twin(robot, delay=delay, world=world)
     true = state == "true"
     errors = None if true else ImuErrors(OPENCR, twin.timestep, seed)
     estimator = None if true else build_estimator(robot)
     backend = _guarded(TwinBackend(twin, paced=paced, true_base=true, imu_errors=errors), robot)
-    return Stack(backend, twin, estimator, twin.delay + robot.drive.sensor_delay)
+    delay = robot.drive.command_delay if delay is None else delay
+    return Stack(backend, twin, estimator, delay + robot.drive.sensor_delay)
 
 
 def wire_stack(

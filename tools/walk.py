@@ -10,28 +10,49 @@ import numpy as np
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from hal.errors import UsageError
-from tools.build import WalkOptions, build_walk
+from robots import load_robot
+from tools.build import build_walk
 from tools.options import Common
 from tools.output import console, write_json
 from tools.plot import Trace, plot_walk
 from tools.report import WalkReport, summary
 from tools.robot import Robot
+from tools.twin_options import TwinOptions
+from tools.walk_options import WalkOptions
+
+STEPS = 80
+GOAL_STEPS = 1000
 
 
 @dataclass(frozen=True, kw_only=True)
-class Walk(Common):
+class Walk(TwinOptions, Common):
     """Walk a robot and say how it went."""
 
-    steps: int = 80
-    """How many steps to walk."""
+    steps: int | None = None
+    """How many steps to walk, 80 by default; or in how many to reach a goal, 1000 by default."""
     speed: float | None = None
     """Speed, m/s; the gait's default otherwise."""
+    side: float = 0.0
+    """Sideways speed, m/s; positive to the left."""
+    turn: float = 0.0
+    """Turn rate, degrees/s; positive to the left."""
+    path: str | None = None
+    """Follow a path: a CSV file of x,y waypoints, circle:RADIUS or square:SIDE, m."""
+    to: tuple[float, float] | None = None
+    """Walk to the point X Y, m, and stop."""
+    stand: float = 0.0
+    """Afterwards come to rest and stand for some seconds."""
+    style: tuple[str, ...] = ()
+    """Styles and how much of them, NAME=AMOUNT; any perturbation of the gait is one too."""
     gait: str = "walk"
     """Name of the gait."""
     rv: tuple[str, ...] | None = None
     """Regulation variables, such as: up, or up.forward swing_com.lateral."""
     sampling: Literal["sp", "fl", "lf", "full"] | None = None
     """How the step model is sampled."""
+    model: Literal["full", "frozen", "library"] = "full"
+    """Sample the step model every step, or only when regulation drifts (frozen), or look it up by
+    the start of the step (library): one rollout then does."""
     target: tuple[str, ...] = ()
     """Targets of the regulation variables: VALUE for the first forward one, or NAME=VALUE."""
     torso_servo: bool = True
@@ -43,12 +64,14 @@ class Walk(Common):
 
     def run(self) -> int:
         """Walk; returns the exit status."""
-        if self.steps < 1:
+        if self.steps is not None and self.steps < 1:
             raise UsageError(f"--steps {self.steps}: give 1 or more")
+        if self.stand < 0.0:
+            raise UsageError(f"--stand {self.stand:g}: give 0 s or more")
         seeds = self.all_seeds
         if len(seeds) == 1 and self.seeds is None:
             result = self._one(seeds[0], show=True)
-            ok = result["steps"] >= self.steps and not result["fell"]
+            ok = result["reason"] == "done"
             write_json(self.json, "walk", result)
             return 130 if result["reason"] == "interrupted" else 0 if ok else 1
         rows = list(self._many(seeds))
@@ -69,6 +92,8 @@ class Walk(Common):
             seed=seed,
             noise=self.noise,
             delay=self.delay,
+            world=self.world(load_robot(self.robot), seed),
+            known_ground=self.known_ground,
         ) as robot:
             trace = Trace(robot.description.contacts)
             robot.watch = trace.add if self.plot and show else None
@@ -81,18 +106,35 @@ class Walk(Common):
                 console.print(f"picture: {self.plot}")
         return report.result()
 
+    @property
+    def _most(self) -> int:
+        """Steps to walk, or to reach the goal in."""
+        if self.steps is not None:
+            return self.steps
+        return STEPS if self.path is None and self.to is None else GOAL_STEPS
+
     def _walk(self, robot: Robot, progress: Progress) -> WalkReport:
-        bar = progress.add_task("walking", total=self.steps, speed="", lean="")
+        bar = progress.add_task("walking", total=self._most, speed="", lean="")
         return robot.walk(
-            steps=self.steps, options=self._options(), on_step=_update(progress, bar, robot)
+            steps=self._most,
+            options=self._options(),
+            on_step=_update(progress, bar, robot),
+            disturb=self.disturb(),
+            stand=self.stand,
         )
 
     def _options(self) -> WalkOptions:
         return WalkOptions(
             gait=self.gait,
             speed=self.speed,
+            side=self.side,
+            turn=self.turn,
+            style=self.style,
+            path=self.path,
+            to=self.to,
             rv=self.rv,
             sampling=self.sampling,
+            model=self.model,
             target=self.target,
             torso_servo=self.torso_servo,
             open_loop=self.open_loop,
@@ -110,6 +152,7 @@ class Walk(Common):
 
     def _check(self) -> None:
         """Raise what is wrong with the options before any process is started."""
+        self.world(load_robot(self.robot), 0)
         with Robot.open(self.robot, rate=self.rate, delay=self.delay) as robot:
             build_walk(robot.description, self._options(), robot.predictor)
 
@@ -159,8 +202,14 @@ def _line(report: WalkReport) -> str:
     return (
         f"{result['robot']} {end}{pace}: {result['distance_m']:.2f} m forward, "
         f"{result['lateral_m']:+.2f} m to the left, heading {result['heading_deg']:+.1f} degrees, "
-        f"{ratio:.1f} x real time"
+        f"{ratio:.1f} x real time{_crossing(report)}"
     )
+
+
+def _crossing(report: WalkReport) -> str:
+    """Return a warning where the feet went through each other."""
+    clear = report.clearance
+    return f", feet cross by {-clear:.0f} mm" if clear is not None and clear < 0.0 else ""
 
 
 def _sentence(whole: dict[str, Any]) -> str:
@@ -169,4 +218,5 @@ def _sentence(whole: dict[str, Any]) -> str:
     return (
         f"{whole['walked']} of {whole['runs']} runs walked to the end{pace}, "
         f"heading within {whole['heading_max_deg']:.1f} degrees"
+        f"{', feet cross in ' + str(whole['crossed']) if whole['crossed'] else ''}"
     )

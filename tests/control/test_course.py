@@ -4,24 +4,22 @@ import pytest
 from control.course import Course
 from control.gait_file import Heading
 
-HERE = np.zeros(3)
-
 
 def course(direction: float = 0.0) -> Course:
-    return Course(Heading(perturbation="turn", gain=0.5, limit=6.0), direction)
+    return Course(Heading(perturbation="turn", gain=0.5, limit=6.0), direction=direction)
 
 
 @pytest.mark.parametrize(
     ("degrees", "scale"), [(0.0, 0.0), (-4.0, 2.0), (4.0, -2.0), (-90.0, 6.0), (90.0, -6.0)]
 )
 def test_it_turns_back_in_proportion_and_within_its_limit(degrees: float, scale: float) -> None:
-    assert course().scale(np.radians(degrees), HERE) == pytest.approx(scale)
+    assert course().scale(np.radians(degrees)) == pytest.approx(scale)
 
 
 def test_it_takes_the_short_way_round() -> None:
-    assert course(np.radians(179.0)).scale(np.radians(-179.0), HERE) == pytest.approx(-1.0)
-    assert course(np.radians(-179.0)).scale(np.radians(179.0), HERE) == pytest.approx(1.0)
-    assert course().scale(2.0 * np.pi, HERE) == pytest.approx(0.0)
+    assert course(np.radians(179.0)).scale(np.radians(-179.0)) == pytest.approx(-1.0)
+    assert course(np.radians(-179.0)).scale(np.radians(179.0)) == pytest.approx(1.0)
+    assert course().scale(2.0 * np.pi) == pytest.approx(0.0)
 
 
 def test_it_says_which_perturbation_turns() -> None:

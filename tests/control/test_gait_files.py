@@ -55,6 +55,15 @@ def test_a_gait_file_becomes_a_graph_in_radians_and_seconds(tmp_path: Path) -> N
     assert graph.ends_step.tolist() == [False, True, False, True]
 
 
+def test_entries_of_one_perturbation_add_up(tmp_path: Path) -> None:
+    slow = 'name = "slow"\nstates = ["land"]\n'
+    more = f"[[perturbation]]\n{slow.replace('land', 'swing')}pose = {{ r_hip = 3 }}\n"
+    subject = gait(tmp_path, GAIT + more)
+    assert subject.perturbations == ("hip", "turn", "slow")
+    assert subject.hold_change[2][1] == pytest.approx(0.1)
+    assert np.degrees(np.abs(subject.pose_change[2][0]).max()) == pytest.approx(3.0)
+
+
 def test_mirror_adds_the_steps_of_the_other_side(tmp_path: Path) -> None:
     graph = gait(tmp_path, GAIT).graph
     assert graph.names == ("swing", "land", "swing'", "land'")

@@ -1,17 +1,20 @@
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from control.balancer import Balancer
 from control.planner import StepPlanner, StepRequest
+from control.shaken import Shaken
 from hal.controller import RolloutStart
 from hal.joints import Array
 from robots import load_robot
 from sim_twin.backend import TwinBackend
 from sim_twin.twin import Twin
-from tools.build import WalkOptions, build_walk
+from tools.build import build_walk
 from tools.robot import Robot
+from tools.walk_options import WalkOptions
 
 LATENCY = 0.06
 
@@ -59,10 +62,10 @@ class Late:
         return 0.1 * number * np.ones(4)
 
 
-def walk(planner: Late, steps: int) -> Balancer:
+def walk(planner: Late, steps: int, shaken: Shaken | None = None) -> Balancer:
     with Robot.open("op3") as robot:
         walker = build_walk(robot.description, WalkOptions(), robot.predictor)
-        walker.planner = planner
+        walker.planner, walker.shaken = planner, shaken
         robot.start_at(walker.gait.file.start)
         robot.run(walker, until=lambda _: "done" if walker.steps >= steps else None)
     return walker
@@ -89,6 +92,23 @@ def test_answers_that_are_late_or_never_come_are_counted() -> None:
     walker = walk(silent, 4)
     assert walker.late == 2  # the third and the fourth
     np.testing.assert_allclose(walker.records[3].scale, silent.requests[3].before)
+
+
+def test_a_step_planned_again_keeps_its_scalings_and_its_beginning_until_the_answer() -> None:
+    planner = Late()
+    walker = walk(planner, 4, Shaken(threshold=0.0))  # every state but those never seen
+    assert walker.replans > 0
+    assert len(planner.requests) == 5 + walker.replans
+    pairs = list(pairwise(planner.requests))
+    again = [(one, two) for one, two in pairs if one.origin is two.origin]
+    assert len(again) == walker.replans
+    for number, (one, two) in enumerate(pairs, 1):
+        if one.origin is two.origin:
+            assert two.start.observation.time > one.start.observation.time
+            columns = [walker.gait.index(name) for name in walker.perturbations]
+            answered = one.due(LATENCY) <= two.start.observation.time
+            if answered:
+                np.testing.assert_allclose((two.before - two.scale)[columns], 0.1 * number)
 
 
 def test_a_planner_with_a_latency_walks_in_simulated_time() -> None:

@@ -148,7 +148,8 @@ def test_a_column_that_falls_on_both_sides_comes_from_the_last_good_model() -> N
     plant = Plant(FULL, 1.0, -1.0)
     found = subject.control(plant, TARGET + 0.05, side=0)
     np.testing.assert_allclose(plant.end(found), TARGET + 0.05, atol=1e-9)
-    assert subject.counters == {"retried": 2, "dropped": 2, "kept_last": 0, "clipped": 0}
+    wanted = {"retried": 2, "dropped": 2, "kept_last": 0, "clipped": 0, "sampled": 2, "reused": 0}
+    assert subject.counters == wanted
 
 
 def test_without_any_good_model_a_fallen_column_is_left_alone() -> None:

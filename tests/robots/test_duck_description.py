@@ -5,7 +5,7 @@ import pytest
 from control.play import PoseHolder
 from robots import RobotDescription, load_robot
 from tools import Robot
-from tools.build import WalkOptions
+from tools.walk_options import WalkOptions
 
 LEGS = ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle")
 HEAD = ("neck_pitch", "head_pitch", "head_yaw", "head_roll")

@@ -4,7 +4,7 @@ import pytest
 
 from robots import RobotDescription, load_robot
 from tools import Robot
-from tools.build import WalkOptions
+from tools.walk_options import WalkOptions
 
 TORSO = (
     "lower_torso",

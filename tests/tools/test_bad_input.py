@@ -70,7 +70,7 @@ OPTIONS = {
     "no seeds": ("walk op3 --seeds 0", "--seeds 0: give 1 or more"),
     "negative seed": ("walk op3 --seed -1 --noise 0.2", "--seed -1"),
     "speed": ("walk op3 --speed 9", "speed 9 m/s is outside the range of gait 'walk': 0 .. "),
-    "speed of a gait without": ("walk human --speed 1", "gait 'walk' has no speed table; "),
+    "speed of a gait without": ("walk human12 --speed 1", "gait 'walk' has no speed table; "),
     "target unknown": ("walk op3 --target upp=1", "unknown --target 'upp'; "),
     "target no number": ("walk op3 --target up=much", "--target up=much: 'much' is no number"),
     "target nan": ("walk op3 --target up=nan", "--target up=nan"),

@@ -17,9 +17,10 @@ from robots import load_robot
 from sim_twin.backend import TwinBackend
 from sim_twin.rollouts import RolloutPredictor
 from sim_twin.twin import Twin
-from tools.build import WalkOptions, build_walk
+from tools.build import build_walk
 from tools.plan_process import ProcessPlanner, plan_aside
 from tools.plan_worker import Question, Task, _newest
+from tools.walk_options import WalkOptions
 
 OP3 = load_robot("op3")
 DT = 0.004

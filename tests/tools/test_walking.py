@@ -5,7 +5,7 @@ import pytest
 
 from tests.tools.conftest import Windup
 from tools import Robot
-from tools.build import WalkOptions
+from tools.walk_options import WalkOptions
 
 KEYS = {
     "schema",
@@ -31,6 +31,12 @@ KEYS = {
     "regulation",
     "clamps",  # more than was asked for: each clamp that happened, and how often
     "late_plans",  # and the steps whose plan came too late, null unless paced
+    "side_m_s",
+    "turn_deg_s",
+    "foot_clearance_mm",
+    "rollouts_a_step",
+    "replans",
+    "step_model",
 }
 
 

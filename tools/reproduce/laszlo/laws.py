@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from control.balancer import Balancer
+from control.course import Course
 from control.speed import SpeedControl
 from hal.joints import Array
 
@@ -68,17 +69,15 @@ class SpeedLaw(SpeedControl):
 
 
 @dataclass
-class ConstantTurn:
+class ConstantTurn(Course):
     """A turning perturbation scaled the same at every step (section 5.3).
 
     Attributes:
-        perturbation: Its name.
         degrees: Its scaling; positive turns left.
     """
 
-    perturbation: str
-    degrees: float
+    degrees: float = 0.0
 
-    def scale(self, heading: float, position: Array) -> float:
+    def scale(self, heading: float) -> float:
         """Return the scaling of the coming step."""
         return self.degrees

@@ -7,20 +7,22 @@ from typing import Any, cast
 import numpy as np
 
 from control.balancer import Balancer
-from control.course import Course
+from control.gait_file import Heading
 from control.planner import StepPlanner
 from control.regulation import AXES, regulation_variables
 from control.step_model import Sample, StepModel
 from hal.errors import DivergedError
 from hal.joints import Array
-from tools.build import WalkOptions, body_of, build_walk
+from tools.build import body_of, build_walk
 from tools.reproduce.figure import Job, Result
 from tools.reproduce.laszlo.laws import ConstantTurn, SpeedLaw
 from tools.reproduce.laszlo.recorder import Recorder
 from tools.robot import Robot
+from tools.walk_options import WalkOptions
 
 ROBOT = "human"
 NOISE = 0.2  # degrees
+TURN = "veer"  # the perturbation that turns
 VECTORS = ("up", "swing_com", "stance_com")
 PERTURBATIONS = ("stance_hip_pitch", "stance_hip_roll")
 
@@ -71,15 +73,14 @@ def walk(
     )
     with Robot.open(ROBOT, seed=seed, noise=NOISE) as robot:
         walker = build_walk(robot.description, options, robot.predictor)
-        walker.course = None
+        walker.steering.course = None
         if turn:
-            # Anything that scales a perturbation by where the robot is can be a course.
-            walker.course = cast(Course, ConstantTurn("turn", turn))
+            walker.steering.course = ConstantTurn(Heading(TURN, gain=0.0), degrees=turn)
         _hold_longer(walker, hold)
         if law is not None:
             forward_name, lateral_name = (variable.name for variable in walker.regulation)
             bias = {forward_name: forward, lateral_name: lateral}
-            walker.speed = SpeedLaw(walker.gait, bias=bias, walker=walker, **law)
+            walker.steering.speed = SpeedLaw(walker.gait, bias=bias, walker=walker, **law)
         if not limits and isinstance(walker.planner, StepPlanner):
             walker.planner.model.limits = np.full(len(walker.regulation), np.inf)
         return _walk(robot, walker, steps, traced=seed == 0)
@@ -97,7 +98,7 @@ def response(*, vary: int, step: int, scalings: list[float], seed: int) -> Resul
     options = WalkOptions(rv=("up",), sampling="sp", torso_servo=False)
     with Robot.open(ROBOT, seed=seed, noise=NOISE) as robot:
         walker = build_walk(robot.description, options, robot.predictor)
-        walker.course = None
+        walker.steering.course = None
         planner = cast(StepPlanner, walker.planner)
         planner.regulation = regulation_variables(list(VECTORS))
         tried = np.zeros((len(scalings), len(PERTURBATIONS)))

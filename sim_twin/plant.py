@@ -1,0 +1,56 @@
+"""A robot that is not quite as its files say: gains, friction, delay, mass and supply."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Plant:
+    """What a twin has that the rollouts do not know; None is as the robot's files say.
+
+    Attributes:
+        stiffness: Factor on the gains of all joints.
+        friction_loss: Dry friction of every joint, N m.
+        delay: From a write to the joint acting on it, s.
+        floor: Friction coefficient of feet and floor.
+        mass: Factor on all masses and inertias.
+        supply: Voltage of the servos, V.
+    """
+
+    stiffness: float = 1.0
+    friction_loss: float | None = None
+    delay: float | None = None
+    floor: float | None = None
+    mass: float = 1.0
+    supply: float | None = None
+
+    @classmethod
+    def random(cls, seed: int, timestep: float) -> "Plant":
+        """Return one of the random plants that a walk should survive untuned.
+
+        kp -20..+20 %, friction loss 0-0.3 N m, delay 4-24 ms in whole physics steps, floor
+        0.5-1.0, mass -10..+10 %, supply 10.5-12.6 V.
+        """
+        draw = np.random.default_rng([7, seed]).uniform
+        return cls(
+            stiffness=draw(0.8, 1.2),
+            friction_loss=draw(0.0, 0.3),
+            delay=round(draw(0.004, 0.024) / timestep) * timestep,
+            floor=draw(0.5, 1.0),
+            mass=draw(0.9, 1.1),
+            supply=draw(10.5, 12.6),
+        )
+
+    def change(self, spec: mujoco.MjSpec) -> None:
+        """Give `spec` this plant's friction and masses."""
+        for body in spec.bodies:
+            body.mass *= self.mass
+            body.inertia *= self.mass
+        for joint in spec.joints:
+            if joint.type == mujoco.mjtJoint.mjJNT_HINGE and self.friction_loss is not None:
+                joint.frictionloss = self.friction_loss
+        for geom in spec.geoms:
+            if self.floor is not None and (geom.contype or geom.conaffinity):
+                geom.friction[0] = self.floor

@@ -1,0 +1,103 @@
+"""The ground of a twin: flat, sloping, or strips of uneven height across the way."""
+
+from dataclasses import dataclass
+from math import cos, radians, sin, tan
+
+import mujoco
+import numpy as np
+
+from hal.joints import Array
+
+WIDE = 20.0  # half the width of a tile, m
+DEEP = 0.25  # half its thickness, m
+BEHIND = 3.0  # flat ground behind the start, m
+SLOPE_TILE = 4.0
+TILES = 60
+
+
+@dataclass(frozen=True)
+class Ground:
+    """A flat start, and behind it ground that slopes up (or down) or changes its height.
+
+    Attributes:
+        slope: Degrees; positive is uphill.
+        strips: Largest height of a strip above or below the start, m.
+        start: Where the flat ground ends, m.
+        strip: Length of a strip, m.
+        seed: Seed of the heights.
+    """
+
+    slope: float = 0.0
+    strips: float = 0.0
+    start: float = 0.5
+    strip: float = 0.25
+    seed: int = 0
+
+    @property
+    def flat(self) -> bool:
+        """True when there is nothing but a plane."""
+        return not (self.slope or self.strips)
+
+    @property
+    def tiles(self) -> Array:
+        """Tiles (t, 2) after the flat start: where each begins, and its height there, m."""
+        if self.strips:
+            count = TILES * 4
+            heights = np.random.default_rng(self.seed).uniform(-self.strips, self.strips, count)
+            return np.stack([self.start + self.strip * np.arange(count), heights], axis=1)
+        x = SLOPE_TILE * np.arange(TILES)
+        return np.stack([self.start + x, x * tan(radians(self.slope))], axis=1)
+
+    @property
+    def length(self) -> float:
+        """Length of a tile along x, m."""
+        return self.strip if self.strips else SLOPE_TILE
+
+    def height(self, x: float) -> float:
+        """Return the height of the ground at `x` m.
+
+        >>> round(Ground(slope=45.0, start=1.0).height(3.0), 3)
+        2.0
+        """
+        if self.flat or x < self.start:
+            return 0.0
+        if self.slope:
+            return (x - self.start) * tan(radians(self.slope))
+        tiles = self.tiles
+        return float(tiles[min(int((x - self.start) / self.strip), len(tiles) - 1), 1])
+
+    def build(self, spec: mujoco.MjSpec) -> None:
+        """Replace the floor plane of `spec` by tiles, with the plane's own surface."""
+        if self.flat:
+            return
+        floor = next(g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_PLANE)
+        begin = self.start - BEHIND
+        self._tile(spec, floor, begin, 0.0, BEHIND, 0.0)
+        for x, height in self.tiles:
+            self._tile(spec, floor, float(x), float(height), self.length, radians(self.slope))
+        spec.delete(floor)
+
+    def _tile(
+        self,
+        spec: mujoco.MjSpec,
+        floor: mujoco.MjsGeom,
+        x: float,
+        height: float,
+        length: float,
+        pitch: float,
+    ) -> None:
+        """Add a box whose upper face begins at (x, height) and climbs by `pitch` rad."""
+        half = 0.5 * length / cos(pitch)
+        along = np.array([cos(pitch), 0.0, sin(pitch)])
+        down = np.array([sin(pitch), 0.0, -cos(pitch)])
+        centre = np.array([x, 0.0, height]) + half * along + DEEP * down
+        spec.worldbody.add_geom(
+            type=mujoco.mjtGeom.mjGEOM_BOX,
+            size=[half, WIDE, DEEP],
+            pos=centre,
+            quat=[cos(0.5 * pitch), 0.0, -sin(0.5 * pitch), 0.0],
+            contype=floor.contype,
+            conaffinity=floor.conaffinity,
+            friction=floor.friction,
+            material=floor.material,
+        )

@@ -1,0 +1,104 @@
+"""Speed, side, turn and style as scalings and targets of the coming step."""
+
+from dataclasses import replace
+from math import pi, radians
+
+import pytest
+
+from control.course import Course
+from control.gait import Gait
+from control.gait_file import Heading, Side, Style, Turn
+from control.guide import WalkCommand
+from control.side import SideControl
+from control.style import Styling
+from hal.errors import UnknownNameError, UsageError
+from robots import load_robot
+from tools.build import find_gait
+from tools.steer import amounts
+
+
+@pytest.fixture(scope="module")
+def gait() -> Gait:
+    return find_gait(load_robot("op3"), "walk")
+
+
+def with_file(gait: Gait, **changes: object) -> Gait:
+    import msgspec
+
+    return replace(gait, file=msgspec.structs.replace(gait.file, **changes))
+
+
+def test_a_turn_moves_the_wanted_heading_on_by_its_rate() -> None:
+    course = Course(Heading("turn", gain=0.5, limit=20.0), Turn(limit=50.0, feed=0.6))
+    course.begin_step(WalkCommand(turn=radians(40.0)), heading=0.0, duration=0.25)
+    assert course.direction == pytest.approx(radians(10.0))
+    assert course.scale(0.0) == pytest.approx(0.6 * 10.0 + 0.5 * 10.0)
+    assert course.scale(radians(10.0)) == pytest.approx(6.0)
+
+
+def test_a_direction_is_reached_no_faster_than_the_turn_allows_and_then_held() -> None:
+    course = Course(Heading("turn", gain=0.5), Turn(limit=50.0))
+    order = WalkCommand(turn=radians(20.0), direction=-radians(7.0))
+    for wanted in (-5.0, -7.0, -7.0):
+        course.begin_step(order, heading=course.direction, duration=0.25)
+        assert course.direction == pytest.approx(radians(wanted))
+
+
+def test_the_short_way_round_is_taken() -> None:
+    course = Course(Heading("turn", gain=0.5), Turn(limit=400.0), direction=pi - 0.1)
+    course.begin_step(WalkCommand(turn=6.0, direction=-pi + 0.1), heading=pi - 0.1, duration=1.0)
+    assert course.rate == pytest.approx(0.2)
+
+
+def test_a_body_that_does_not_follow_is_not_left_behind() -> None:
+    course = Course(Heading("turn", gain=0.5), Turn(limit=400.0))
+    for _ in range(9):
+        course.begin_step(WalkCommand(turn=1.0), heading=0.0, duration=0.5)
+    assert course.direction == pytest.approx(radians(30.0))
+
+
+def test_walking_sideways_moves_the_targets_of_the_two_feet_apart(gait: Gait) -> None:
+    law = Side(limit=0.1, ramp=0.02, targets={"xcom.lateral": -0.2}, spread={"spread": 50.0})
+    side = SideControl(with_file(gait, side=law), -0.08)
+    side.begin_step(-0.08)
+    assert side.targets(swing_is_left=True) == {"xcom.lateral": pytest.approx(0.004)}
+    assert side.targets(swing_is_left=False) == {"xcom.lateral": pytest.approx(-0.004)}
+    assert side.scale()[gait.index("spread")] == pytest.approx(1.0)
+
+
+def test_sideways_feedback_looks_at_whole_strides(gait: Gait) -> None:
+    side = SideControl(with_file(gait, side=Side(limit=0.1, gain=0.5, correction=0.02)))
+    side.measured(0.3)
+    assert side.correction == 0.0
+    side.measured(-0.32)
+    assert side.correction == pytest.approx(0.005)
+
+
+def test_a_side_speed_past_the_gait_is_refused(gait: Gait) -> None:
+    with pytest.raises(UsageError, match=r"at most at 0\.1 m/s"):
+        SideControl(gait, 0.3)
+    with pytest.raises(UsageError, match="cannot walk sideways"):
+        SideControl(with_file(gait, side=None), 0.1)
+
+
+def test_styles_compose_and_ramp(gait: Gait) -> None:
+    low = Style(
+        name="low", scale={"crouch": 4.0, "lift": 1.0}, targets={"up.forward": 0.1}, steps=2
+    )
+    styling = Styling(with_file(gait, style=[low]), {"low": 1.0, "lift": -2.0})
+    styling.begin_step()
+    assert styling.scale()[gait.index("crouch")] == pytest.approx(2.0)
+    styling.begin_step()
+    assert styling.targets() == {"up.forward": pytest.approx(0.1)}
+    styling.begin_step()
+    assert styling.scale()[gait.index("lift")] == pytest.approx(-1.0)
+
+
+def test_a_style_that_is_not_there_or_too_much_is_refused(gait: Gait) -> None:
+    with pytest.raises(UnknownNameError, match="did you mean 'crouch'"):
+        Styling(gait, {"crouh": 1.0})
+    with pytest.raises(UsageError, match="outside its range"):
+        Styling(gait, {"crouch": 40.0})
+    with pytest.raises(UsageError, match="'much' is no number"):
+        amounts(("crouch=much",))
+    assert amounts(("crouch", "lift=-2")) == {"crouch": 1.0, "lift": -2.0}

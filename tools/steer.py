@@ -1,0 +1,57 @@
+"""Putting together what steers a walk: speed, side, turns, style, a route."""
+
+from math import isfinite, radians
+
+from control.course import Course
+from control.gait import Gait
+from control.guide import Steady, WalkCommand
+from control.side import SideControl
+from control.speed import SpeedControl
+from control.steering import Steering
+from control.style import Styling
+from hal.errors import UsageError
+from robots import RobotDescription
+from tools.route import guide_of
+from tools.walk_options import WalkOptions
+
+
+def steering_of(robot: RobotDescription, gait: Gait, options: WalkOptions) -> Steering:
+    """Return what steers a walk; open loop it only follows the gait's own speed.
+
+    Raises:
+        UsageError: The gait cannot walk as wanted.
+    """
+    turn = gait.file.turn
+    fastest = 0.0 if turn is None else turn.limit
+    if abs(options.turn) > fastest:
+        can = f"turns at most at {fastest:g} degrees/s" if fastest else "cannot turn"
+        raise UsageError(f"turn {options.turn:g} degrees/s: gait {gait.name!r} {can}")
+    order = WalkCommand(options.speed, options.side, radians(options.turn))
+    route = guide_of(robot, gait, path=options.path, to=options.to, speed=options.speed)
+    heading = None if options.open_loop else gait.file.heading
+    return Steering(
+        gait=gait,
+        guide=options.guide or route or Steady(order),
+        speed=SpeedControl(gait, options.speed),
+        side=SideControl(gait, options.side),
+        style=Styling(gait, amounts(options.style)),
+        course=None if heading is None else Course(heading, turn),
+    )
+
+
+def amounts(given: tuple[str, ...]) -> dict[str, float]:
+    """Return amounts by name from "NAME=AMOUNT", or a bare NAME for an amount of one.
+
+    Raises:
+        UsageError: An amount is no number.
+    """
+    found = {}
+    for text in given:
+        name, equals, value = text.partition("=")
+        try:
+            found[name] = float(value) if equals else 1.0
+        except ValueError:
+            raise UsageError(f"--style {text}: {value!r} is no number") from None
+        if not isfinite(found[name]):
+            raise UsageError(f"--style {text}: {value!r} is no amount")
+    return found

@@ -1,0 +1,85 @@
+"""Options that change a twin's world or disturb it; only a twin has them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import radians
+
+from hal.errors import UsageError
+from robots import RobotDescription
+from sim_twin.plant import Plant
+from sim_twin.terrain import Ground
+from sim_twin.world import World
+from tools.robot import Robot
+
+
+@dataclass(frozen=True, kw_only=True)
+class TwinOptions:
+    """Ground, plant and pushes of a twin, of which the rollouts know nothing."""
+
+    slope: float = 0.0
+    """Slope of the ground, degrees; positive is uphill."""
+    strips: float = 0.0
+    """Strips across the way, as much as this above or below the start, m."""
+    friction: float | None = None
+    """Friction coefficient of feet and floor."""
+    known_ground: bool = False
+    """Let the rollouts know the ground."""
+    plant: int | None = None
+    """Draw a random plant with this seed: gains, friction, delay, floor, mass, supply."""
+    self_collision: bool = False
+    """Let the legs collide with each other."""
+    push: float = 0.0
+    """Impulse on the torso, N s."""
+    shove: float = 0.0
+    """Velocity step of the whole robot, m/s."""
+    push_direction: float = 0.0
+    """Where push and shove go, degrees; 0 forward, 90 to the left."""
+    push_at: float = 5.0
+    """When push and shove begin, s."""
+
+    def world(self, robot: RobotDescription, seed: int) -> World | None:
+        """Return the twin's world, or None where nothing is odd.
+
+        Raises:
+            UsageError: A value cannot be.
+        """
+        self.check_world()
+        plant = Plant() if self.plant is None else Plant.random(self.plant, robot.timestep)
+        if self.friction is not None:
+            plant = replace(plant, floor=self.friction)
+        ground = self._ground(robot, seed)
+        if ground.flat and plant == Plant() and not self.self_collision:
+            return None
+        return World(ground, plant, self.self_collision)
+
+    def disturb(self) -> Callable[[Robot], None] | None:
+        """Return what arranges the pushes of a walk."""
+        if not (self.push or self.shove):
+            return None
+
+        def arrange(robot: Robot) -> None:
+            direction = radians(self.push_direction)
+            if self.push:
+                robot.push(self.push, direction, delay=self.push_at)
+            if self.shove:
+                robot.shove(self.shove, direction, delay=self.push_at)
+
+        return arrange
+
+    def _ground(self, robot: RobotDescription, seed: int) -> Ground:
+        """Return the ground, in the robot's own measure: half its height at a time."""
+        tall = robot.spec().body(robot.base).pos[2]
+        return Ground(self.slope, self.strips, start=2.0 * tall, strip=0.5 * tall, seed=seed)
+
+    def check_world(self) -> None:
+        """Raise what cannot be."""
+        if not abs(self.slope) <= 30.0:
+            raise UsageError(f"--slope {self.slope:g}: give -30 .. 30 degrees")
+        if self.strips < 0.0:
+            raise UsageError(f"--strips {self.strips:g}: give 0 m or more")
+        if self.slope and self.strips:
+            raise UsageError("give --slope or --strips, not both")
+        if self.friction is not None and self.friction <= 0.0:
+            raise UsageError(f"--friction {self.friction:g}: give more than 0")
+        if self.push_at < 0.0:
+            raise UsageError(f"--push-at {self.push_at:g}: give 0 s or more")

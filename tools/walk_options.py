@@ -1,0 +1,27 @@
+"""What a user asks of a walk."""
+
+from dataclasses import dataclass
+
+from control.gait_file import Sampling
+from control.guide import Guide
+from control.step_memory import Reuse
+
+
+@dataclass(frozen=True)
+class WalkOptions:
+    """How to walk. What is None is as the gait says."""
+
+    gait: str = "walk"
+    speed: float | None = None
+    side: float = 0.0
+    turn: float = 0.0  # degrees/s
+    style: tuple[str, ...] = ()
+    path: str | None = None
+    to: tuple[float, float] | None = None
+    guide: Guide | None = None  # instead of all these
+    rv: tuple[str, ...] | None = None
+    sampling: Sampling | None = None
+    target: tuple[str, ...] = ()
+    model: Reuse = "full"
+    torso_servo: bool = True
+    open_loop: bool = False
