@@ -2,11 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tyro
 
+from hal.errors import UsageError
 from tools.bench_balance import measure_balance
 from tools.bench_loop import measure_tick, measure_twin
 from tools.bench_servo import measure_servos
@@ -28,18 +30,22 @@ class Bench:
     stop: how soon the torque is off when the controller ends, crashes or dies (10 minutes)."""
     robot: str = "op3"
     """Name of the robot, or path of its folder."""
+    moments: int = 20
+    """stop: random moments of each way to end."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
     def run(self) -> int:
         """Measure; returns the exit status."""
+        if self.moments < 1:
+            raise UsageError(f"--moments {self.moments}: give 1 or more")
         measures: dict[str, Callable[[str], dict[str, Any]]] = {
             "tick": measure_tick,
             "twin": measure_twin,
             "balance": measure_balance,
             "servo": measure_servos,
             "bus": measure_bus,
-            "stop": measure_stops,
+            "stop": partial(measure_stops, moments=self.moments),
         }
         result = measures[self.what](self.robot)
         for key, value in result.items():
