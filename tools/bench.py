@@ -13,7 +13,7 @@ from tools.bench_balance import measure_balance
 from tools.bench_loop import measure_tick, measure_twin
 from tools.bench_servo import measure_servos
 from tools.bench_stop import measure_stops
-from tools.bench_wire import measure_bus
+from tools.bench_wire import Maker, measure_bus
 from tools.output import console, write_json
 
 What = Literal["tick", "twin", "balance", "servo", "bus", "stop"]
@@ -30,6 +30,8 @@ class Bench:
     stop: how soon the torque is off when the controller ends, crashes or dies (10 minutes)."""
     robot: str = "op3"
     """Name of the robot, or path of its folder."""
+    vendor: Maker = "dynamixel2"
+    """bus: whose servos: STS3215, MX-28 under protocol 1, or XM430 under protocol 2."""
     moments: int = 20
     """stop: random moments of each way to end."""
     json: Path | None = None
@@ -44,7 +46,7 @@ class Bench:
             "twin": measure_twin,
             "balance": measure_balance,
             "servo": measure_servos,
-            "bus": measure_bus,
+            "bus": partial(measure_bus, maker=self.vendor),
             "stop": partial(measure_stops, moments=self.moments),
         }
         result = measures[self.what](self.robot)
