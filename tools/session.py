@@ -19,6 +19,7 @@ from hal.errors import (
 )
 from hal.guard import GuardedBackend
 from hal.guardian import Guardian, guardian_for
+from hal.joints import Mask
 from hal.observation import BaseState, Observation
 from hal.telemetry import TelemetryWriter
 from robots import RobotDescription
@@ -81,14 +82,29 @@ class Session:
             HardwareError: A servo did not take it, or the guardian does not start; all torque is
                 off again.
         """
-        if self.armed or not self.stack.wired:
-            return
+        if not self.armed and self.stack.wired:
+            self._arm(lambda: self.backend.set_torque(True))
+
+    def rearm(self) -> None:
+        """Switch the torque on again after a port was unplugged, at the pose of now.
+
+        The servos are checked and set as when the robot was opened: some may have had no power.
+
+        Raises:
+            UsageError: As of `arm`.
+            PortError: The port is still gone; torque is off wherever it can be reached.
+            HardwareError: As of `arm`.
+        """
+        if self.stack.wired:
+            self._arm(self.backend.rearm)
+
+    def _arm(self, switch_on: Callable[[], Mask]) -> None:
         if not self.stack.may_arm:
             raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
         if self.guardian is None or not self.guardian.alive:
             self.guardian = guardian_for(self.backend.backend, self.backend.stop_policy)
         self.armed = True
-        on = self.backend.set_torque(True)
+        on = switch_on()
         if not on.all():
             names = ", ".join(np.array(self.description.joints.names)[~on])
             raise HardwareError(f"torque does not come on at {names}; run `windup scan`")
