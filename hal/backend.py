@@ -72,6 +72,19 @@ class Backend(Protocol):
 
 
 @runtime_checkable
+class Rearmable(Protocol):
+    """A backend whose port may go and come back."""
+
+    def rearm(self) -> Mask:
+        """Switch torque on at the present pose after a port was gone; (n,) bool read back.
+
+        Raises:
+            PortError: A port is still gone.
+        """
+        ...
+
+
+@runtime_checkable
 class BusHealth(Protocol):
     """What a backend on a bus can say about the bus and its servos; a twin has neither."""
 

@@ -7,9 +7,9 @@ from typing import Literal
 
 import numpy as np
 
-from hal.backend import Backend, Clock
+from hal.backend import Backend, Clock, Rearmable
 from hal.command import FIELDS, JointCommand
-from hal.errors import HardwareError, StaleStateError, UnsafeCommandError
+from hal.errors import HardwareError, PortError, StaleStateError, UnsafeCommandError
 from hal.joints import Array, Joints, Mask
 from hal.observation import Observation
 
@@ -17,6 +17,8 @@ StopPolicy = Literal["hold", "crouch", "limp"]
 
 CROUCH_SECONDS = 1.5
 TICK = 0.008
+REPLUG_TIME = 2.0
+"""What a port that was plugged in again may take until it can be opened, s."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,26 @@ class GuardedBackend:
     def set_torque(self, on: bool) -> Mask:
         """Switch the torque of all joints; (n,) bool read back."""
         return self.backend.set_torque(on)
+
+    def rearm(self) -> Mask:
+        """Switch torque on at the present pose after a port was gone; (n,) bool read back.
+
+        Raises:
+            PortError: A port is still gone.
+            HardwareError: Something is not as wired; torque stays off.
+        """
+        if not isinstance(self.backend, Rearmable):
+            return self.backend.set_torque(True)
+        self._last = None
+        until = self.clock.now() + REPLUG_TIME
+        while True:
+            self.backend.read()  # which opens what has come back
+            try:
+                return self.backend.rearm()
+            except PortError:
+                if self.clock.now() >= until:
+                    raise
+            self.clock.wait_until(self.clock.now() + TICK)
 
     def request(self) -> None:
         """Ask every joint for its state."""

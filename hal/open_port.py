@@ -17,10 +17,11 @@ from hal.port import DevicePort, Port
 BAUD = 1_000_000
 
 
-def open_port(url: str, baud: int = BAUD) -> Port:
+def open_port(url: str, baud: int = BAUD, *, exclusive: bool = True) -> Port:
     """Open a device path, ``usb:SERIAL``, ``twin://...`` or any URL of pyserial.
 
-    Devices are opened exclusively and with low latency where their driver knows such a thing.
+    Devices are opened exclusively, unless told otherwise, and with low latency where their driver
+    knows such a thing.
 
     Raises:
         PortError: It cannot be opened; the message says what to do.
@@ -28,21 +29,22 @@ def open_port(url: str, baud: int = BAUD) -> Port:
     """
     if "://" in url:
         _check_handler(url)
-        return Port(_open(url, url, baud), url)
+        return Port(_open(url, url, baud, exclusive), url)
     device = _by_serial_number(url[4:]) if url.startswith("usb:") else url
-    _check_holder(device)
-    opened = _open(device, url, baud)
+    if exclusive:
+        _check_holder(device)
+    opened = _open(device, url, baud, exclusive)
     # Pseudo-terminals and some drivers do not know the call; they have no such latency either.
     with contextlib.suppress(ValueError, OSError, NotImplementedError):
         opened.set_low_latency_mode(True)
     return DevicePort(opened, url, _latency(device))
 
 
-def _open(target: str, url: str, baud: int) -> Any:
+def _open(target: str, url: str, baud: int, exclusive: bool) -> Any:
     try:
         if "://" in target:
             return serial.serial_for_url(target, baudrate=baud, timeout=0)
-        return serial.Serial(target, baudrate=baud, timeout=0, exclusive=True)
+        return serial.Serial(target, baudrate=baud, timeout=0, exclusive=exclusive)
     except (serial.SerialException, OSError) as error:
         raise PortError(_explain(target, url, error)) from None
     except ValueError as error:

@@ -9,7 +9,7 @@ from hal.backend import Clock
 from hal.clock import WallClock
 from hal.command import JointCommand, shifted_goal
 from hal.coupling import Coupling, Couplings
-from hal.errors import HardwareError
+from hal.errors import HardwareError, PortError
 from hal.exchange import TURNAROUND
 from hal.imu.opencr import OpenCr
 from hal.imu.source import ImuSource
@@ -224,11 +224,12 @@ class ServoBackend:
         After a port was gone servos may have been without power. Returns (n,) bool read back.
 
         Raises:
-            HardwareError: A port is still gone, or something is not as wired; torque stays off.
+            PortError: A port is still gone.
+            HardwareError: Something is not as wired; torque stays off.
         """
         if self.lost:
             gone = "; ".join(self.lost.values())
-            raise HardwareError(f"cannot arm again: {gone}")
+            raise PortError(f"cannot arm again: {gone}")
         self.set_torque(False)
         self.configure()
         for link in self.links:

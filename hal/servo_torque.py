@@ -60,6 +60,16 @@ class ServoTorque:
             self._write(self._watch, 0)
         return state
 
+    def stay(self) -> None:
+        """Send the servos that are on to where they are now; the others stay off.
+
+        Raises:
+            HardwareError: A servo cannot be read, or does not take its goal.
+        """
+        here, on = np.clip(self._here(), 0, self._last), np.flatnonzero(self.state())
+        if on.size:
+            self._set(self._registers["goal_position"], here[on], on)
+
     def _here(self) -> Array:
         """Return (servos,) present positions; behind a weak checksum two readings must agree."""
         register = self._registers["present_position"]

@@ -2,16 +2,18 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tyro
 
+from hal.errors import UsageError
 from tools.bench_balance import measure_balance
 from tools.bench_loop import measure_tick, measure_twin
 from tools.bench_servo import measure_servos
 from tools.bench_stop import measure_stops
-from tools.bench_wire import measure_bus
+from tools.bench_wire import Maker, measure_bus
 from tools.output import console, write_json
 
 What = Literal["tick", "twin", "balance", "servo", "bus", "stop"]
@@ -28,18 +30,24 @@ class Bench:
     stop: how soon the torque is off when the controller ends, crashes or dies (10 minutes)."""
     robot: str = "op3"
     """Name of the robot, or path of its folder."""
+    vendor: Maker = "dynamixel2"
+    """bus: whose servos: STS3215, MX-28 under protocol 1, or XM430 under protocol 2."""
+    moments: int = 20
+    """stop: random moments of each way to end."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
     def run(self) -> int:
         """Measure; returns the exit status."""
+        if self.moments < 1:
+            raise UsageError(f"--moments {self.moments}: give 1 or more")
         measures: dict[str, Callable[[str], dict[str, Any]]] = {
             "tick": measure_tick,
             "twin": measure_twin,
             "balance": measure_balance,
             "servo": measure_servos,
-            "bus": measure_bus,
-            "stop": measure_stops,
+            "bus": partial(measure_bus, maker=self.vendor),
+            "stop": partial(measure_stops, moments=self.moments),
         }
         result = measures[self.what](self.robot)
         for key, value in result.items():

@@ -29,6 +29,7 @@ from hal.servos import servo_model
 Vendor = Literal["feetech", "dynamixel1"]
 Cycle = Callable[[], None]
 BAUD = 1_000_000
+ATTEMPTS = 5
 STATE = b"\x00\x08\x00\x00\x00\x00\x4a\x23"
 """Position 2048, no velocity, no load, 7.4 V, 35 degrees C."""
 
@@ -166,7 +167,8 @@ def _sdk_cycle(read: Any, write: Any, ids: list[int], address: int) -> Cycle:
         write.addParam(id, goal)
 
     def cycle() -> None:
-        if read.txRxPacket() != 0:
+        # Its timeout is short for a machine that has other things to do now and then.
+        if all(read.txRxPacket() != 0 for _ in range(ATTEMPTS)):
             raise RuntimeError("the SDK's read failed")
         for id in ids:
             for offset in (0, 2, 4):

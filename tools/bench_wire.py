@@ -8,30 +8,40 @@ from contextlib import contextmanager
 from multiprocessing.connection import Connection
 from pathlib import Path
 from statistics import median
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 import sim_twin.wire  # noqa: F401 - registers twin://
+from hal.errors import WindupError
 from hal.exchange import TURNAROUND, Exchange
 from hal.open_port import open_port
 from hal.protocols.batched import BlockRead, BlockWrite
+from hal.protocols.cyclic import CyclicRead, CyclicWrite
 from hal.protocols.protocol2 import Span
 from tools.bench_bus import GOAL, SIZE, STATE, bench_memory, bench_pty, wire_bytes
+from tools.bench_bus1 import MAKERS, Vendor
+
+Maker = Literal[Vendor, "dynamixel2"]
 
 SERVOS = 20
 ROUNDS = 20
 CYCLES = 25
+MODEL = "XM430-W350"
+BAUDS = 1_000_000, 4_000_000
+WARM_UP = 5  # cycles
 BITS = 10  # a byte on the wire: start, eight, stop
 
 
-def measure_bus(name: str) -> dict[str, Any]:
+def measure_bus(name: str, maker: Maker = "dynamixel2") -> dict[str, Any]:
     """Return the processor time of a cycle beside other packages', and its time over the wire's.
 
     Args:
-        name: Ignored: the bus is a bench of 20 XM430-W350.
+        name: Ignored: the bus is a bench of 20 servos.
+        maker: Whose, and which protocol.
     """
-    memory, over_pty = bench_memory(), bench_pty()
+    vendor = None if maker == "dynamixel2" else maker
+    memory, over_pty = bench_memory(vendor=vendor), bench_pty(vendor=vendor)
     result: dict[str, Any] = {
         "codec_over_sdk": round(memory["codec"] / memory["sdk"], 3),
         "codec_over_sdk_pty": round(over_pty["codec"] / over_pty["sdk"], 3),
@@ -40,44 +50,67 @@ def measure_bus(name: str) -> dict[str, Any]:
     }
     if "rustypot" in over_pty:
         result["codec_over_rustypot"] = round(over_pty["codec"] / over_pty["rustypot"], 3)
-    for baud in (1_000_000, 4_000_000):
-        result[f"cycle_over_wire_{baud // 1_000_000}_Mbaud"] = round(_cycle_over_wire(baud), 3)
-    others, extra = _one_missing()
-    return {**result, "one_missing_others_valid": others, "one_missing_extra_ms": round(extra, 3)}
+    for baud in BAUDS if vendor is None else BAUDS[:1]:  # the other makers' servos end there
+        result[f"cycle_over_wire_{baud // 1_000_000}_Mbaud"] = round(
+            cycle_over_wire(baud, maker), 3
+        )
+    if vendor is None:
+        others, extra = one_missing()
+        result["one_missing_others_valid"] = others
+        result["one_missing_extra_ms"] = round(extra, 3)
+    return result
 
 
-def _cycle_over_wire(baud: int) -> float:
-    """Return the median time of a cycle over the time of its bytes at `baud`."""
-    ids = list(range(1, SERVOS + 1))
-    with _emulator(baud) as path, open_port(path, baud) as port:
+def cycle_over_wire(
+    baud: int, maker: Maker, servos: int = SERVOS, rounds: int = ROUNDS, cycles: int = CYCLES
+) -> float:
+    """Return the median time of a cycle over the time of its bytes at `baud`.
+
+    Raises:
+        WindupError: The servos do not answer.
+    """
+    ids = list(range(1, servos + 1))
+    vendor = None if maker == "dynamixel2" else maker
+    model = MODEL if vendor is None else MAKERS[vendor].model
+    with _emulator(model, servos, baud) as path, open_port(path, baud) as port:
         exchange = Exchange(port)
-        read = BlockRead([Span(id, STATE, SIZE) for id in ids])
-        write = BlockWrite(ids, GOAL, 4)
-        write.values[:] = np.full(SERVOS, 2048)
+        read, write = _frames(ids, vendor)
+        write.values[:] = np.full(servos, 2048)
 
-        def cycle() -> None:
+        def cycle() -> bool:
             exchange.request(read)
-            exchange.collect()
-            exchange.send([write.frame()])
+            answered = exchange.collect()
+            exchange.send(write.frames())
+            return bool(answered.all())
 
-        for _ in range(CYCLES):
-            cycle()
+        whole = sum(cycle() for _ in range(max(cycles, WARM_UP)))
+        if not whole:
+            raise WindupError(f"the emulated {model} do not answer")
         laps = []
-        for _ in range(ROUNDS):
+        for _ in range(rounds):
             began = time.perf_counter()
-            for _ in range(CYCLES):
+            for _ in range(cycles):
                 cycle()
-            laps.append((time.perf_counter() - began) / CYCLES)
-    return median(laps) / (wire_bytes(SERVOS) * BITS / baud)
+            laps.append((time.perf_counter() - began) / cycles)
+    return median(laps) / (wire_bytes(servos, vendor=vendor) * BITS / baud)
 
 
-def _one_missing(cycles: int = 300, baud: int = 1_000_000) -> tuple[bool, float]:
+def _frames(ids: list[int], vendor: Vendor | None) -> tuple[CyclicRead, CyclicWrite]:
+    """Return the read and the write of a cycle."""
+    if vendor is None:
+        return BlockRead([Span(id, STATE, SIZE) for id in ids]), BlockWrite(ids, GOAL, 4)
+    family = MAKERS[vendor].family
+    read = family.dialect.read([family.state.span(id) for id in ids], fast=True)
+    return read, family.dialect.write(ids, family.registers["goal_position"])
+
+
+def one_missing(cycles: int = 300, baud: int = 1_000_000) -> tuple[bool, float]:
     """Return whether the other 19 answered in every cycle, and the longest time over the wire, ms.
 
     In virtual time: what the driver waits for is the wire's and its own deadline, not this machine.
     """
-    missing = SERVOS // 2
-    url = f"twin://bench?servos=XM430-W350:1-{missing - 1},XM430-W350:{missing + 1}-{SERVOS}"
+    gone = SERVOS // 2
+    url = f"twin://bench?servos={MODEL}:1-{gone - 1},{MODEL}:{gone + 1}-{SERVOS}"
     others, longest = True, 0.0
     with open_port(f"{url}&baud={baud}&return_delay=0", baud) as port:
         exchange = Exchange(port)
@@ -93,13 +126,13 @@ def _one_missing(cycles: int = 300, baud: int = 1_000_000) -> tuple[bool, float]
 
 
 @contextmanager
-def _emulator(baud: int) -> Iterator[str]:
+def _emulator(model: str, servos: int, baud: int) -> Iterator[str]:
     """Serve a bench of servos from a process of its own; yield the path of its terminal."""
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "bus"
-        url = f"twin://bench?servos=XM430-W350:1-{SERVOS}&baud={baud}&return_delay=0&clock=real"
+        url = f"twin://bench?servos={model}:1-{servos}&baud={baud}&return_delay=0&clock=real"
         process = context.Process(target=_serve, args=(url, path, theirs), daemon=True)
         process.start()
         try:

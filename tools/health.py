@@ -16,6 +16,7 @@ from hal.telemetry import TelemetryReader
 from hal.telemetry_layout import ring_path
 from robots import RobotDescription, load_robot
 from tools.diagnosis import Diagnosis, Limits
+from tools.faults import with_faults
 from tools.output import console, write_json
 
 INTERVAL = 0.5
@@ -30,6 +31,8 @@ class Health:
     """A robot's name, or the path of its folder."""
     port: str | None = None
     """The port it runs on; its twin otherwise."""
+    faults: str = ""
+    """What goes wrong there: as it was given to the command that runs."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
     once: bool = False
@@ -57,7 +60,9 @@ class Health:
             TelemetryError: There is none.
         """
         try:
-            with TelemetryReader(ring_path(robot.name, self.port)) as reader:
+            with TelemetryReader(
+                ring_path(robot.name, with_faults(self.port, self.faults))
+            ) as reader:
                 return Diagnosis.of(reader, Limits.of(robot), time.time())
         except TelemetryError as error:
             where = f" --port {self.port}" if self.port else " --realtime"

@@ -8,6 +8,7 @@ from typing import Annotated
 import tyro
 
 from hal.errors import UsageError
+from tools.faults import with_faults
 from tools.stack import State
 
 
@@ -19,6 +20,8 @@ class Common:
     """A robot's name (`windup robots` lists them), or the path of a folder with your own."""
     port: str | None = None
     """Servo bus: /dev/ttyUSB0, usb:SERIAL, socket://HOST:PORT, twin://ROBOT; or BUS=URL,BUS=URL."""
+    faults: str = ""
+    """What goes wrong on a twin:// port: drop:0.01,unplug:at=5:seconds=1,..."""
     arm: bool = False
     """Allow torque on a port that is not twin://. Hold on to the robot."""
     state: State | None = None
@@ -46,6 +49,7 @@ class Common:
         Raises:
             UsageError: An option is out of its range.
         """
+        with_faults(self.port, self.faults)
         if self.seeds is not None and self.seeds < 1:
             raise UsageError(f"--seeds {self.seeds}: give 1 or more")
         if self.seed < 0:
@@ -54,6 +58,11 @@ class Common:
             raise UsageError(f"--rate {self.rate:g}: give a rate above 0 Hz")
         if not 0.0 <= self.noise < inf:
             raise UsageError(f"--noise {self.noise:g}: give 0 degrees or more")
+
+    @property
+    def url(self) -> str | None:
+        """The port, with its faults."""
+        return with_faults(self.port, self.faults)
 
     @property
     def all_seeds(self) -> list[int]:

@@ -40,7 +40,7 @@ class Play(Common):
     def _one(self, seed: int) -> dict[str, object]:
         with Robot.open(
             self.robot,
-            port=self.port,
+            port=self.url,
             arm=self.arm,
             state=self.state,
             rate=self.rate,

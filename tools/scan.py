@@ -12,6 +12,7 @@ from hal.errors import HardwareError
 from hal.families import DYNAMIXEL_X, FAMILIES
 from hal.open_port import open_port
 from robots import load_robot
+from tools.faults import with_faults
 from tools.output import console, write_json
 
 
@@ -23,6 +24,8 @@ class Scan:
     """The port: /dev/ttyUSB0, usb:SERIAL, socket://HOST:PORT, twin://ROBOT."""
     robot: str | None = None
     """Compare with the servos of this robot."""
+    faults: str = ""
+    """What goes wrong on a twin:// port: drop:0.01,unplug:at=5:seconds=1,..."""
     baud: int | None = None
     """Look at this baud rate only."""
     json: Path | None = None
@@ -31,7 +34,7 @@ class Scan:
     def run(self) -> int:
         """Scan; returns the exit status."""
         expected = _expected(self.robot)
-        port = open_port(self.url)
+        port = open_port(with_faults(self.url, self.faults) or self.url)
         try:
             rows = [row for family in FAMILIES for row in self._family(Bus(port, family), expected)]
         finally:

@@ -18,6 +18,8 @@ from hal.errors import (
     WindupError,
 )
 from hal.guard import GuardedBackend
+from hal.guardian import Guardian, guardian_for
+from hal.joints import Mask
 from hal.observation import BaseState, Observation
 from hal.telemetry import TelemetryWriter
 from robots import RobotDescription
@@ -43,6 +45,7 @@ class Session:
         watch: Called with every observation, for whoever draws or logs.
         base: Base state last seen: the truth on a twin, an estimate on a robot.
         telemetry: Where everybody else can read how it goes, once it runs.
+        guardian: Stops servos without a watchdog of their own should this process die.
     """
 
     description: RobotDescription
@@ -54,6 +57,7 @@ class Session:
     base: BaseState | None = field(default=None, init=False)
     telemetry: TelemetryWriter | None = field(default=None, init=False)
     armed: bool = field(default=False, init=False)
+    guardian: Guardian | None = field(default=None, init=False)
 
     @property
     def backend(self) -> GuardedBackend:
@@ -77,14 +81,32 @@ class Session:
 
         Raises:
             UsageError: The port is real and `arm` was not given; nothing has moved.
-            HardwareError: A servo did not take it; all torque is off again.
+            HardwareError: A servo did not take it, or the guardian does not start; all torque is
+                off again.
         """
-        if self.armed or not self.stack.wired:
-            return
+        if not self.armed and self.stack.wired:
+            self._arm(lambda: self.backend.set_torque(True))
+
+    def rearm(self) -> None:
+        """Switch the torque on again after a port was unplugged, at the pose of now.
+
+        The servos are checked and set as when the robot was opened: some may have had no power.
+
+        Raises:
+            UsageError: As of `arm`.
+            PortError: The port is still gone; torque is off wherever it can be reached.
+            HardwareError: As of `arm`.
+        """
+        if self.stack.wired:
+            self._arm(self.backend.rearm)
+
+    def _arm(self, switch_on: Callable[[], Mask]) -> None:
         if not self.stack.may_arm:
             raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
+        if self.guardian is None or not self.guardian.alive:
+            self.guardian = guardian_for(self.backend.backend, self.backend.stop_policy)
         self.armed = True
-        on = self.backend.set_torque(True)
+        on = switch_on()
         if not on.all():
             names = ", ".join(np.array(self.description.joints.names)[~on])
             raise HardwareError(f"torque does not come on at {names}; run `windup scan`")
@@ -97,6 +119,8 @@ class Session:
         """
         on = self.backend.stop("limp" if limp else None)
         self.armed = bool(on.any())
+        if not self.armed:
+            self._release()
 
     def run(
         self,
@@ -175,6 +199,11 @@ class Session:
             if self.telemetry is not None:
                 self.telemetry.end(self.loop.reason)
 
+    def _release(self) -> None:
+        if self.guardian is not None:
+            self.guardian.release()
+            self.guardian = None
+
     def _publish(self) -> None:
         """Say to everybody that a run begins; a robot runs without them all the same."""
         try:
@@ -199,5 +228,6 @@ class Session:
     def close(self) -> None:
         """Disconnect; call it when the torque is off."""
         self.stack.close()
+        self._release()
         if self.telemetry is not None:
             self.telemetry.close()

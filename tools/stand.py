@@ -25,7 +25,7 @@ class Stand(Common):
             raise UsageError(f"--seconds {self.seconds:g}: give more than 0")
         with Robot.open(
             self.robot,
-            port=self.port,
+            port=self.url,
             arm=self.arm,
             state=self.state,
             rate=self.rate,

@@ -7,6 +7,7 @@ from typing import Annotated
 import tyro
 
 from robots import load_robot
+from tools.faults import with_faults
 from tools.output import console, write_json
 from tools.stack import limp
 
@@ -19,13 +20,15 @@ class Stop:
     """Name of the robot, or path of its folder."""
     port: str
     """Its servo bus; see `windup walk --help`."""
+    faults: str = ""
+    """What goes wrong on a twin:// port: drop:0.01,unplug:at=5:seconds=1,..."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
     def run(self) -> int:
         """Stop; returns the exit status."""
         robot = load_robot(self.robot)
-        on = limp(robot, self.port)
+        on = limp(robot, with_faults(self.port, self.faults) or self.port)
         names = [name for name, still in zip(robot.joints.names, on, strict=True) if still]
         if names:
             console.print(

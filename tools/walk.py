@@ -84,7 +84,7 @@ class Walk(TwinOptions, Common):
         """Walk one seed and return its result."""
         with Robot.open(
             self.robot,
-            port=self.port,
+            port=self.url,
             arm=self.arm,
             state=self.state,
             rate=self.rate,
