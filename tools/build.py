@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from math import isfinite
+from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -29,15 +30,28 @@ from tools.walk_options import WalkOptions
 
 
 def find_gait(robot: RobotDescription, name: str) -> Gait:
-    """Return a gait or pose graph of `robot` by name.
+    """Return a gait or pose graph of `robot` by name, or from the path of a file of your own.
 
     Raises:
-        UnknownNameError: The robot has no such gait.
+        UnknownNameError: The robot has no such gait, and there is no such file.
+        ConfigError: The file says something that cannot be.
+    """
+    return load_gait(gait_path(robot, name), robot.joints, robot.contacts, robot.mirror)
+
+
+def gait_path(robot: RobotDescription, name: str) -> Path:
+    """Return the file of a gait of `robot`; `name` may be its path (it then ends in .toml).
+
+    Raises:
+        UnknownNameError: The robot has no such gait, and there is no such file.
     """
     gaits = robot.gaits()
-    if name not in gaits:
-        raise UnknownNameError(f"gait of {robot.name}", name, gaits)
-    return load_gait(gaits[name], robot.joints, robot.contacts, robot.mirror)
+    if name in gaits:
+        return gaits[name]
+    path = Path(name)
+    if path.suffix == ".toml" and path.is_file():
+        return path
+    raise UnknownNameError(f"gait of {robot.name}", name, gaits)
 
 
 def body_of(robot: RobotDescription) -> Body:

@@ -45,7 +45,7 @@ class Walk(TwinOptions, Common):
     style: tuple[str, ...] = ()
     """Styles and how much of them, NAME=AMOUNT; any perturbation of the gait is one too."""
     gait: str = "walk"
-    """Name of the gait."""
+    """Name of the gait, or the path of a gait file of your own."""
     rv: tuple[str, ...] | None = None
     """Regulation variables, such as: up, or up.forward swing_com.lateral."""
     sampling: Literal["sp", "fl", "lf", "full"] | None = None
@@ -202,8 +202,15 @@ def _line(report: WalkReport) -> str:
     return (
         f"{result['robot']} {end}{pace}: {result['distance_m']:.2f} m forward, "
         f"{result['lateral_m']:+.2f} m to the left, heading {result['heading_deg']:+.1f} degrees, "
-        f"{ratio:.1f} x real time{_crossing(report)}"
+        f"{ratio:.1f} x real time{_flying(result)}{_crossing(report)}"
     )
+
+
+def _flying(result: dict[str, Any]) -> str:
+    """Return how often the robot left the ground."""
+    flights = result.get("flights", 0)
+    share = result.get("flight_time_s", 0.0) / max(result["sim_time_s"], 1e-9)
+    return f", {flights} flights ({share:.0%} of the time)" if flights else ""
 
 
 def _crossing(report: WalkReport) -> str:
