@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 from math import isfinite
-from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -11,7 +10,7 @@ from control.balancer import Balancer
 from control.body import Body
 from control.estimator import BaseEstimator
 from control.foot_load import FootLoad
-from control.gait import Gait, load_gait
+from control.gait import Gait
 from control.gait_file import Balance, Sampling
 from control.planner import Planner, StepPlanner
 from control.regulation import RegulationVariable, regulation_variables
@@ -25,33 +24,10 @@ from hal.controller import Predictor
 from hal.errors import StateMissingError, UnknownNameError, UsageError
 from robots import RobotDescription
 from sim_twin.imu_errors import OPENCR
+from tools.gaits import find_gait
+from tools.spells import blended
 from tools.steer import steering_of
 from tools.walk_options import WalkOptions
-
-
-def find_gait(robot: RobotDescription, name: str) -> Gait:
-    """Return a gait or pose graph of `robot` by name, or from the path of a file of your own.
-
-    Raises:
-        UnknownNameError: The robot has no such gait, and there is no such file.
-        ConfigError: The file says something that cannot be.
-    """
-    return load_gait(gait_path(robot, name), robot.joints, robot.contacts, robot.mirror)
-
-
-def gait_path(robot: RobotDescription, name: str) -> Path:
-    """Return the file of a gait of `robot`; `name` may be its path (it then ends in .toml).
-
-    Raises:
-        UnknownNameError: The robot has no such gait, and there is no such file.
-    """
-    gaits = robot.gaits()
-    if name in gaits:
-        return gaits[name]
-    path = Path(name)
-    if path.suffix == ".toml" and path.is_file():
-        return path
-    raise UnknownNameError(f"gait of {robot.name}", name, gaits)
 
 
 def body_of(robot: RobotDescription) -> Body:
@@ -100,7 +76,7 @@ def build_walk(
     Raises:
         UsageError: The options do not fit the gait.
     """
-    gait = find_gait(robot, options.gait)
+    gait = blended(robot, find_gait(robot, options.gait), options)
     if not gait.graph.ends_step.any() or gait.file.balance is None:
         raise UsageError(
             f"gait {gait.name!r} has no steps to balance; "

@@ -21,7 +21,8 @@ from sim_twin.push import Push
 from sim_twin.rollouts import RolloutPredictor
 from sim_twin.twin import Twin
 from sim_twin.world import World
-from tools.build import build_walk, find_gait
+from tools.build import build_walk
+from tools.gaits import find_gait
 from tools.gauges import Gauges
 from tools.plan_process import ProcessPlanner, plan_aside
 from tools.report import WalkReport

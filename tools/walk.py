@@ -43,7 +43,11 @@ class Walk(TwinOptions, Common):
     stand: float = 0.0
     """Afterwards come to rest and stand for some seconds."""
     style: tuple[str, ...] = ()
-    """Styles and how much of them, NAME=AMOUNT; any perturbation of the gait is one too."""
+    """Styles and how much of them, NAME=AMOUNT; any perturbation of the gait is one too. With
+    NAME=AMOUNT@BEGIN:END it comes and goes, s."""
+    blend: tuple[str, ...] = ()
+    """Gaits to blend into this one and how far, GAIT=AMOUNT, also with @BEGIN:END; at 1 the poses,
+    times and targets are all theirs."""
     gait: str = "walk"
     """Name of the gait, or the path of a gait file of your own."""
     rv: tuple[str, ...] | None = None
@@ -130,6 +134,7 @@ class Walk(TwinOptions, Common):
             side=self.side,
             turn=self.turn,
             style=self.style,
+            blend=self.blend,
             path=self.path,
             to=self.to,
             rv=self.rv,

@@ -12,7 +12,8 @@ from control.gait_file import GaitFile
 from hal.config import load_toml
 from hal.errors import UsageError
 from robots import load_robot
-from tools.build import build_walk, gait_path
+from tools.build import build_walk
+from tools.gaits import gait_path
 from tools.output import check_writable, console, write_json
 from tools.parallel import Workers
 from tools.synthesis.gait_toml import write_gait
@@ -92,9 +93,7 @@ class Synthesise:
                     yield trial.number, {"cost": aim.cost(rows), "terms": aim.terms(rows)}
                     workers.say(f"best cost {_best(log):.3f}")
 
-            search = Search(
-                genes, log, walk, self.trials, self.seed, self.population, self.spread
-            )
+            search = Search(genes, log, walk, self.trials, self.seed, self.population, self.spread)
             search.run()
             finals = self._finals(search, genome, aim, workers)
         return self._conclude(search, genome, finals)

@@ -18,7 +18,9 @@ def write_gait(path: Path, file: GaitFile) -> None:
     try:
         import tomli_w
     except ImportError:
-        raise UsageError("synthesis needs cma and tomli-w: pip install 'windup[synthesis]'") from None
+        raise UsageError(
+            "synthesis needs cma and tomli-w: pip install 'windup[synthesis]'"
+        ) from None
     try:
         path.write_text(tomli_w.dumps(sparse(file)), encoding="utf-8")
     except OSError as error:

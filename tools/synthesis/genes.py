@@ -7,11 +7,13 @@
     change.PERTURBATION.JOINT   what a perturbation does to a joint, degrees a degree
 
 A graph whose second half is the first on the other foot stays so: its genes carry the names of the
-first half and change both.
+first half and change both. Where all poses are their own mirror images, the genes of the left side
+change both sides.
 """
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from typing import Any
 
@@ -19,7 +21,7 @@ import msgspec
 import numpy as np
 
 from control.gait_file import GaitFile, State
-from hal.errors import UnknownNameError
+from hal.errors import UsageError
 from hal.joints import Array, Joints
 from hal.mirror import Mirror, other_side
 
@@ -69,6 +71,8 @@ class Genome:
         self.joints, self.mirror = joints, mirror
         self.file = _with_tables(file)
         self._half = _half(self.file)
+        poses = np.array([joints.array(_named(state)) for state in self.file.state])
+        self._even = not self.file.mirror and np.allclose(poses, mirror(poses))
         self.genes = {gene.name: gene for gene in self._all()}
 
     def choose(self, patterns: Iterable[str] | None = None) -> list[Gene]:
@@ -78,7 +82,7 @@ class Genome:
         targets.
 
         Raises:
-            UnknownNameError: A pattern fits no gene.
+            UsageError: A pattern fits no gene.
         """
         if patterns is None:
             return self._usual()
@@ -86,7 +90,7 @@ class Genome:
         for pattern in patterns:
             fitting = [name for name in self.genes if fnmatchcase(name, pattern)]
             if not fitting:
-                raise UnknownNameError("--vary", pattern, self.genes)
+                raise UsageError(f"--vary {pattern}: {_hint(pattern, self.genes)}")
             chosen |= {name: self.genes[name] for name in fitting}
         return list(chosen.values())
 
@@ -115,6 +119,8 @@ class Genome:
         for state in file.state[: self._half]:
             pose = self.joints.array(_named(state))
             for j, joint in enumerate(self.joints.names):
+                if self._even and (joint.startswith("r_") or self._odd(j)):
+                    continue
                 low, high = np.ceil(100.0 * lower[j]) / 100.0, np.floor(100.0 * upper[j]) / 100.0
                 yield _gene(f"pose.{state.name}.{joint}", pose[j], float(low), float(high))
         for state in file.state[: self._half]:
@@ -139,18 +145,21 @@ class Genome:
                 usual.append(gene)
         return usual
 
+    def _odd(self, j: int) -> bool:
+        """Is joint `j` in the middle, and straight in every pose that is its own mirror image?"""
+        return int(self.mirror.perm[j]) == j and self.mirror.sign[j] < 0.0
+
     def _both(self, index: int) -> list[int]:
         """Return the state and, in a graph of two halves, its partner."""
         twice = self._half < len(self.file.state)
         return [index, index + self._half] if twice else [index]
 
     def _pose(self, data: dict[str, Any], index: int, joint: str, value: float) -> None:
-        for at in self._both(index):
-            if at == index:
-                data["state"][at]["pose"][joint] = value
-            else:
-                j = self.joints.names.index(other_side(joint))
-                data["state"][at]["pose"][self.joints.names[j]] = float(self.mirror.sign[j]) * value
+        j = self.joints.names.index(other_side(joint))
+        mirrored = {self.joints.names[j]: float(self.mirror.sign[j]) * value}
+        data["state"][index]["pose"] |= {joint: value} | (mirrored if self._even else {})
+        for partner in self._both(index)[1:]:
+            data["state"][partner]["pose"] |= mirrored
 
 
 def _gene(name: str, value: float, lower: float = -np.inf, upper: float = np.inf) -> Gene:
@@ -192,6 +201,13 @@ def _perturb(items: list[dict[str, Any]], kind: str, where: str, value: float) -
             name, joint = where.rsplit(".", 1)
             if item["name"] == name and joint in item["pose"]:
                 item["pose"][joint] = value
+
+
+def _hint(pattern: str, names: Iterable[str]) -> str:
+    """Return that nothing fits a pattern, and what would."""
+    near = get_close_matches(pattern, names, n=1)
+    kinds = ", ".join(f"'{kind}.*'" for kind in SPREAD)
+    return f"fits nothing; did you mean {near[0]!r}?" if near else f"fits nothing; try {kinds}"
 
 
 def shape(genes: list[Gene]) -> tuple[Array, Array, Array]:
