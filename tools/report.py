@@ -94,6 +94,10 @@ class WalkReport:
         return {
             "flights": gauges.flights,
             "flight_time_s": gauges.flight_time,
+            "touches": "".join(
+                self.robot.description.feet[foot].name[0] for foot in gauges.touches
+            ),
+            "skips": gauges.skips,
             "work_j": gauges.work,
             "cost_of_transport": gauges.cost_of_transport(self.walker.body.mass, way),
             "shake_rad_s": gauges.shake,

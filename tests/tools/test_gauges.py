@@ -26,6 +26,18 @@ def test_a_flight_ends_with_a_touch_and_chatter_is_none() -> None:
     assert gauges.flight_time == pytest.approx(0.03)
 
 
+def test_a_skip_touches_twice_with_each_foot() -> None:
+    gauges = Gauges(CONTACTS)
+    air, left, right = (False, False), (True, False), (False, True)
+    order = [left, right, right, left, left, right, right]
+    for tick, down in enumerate(down for foot in order for down in (air, air, air, foot)):
+        gauges.look(seen(0.01 * tick, down))
+    assert gauges.touches == [0, 1, 1, 0, 0, 1, 1]
+    assert gauges.skips == 1.0
+    gauges.touches += [0, 1, 0]  # it falls into a run
+    assert gauges.skips == pytest.approx(6 / 8)
+
+
 def test_work_has_no_sign_and_shake_is_a_root_mean_square() -> None:
     gauges = Gauges(CONTACTS)
     for tick in range(11):

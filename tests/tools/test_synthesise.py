@@ -30,6 +30,7 @@ ROW: dict[str, Any] = {
     "heading_deg": 45.0,
     "speed_m_s": 0.5,
     "flights": 10,
+    "skips": 0.8,
     "flight_time_s": 1.0,
     "sim_time_s": 10.0,
     "cost_of_transport": np.e - 1.0,
@@ -107,6 +108,7 @@ def test_a_gene_stays_within_the_limits_of_its_joint() -> None:
         "drift=1": 0.75,
         "flight": 1.0 - 10 / 29,
         "air": 0.5,
+        "skip": 0.2,
     }.items(),
 )
 def test_the_terms_of_the_objective(term: str, value: float) -> None:

@@ -37,6 +37,10 @@ def _air(row: Row, _: float) -> float:
     return max(1.0 - share / AIR, 0.0)
 
 
+def _skip(row: Row, _: float) -> float:
+    return 1.0 - float(row["skips"])
+
+
 TERMS: dict[str, Callable[[Row, float], float]] = {
     "falls": lambda row, _: 1.0 - row["steps"] / row["steps_requested"],  # share not walked
     "speed": _speed,  # error of the speed, as a share of --aim
@@ -44,6 +48,7 @@ TERMS: dict[str, Callable[[Row, float], float]] = {
     "shake": lambda row, _: row["shake_rad_s"],  # rms of the base's angular velocity, rad/s
     "drift": _drift,  # heading of 90 degrees, or as far sideways as forward
     "flight": _flight,  # share of the steps without a flight
+    "skip": _skip,  # share of the touches that do not skip: left, left, right, right
     "air": _air,  # short of a fifth of the time in the air
 }
 USUAL = {"falls": 10.0, "speed": 1.0, "effort": 1.0, "shake": 0.2, "drift": 0.2}

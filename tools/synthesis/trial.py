@@ -20,6 +20,7 @@ KEPT = (
     "heading_deg",
     "speed_m_s",
     "flights",
+    "skips",
     "flight_time_s",
     "sim_time_s",
     "cost_of_transport",
