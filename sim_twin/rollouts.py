@@ -183,7 +183,7 @@ class _Worlds:
         fall = self.robot.fall
         low = self.qpos[:, 2] < fall.height
         if not self.ground.flat:
-            ground = [self.ground.height(float(x)) for x in self.qpos[:, 0]]
+            ground = [self.ground.height(float(x), float(y)) for x, y in self.qpos[:, :2]]
             low = self.qpos[:, 2] - ground < fall.height
         return low | ~(self.xmat[:, self.torso, 8] > np.cos(fall.tilt))
 

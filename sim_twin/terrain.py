@@ -1,4 +1,4 @@
-"""The ground of a twin: flat, sloping, or strips of uneven height across the way."""
+"""The ground of a twin: flat, sloping, strips or stairs across the way, or rough all over."""
 
 from dataclasses import dataclass
 from math import cos, radians, sin, tan
@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 
 from hal.joints import Array
+from sim_twin.rough import RoughGround
 
 WIDE = 20.0  # half the width of a tile, m
 DEEP = 0.25  # half its thickness, m
@@ -17,18 +18,22 @@ TILES = 60
 
 @dataclass(frozen=True)
 class Ground:
-    """A flat start, and behind it ground that slopes up (or down) or changes its height.
+    """A flat start, and behind it one kind of ground.
 
     Attributes:
         slope: Degrees; positive is uphill.
         strips: Largest height of a strip above or below the start, m.
+        stairs: Height of each stair, m; positive is up.
+        rough: Largest height of a node of rough ground above or below the start, m.
         start: Where the flat ground ends, m.
-        strip: Length of a strip, m.
+        strip: Length of a strip, m; a stair is twice as long, and nodes are half as far apart.
         seed: Seed of the heights.
     """
 
     slope: float = 0.0
     strips: float = 0.0
+    stairs: float = 0.0
+    rough: float = 0.0
     start: float = 0.5
     strip: float = 0.25
     seed: int = 0
@@ -36,7 +41,7 @@ class Ground:
     @property
     def flat(self) -> bool:
         """True when there is nothing but a plane."""
-        return not (self.slope or self.strips)
+        return not (self.slope or self.strips or self.stairs or self.rough)
 
     @property
     def tiles(self) -> Array:
@@ -45,16 +50,21 @@ class Ground:
             count = TILES * 4
             heights = np.random.default_rng(self.seed).uniform(-self.strips, self.strips, count)
             return np.stack([self.start + self.strip * np.arange(count), heights], axis=1)
+        if self.stairs:
+            x = self.start + self.length * np.arange(TILES * 2)
+            return np.stack([x, self.stairs * np.arange(1, len(x) + 1)], axis=1)
         x = SLOPE_TILE * np.arange(TILES)
         return np.stack([self.start + x, x * tan(radians(self.slope))], axis=1)
 
     @property
     def length(self) -> float:
         """Length of a tile along x, m."""
+        if self.stairs:
+            return 2.0 * self.strip
         return self.strip if self.strips else SLOPE_TILE
 
-    def height(self, x: float) -> float:
-        """Return the height of the ground at `x` m.
+    def height(self, x: float, y: float = 0.0) -> float:
+        """Return the height of the ground at (x, y) m.
 
         >>> round(Ground(slope=45.0, start=1.0).height(3.0), 3)
         2.0
@@ -63,19 +73,27 @@ class Ground:
             return 0.0
         if self.slope:
             return (x - self.start) * tan(radians(self.slope))
+        if self.rough:
+            return self._rough.height(x, y)
         tiles = self.tiles
-        return float(tiles[min(int((x - self.start) / self.strip), len(tiles) - 1), 1])
+        return float(tiles[min(int((x - self.start) / self.length), len(tiles) - 1), 1])
 
     def build(self, spec: mujoco.MjSpec) -> None:
-        """Replace the floor plane of `spec` by tiles, with the plane's own surface."""
+        """Replace the floor plane of `spec` by such ground, with the plane's own surface."""
         if self.flat:
             return
         floor = next(g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_PLANE)
         begin = self.start - BEHIND
         self._tile(spec, floor, begin, 0.0, BEHIND, 0.0)
-        for x, height in self.tiles:
+        if self.rough:
+            self._rough.build(spec, floor)
+        for x, height in () if self.rough else self.tiles:
             self._tile(spec, floor, float(x), float(height), self.length, radians(self.slope))
         spec.delete(floor)
+
+    @property
+    def _rough(self) -> RoughGround:
+        return RoughGround(self.rough, 0.5 * self.strip, self.start, self.seed)
 
     def _tile(
         self,

@@ -124,7 +124,7 @@ class Twin:
         fall = self.robot.fall
         height = self._qpos[2]
         if not self.world.ground.flat:
-            height -= self.world.ground.height(float(self._qpos[0]))
+            height -= self.world.ground.height(float(self._qpos[0]), float(self._qpos[1]))
         return bool(height < fall.height or self.up[2] < np.cos(fall.tilt))
 
     @property

@@ -20,6 +20,10 @@ class TwinOptions:
     """Slope of the ground, degrees; positive is uphill."""
     strips: float = 0.0
     """Strips across the way, as much as this above or below the start, m."""
+    stairs: float = 0.0
+    """Stairs, each so high, m; positive is up, negative down."""
+    rough: float = 0.0
+    """Rough ground, as much as this above or below the start, m."""
     friction: float | None = None
     """Friction coefficient of feet and floor."""
     known_ground: bool = False
@@ -69,7 +73,15 @@ class TwinOptions:
     def _ground(self, robot: RobotDescription, seed: int) -> Ground:
         """Return the ground, in the robot's own measure: half its height at a time."""
         tall = robot.spec().body(robot.base).pos[2]
-        return Ground(self.slope, self.strips, start=2.0 * tall, strip=0.5 * tall, seed=seed)
+        return Ground(
+            slope=self.slope,
+            strips=self.strips,
+            stairs=self.stairs,
+            rough=self.rough,
+            start=2.0 * tall,
+            strip=0.5 * tall,
+            seed=seed,
+        )
 
     def check_world(self) -> None:
         """Raise what cannot be."""
@@ -77,8 +89,12 @@ class TwinOptions:
             raise UsageError(f"--slope {self.slope:g}: give -30 .. 30 degrees")
         if self.strips < 0.0:
             raise UsageError(f"--strips {self.strips:g}: give 0 m or more")
-        if self.slope and self.strips:
-            raise UsageError("give --slope or --strips, not both")
+        if self.rough < 0.0:
+            raise UsageError(f"--rough {self.rough:g}: give 0 m or more")
+        if not abs(self.stairs) <= 0.3:
+            raise UsageError(f"--stairs {self.stairs:g}: give -0.3 .. 0.3 m")
+        if sum(map(bool, (self.slope, self.strips, self.stairs, self.rough))) > 1:
+            raise UsageError("give one of --slope, --strips, --stairs and --rough")
         if self.friction is not None and self.friction <= 0.0:
             raise UsageError(f"--friction {self.friction:g}: give more than 0")
         if self.push_at < 0.0:

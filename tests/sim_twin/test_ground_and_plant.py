@@ -29,11 +29,32 @@ def ray_height(model: mujoco.MjModel, x: float) -> float:
     return 3.0 - float(mujoco.mj_ray(model, data, start, down, None, 1, -1, hit))
 
 
-@pytest.mark.parametrize("ground", [Ground(slope=4.0), Ground(slope=-4.0), Ground(strips=0.02)])
+GROUNDS = [
+    Ground(slope=4.0),
+    Ground(slope=-4.0),
+    Ground(strips=0.02),
+    Ground(stairs=0.04),
+    Ground(stairs=-0.04),
+    Ground(rough=0.05, seed=3),
+]
+
+
+@pytest.mark.parametrize("ground", GROUNDS)
 def test_the_tiles_are_as_high_as_the_ground_says(op3: RobotDescription, ground: Ground) -> None:
     model = build_model(op3, world=World(ground))
     for x in (-1.0, 0.3, 0.7, 2.1, 5.05):
-        assert ray_height(model, x) == pytest.approx(ground.height(x), abs=1e-6)
+        assert ray_height(model, x) == pytest.approx(ground.height(x, 5.0), abs=1e-6)
+
+
+def test_stairs_go_up_by_their_height_and_rough_ground_to_both_sides() -> None:
+    stairs = Ground(stairs=0.04, start=1.0, strip=0.25)
+    heights = [stairs.height(x) for x in (0.9, 1.1, 1.4, 1.6, 2.1)]
+    assert heights == pytest.approx([0.0, 0.04, 0.04, 0.08, 0.12])
+    rough = Ground(rough=0.05, start=1.0, strip=0.25, seed=1)
+    heights = [rough.height(x, y) for x in np.arange(1.1, 20.0, 0.3) for y in (-3.0, 0.0, 3.0)]
+    assert 0.04 < max(heights) <= 0.05 and -0.05 <= min(heights) < -0.04
+    assert rough.height(1.0, 0.3) == 0.0
+    assert rough.height(3.0, 0.3) != Ground(rough=0.05, start=1.0, seed=2).height(3.0, 0.3)
 
 
 def test_flat_ground_changes_nothing(op3: RobotDescription) -> None:
