@@ -125,6 +125,7 @@ class Balancer:
         """Remember where the step begins and ask for its scalings."""
         start = StepStart(observation.time, int(self._tracker.stance()[0]), here)
         self._start = start
+        self._first = int(self._tracker.state[0])
         self.steering.begin_step(start)
         scale = self.steering.scale(start)
         self._target = self._wanted(start)
@@ -133,7 +134,7 @@ class Balancer:
             self._tracker.rescale(scale[None])
             return
         self.late += self._asked
-        before = self._before(start.stance)
+        before = self._before()
         self._tracker.rescale(before[None])
         self._ask(observation, start, before, dt)
 
@@ -156,19 +157,21 @@ class Balancer:
         """
         assert self.planner is not None
         flight, now = RolloutStart(observation, np.array(self._sent), dt), self._tracker.now
-        request = StepRequest(flight, now, start.stance, self._scale, before, self._target, start)
+        request = StepRequest(
+            flight, now, start.stance, self._first, self._scale, before, self._target, start
+        )
         self._asked, self._late_from = True, request.due(self.planner.latency) + dt
         self.planner.ask(request)
 
-    def _before(self, stance: int) -> Array:
+    def _before(self) -> Array:
         """Return the scalings (p,) until the answer comes: this step's, with the old K.
 
-        The old K is the last one of the same side: what a lean to the left needs, a lean to the
-        right does not.
+        The old K is the last one of the same part of the graph: what a lean to the left needs, a
+        lean to the right does not, nor a step what the hop before it on the same foot does.
         """
         scale = self._scale.copy()
-        if stance in self._kept:
-            scale[self._columns] += self._kept[stance]
+        if self._first in self._kept:
+            scale[self._columns] += self._kept[self._first]
         return scale
 
     def _take_answer(self, time: float) -> None:
@@ -181,8 +184,7 @@ class Balancer:
         self.late += time >= self._late_from
         scale = self._scale.copy()
         scale[self._columns] += answer
-        assert self._start is not None
-        self._kept[self._start.stance] = answer
+        self._kept[self._first] = answer
         self._tracker.rescale(scale[None])
 
     def _end_step(self, time: float, end: Outcomes, start: StepStart) -> None:

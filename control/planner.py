@@ -31,6 +31,7 @@ class StepRequest:
         start: State, commands in flight and tick.
         at: The tracker, a batch of one.
         stance: Index of the stance foot.
+        phase: Index of the state that the step began with; each has a memory of its own.
         scale: (p,) scalings of all perturbations before balance.
         before: (p,) scalings in force until the answer acts.
         target: (r,) wanted regulation variables.
@@ -40,6 +41,7 @@ class StepRequest:
     start: RolloutStart
     at: TrackerState
     stance: int
+    phase: int
     scale: Array
     before: Array
     target: Array
@@ -143,7 +145,7 @@ class StepPlanner:
             values = start.evaluate(outcomes, self.regulation, self.contacts)
             return values, outcomes.fell | ~policy.done
 
-        return self.model.control(sample, request.target, request.stance, start.features())
+        return self.model.control(sample, request.target, request.phase, start.features())
 
     def policy(self, request: StepRequest, scale: Array) -> StepPolicy:
         """Return what plays the requested step with scalings (m, p)."""

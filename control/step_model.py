@@ -74,7 +74,7 @@ class StepModel:
         Args:
             sample: Plays steps.
             target: Wanted regulation variables.
-            side: Index of the stance foot; the two sides remember their own K.
+            side: Side, or part of the graph, that the step is of; each remembers its own K.
             start: Features (f,) of the state that the step begins in, for a library.
         """
         last = self._last.get(side, np.zeros(len(self.samples)))

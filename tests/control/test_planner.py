@@ -23,7 +23,7 @@ def request(dt: float, time: float = 1.0) -> StepRequest:
     twin = TwinBackend(Twin(load_robot("op3")))
     twin.twin.data.time = time
     start = RolloutStart(twin.read(), np.zeros((0, 20)), dt)
-    return StepRequest(start, None, 0, *(np.zeros(1),) * 3)  # type: ignore[arg-type]
+    return StepRequest(start, None, 0, 0, *(np.zeros(1),) * 3)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

@@ -119,3 +119,12 @@ def test_it_runs_with_a_flight_in_every_step() -> None:
     flights = np.count_nonzero(np.diff((~down.any(axis=1)).astype(int)) == 1)
     assert flights >= 19  # the last one may not have ended
     assert down.all(axis=1).mean() < 0.01
+
+
+def test_it_hops_on_both_feet() -> None:
+    with Robot.open("robobird", noise=0.2) as robot:
+        result = robot.walk(steps=12, options=WalkOptions(gait="hop")).result()
+    assert result["reason"] == "done"
+    assert result["flights"] >= 11
+    assert result["flight_time_s"] > 0.3 * result["sim_time_s"]
+    assert abs(result["touches"].count("l") - result["touches"].count("r")) <= 1

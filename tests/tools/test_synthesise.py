@@ -29,6 +29,7 @@ ROW: dict[str, Any] = {
     "lateral_m": -0.5,
     "heading_deg": 45.0,
     "speed_m_s": 0.5,
+    "foot_clearance_mm": -10.0,
     "flights": 10,
     "skips": 0.8,
     "flight_time_s": 1.0,
@@ -108,6 +109,7 @@ def test_a_gene_stays_within_the_limits_of_its_joint() -> None:
         "drift=1": 0.75,
         "flight": 1.0 - 10 / 29,
         "air": 0.5,
+        "cross": 0.5,
         "skip": 0.2,
     }.items(),
 )

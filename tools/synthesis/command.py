@@ -47,8 +47,8 @@ class Synthesise:
     """What may change, * for anything: pose.STATE.JOINT, hold.STATE, target.VARIABLE, limit.NAME,
     change.NAME.JOINT. By default the angles of joints that move, hold times, and targets."""
     objective: tuple[str, ...] = ()
-    """What counts, TERM or TERM=WEIGHT: falls, speed, effort, shake, drift, flight,
-    air, skip."""
+    """What counts, TERM or TERM=WEIGHT: falls, speed, effort, shake, drift, cross,
+    flight, air, skip."""
     aim: float | None = None
     """The speed that `speed` wants, m/s."""
     speed: float | None = None

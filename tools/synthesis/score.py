@@ -9,6 +9,7 @@ import numpy as np
 from hal.errors import UnknownNameError, UsageError
 
 Row = dict[str, Any]
+CROSSED = 20.0  # mm that feet pass through each other, for a cost of 1
 AIR = 0.2  # share of the time in the air that counts as flying
 
 
@@ -37,6 +38,11 @@ def _air(row: Row, _: float) -> float:
     return max(1.0 - share / AIR, 0.0)
 
 
+def _cross(row: Row, _: float) -> float:
+    clear = row["foot_clearance_mm"]
+    return 0.0 if clear is None else max(-clear / CROSSED, 0.0)
+
+
 def _skip(row: Row, _: float) -> float:
     return 1.0 - float(row["skips"])
 
@@ -47,6 +53,7 @@ TERMS: dict[str, Callable[[Row, float], float]] = {
     "effort": _effort,  # log (1 + cost of transport), work / (weight x way)
     "shake": lambda row, _: row["shake_rad_s"],  # rms of the base's angular velocity, rad/s
     "drift": _drift,  # heading of 90 degrees, or as far sideways as forward
+    "cross": _cross,  # feet that pass through each other
     "flight": _flight,  # share of the steps without a flight
     "skip": _skip,  # share of the touches that do not skip: left, left, right, right
     "air": _air,  # short of a fifth of the time in the air

@@ -19,6 +19,7 @@ KEPT = (
     "lateral_m",
     "heading_deg",
     "speed_m_s",
+    "foot_clearance_mm",
     "flights",
     "skips",
     "flight_time_s",
@@ -81,4 +82,5 @@ def _nothing(steps: int) -> dict[str, Any]:
         "reason": "error",
         "speed_m_s": None,
         "cost_of_transport": None,
+        "foot_clearance_mm": None,
     }
