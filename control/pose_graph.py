@@ -119,8 +119,19 @@ class PoseGraph:
         return self + amount * (other - self)
 
     def _same_shape(self, other: "PoseGraph") -> None:
-        if self.names != other.names or not np.array_equal(self.successor, other.successor):
+        """Raise unless each state ends as its partner does, and stands on the same foot."""
+        same = len(self) == len(other) and all(
+            np.array_equal(one, two)
+            for one, two in (
+                (self.successor, other.successor),
+                (self.sensors, other.sensors),
+                (self.stance, other.stance),
+                (self.ends_step, other.ends_step),
+            )
+        )
+        if not same:
             raise ConfigError(
                 f"{self.origin} and {other.origin} have different states "
-                f"({', '.join(self.names)} and {', '.join(other.names)}); they cannot be blended"
+                f"({', '.join(self.names)} and {', '.join(other.names)}) and cannot be blended; "
+                "give both as many, with the same `until`, `stance` and `ends_step`"
             )

@@ -68,7 +68,7 @@ class Steering:
         self.speed.command(0.0 if command.stop else command.speed)
         self.speed.begin_step()
         self.side.begin_step(0.0 if command.stop else command.side)
-        self.style.begin_step()
+        self.style.begin_step(start.time)
         if self.course is not None:
             self.course.begin_step(command, start.heading, self._duration)
         still = command.stop and abs(self.speed.present) + abs(self.side.present) < 1e-6

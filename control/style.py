@@ -1,6 +1,7 @@
 """Styles: ways of walking that are added to a gait by any amount, a little more each step."""
 
 from dataclasses import dataclass, field
+from math import inf
 
 import numpy as np
 
@@ -10,6 +11,23 @@ from hal.errors import UnknownNameError, UsageError
 from hal.joints import Array
 
 STEPS = 8.0
+
+
+@dataclass(frozen=True)
+class Spell:
+    """An amount of a style for some time.
+
+    Attributes:
+        name: The style.
+        amount: How much of it.
+        begin: When it comes, s from the first step.
+        end: When it goes again, s.
+    """
+
+    name: str
+    amount: float
+    begin: float = 0.0
+    end: float = inf
 
 
 def styles_of(gait: Gait) -> dict[str, Style]:
@@ -30,16 +48,22 @@ class Styling:
     Attributes:
         gait: The gait.
         wanted: Amount of each style; change it at any time.
+        spells: Amounts that come and go, on top of these.
         present: Amounts of the ramps toward them.
     """
 
     gait: Gait
     wanted: dict[str, float] = field(default_factory=dict)
+    spells: tuple[Spell, ...] = ()
     present: dict[str, float] = field(default_factory=dict, init=False)
+    _began: float | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
         self._known = styles_of(self.gait)
-        for name, amount in self.wanted.items():
+        for name, amount in (
+            *self.wanted.items(),
+            *((spell.name, spell.amount) for spell in self.spells),
+        ):
             if name not in self._known:
                 raise UnknownNameError(f"style of gait {self.gait.name!r}", name, self._known)
             style = self._known[name]
@@ -52,13 +76,28 @@ class Styling:
     def reset(self) -> None:
         """Begin again without any style."""
         self.present.clear()
+        self._began = None
 
-    def begin_step(self) -> None:
-        """Go one step toward the wanted amounts."""
-        for name in {*self.wanted, *self.present}:
+    def begin_step(self, time: float) -> None:
+        """Go one step toward the amounts wanted at `time` s."""
+        if self._began is None:
+            self._began = time
+        wanted = self._wanted(time - self._began)
+        for name in sorted({*wanted, *self.present}):
             style, now = self._known[name], self.present.get(name, 0.0)
             most = max(abs(style.least), abs(style.most), 1e-9) / max(style.steps, 1e-9)
-            self.present[name] = now + float(np.clip(self.wanted.get(name, 0.0) - now, -most, most))
+            self.present[name] = now + float(np.clip(wanted.get(name, 0.0) - now, -most, most))
+
+    def _wanted(self, time: float) -> dict[str, float]:
+        """Return the amounts wanted at `time` s from the first step, within their ranges."""
+        wanted = dict(self.wanted)
+        for spell in self.spells:
+            if spell.begin <= time < spell.end:
+                wanted[spell.name] = wanted.get(spell.name, 0.0) + spell.amount
+        return {
+            name: float(np.clip(amount, self._known[name].least, self._known[name].most))
+            for name, amount in wanted.items()
+        }
 
     def scale(self) -> Array:
         """Return the (p,) scalings for the present amounts."""

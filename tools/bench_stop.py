@@ -20,7 +20,7 @@ from hal.observation import Observation
 from robots import load_robot
 from sim_twin.wire import parse_address
 from sim_twin.wire.emulate import Emulator, emulate
-from tools.build import find_gait
+from tools.gaits import find_gait
 from tools.output import console
 from tools.robot import Robot
 

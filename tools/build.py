@@ -10,7 +10,7 @@ from control.balancer import Balancer
 from control.body import Body
 from control.estimator import BaseEstimator
 from control.foot_load import FootLoad
-from control.gait import Gait, load_gait
+from control.gait import Gait
 from control.gait_file import Balance, Sampling
 from control.planner import Planner, StepPlanner
 from control.regulation import RegulationVariable, regulation_variables
@@ -24,20 +24,10 @@ from hal.controller import Predictor
 from hal.errors import StateMissingError, UnknownNameError, UsageError
 from robots import RobotDescription
 from sim_twin.imu_errors import OPENCR
+from tools.gaits import find_gait
+from tools.spells import blended
 from tools.steer import steering_of
 from tools.walk_options import WalkOptions
-
-
-def find_gait(robot: RobotDescription, name: str) -> Gait:
-    """Return a gait or pose graph of `robot` by name.
-
-    Raises:
-        UnknownNameError: The robot has no such gait.
-    """
-    gaits = robot.gaits()
-    if name not in gaits:
-        raise UnknownNameError(f"gait of {robot.name}", name, gaits)
-    return load_gait(gaits[name], robot.joints, robot.contacts, robot.mirror)
 
 
 def body_of(robot: RobotDescription) -> Body:
@@ -97,7 +87,7 @@ def build_walk(
     Raises:
         UsageError: The options do not fit the gait.
     """
-    gait = find_gait(robot, options.gait)
+    gait = blended(robot, find_gait(robot, options.gait), options)
     if not gait.graph.ends_step.any() or gait.file.balance is None:
         raise UsageError(
             f"gait {gait.name!r} has no steps to balance; "

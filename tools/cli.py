@@ -24,6 +24,7 @@ from tools.scan import Scan
 from tools.stand import Stand
 from tools.stop import Stop
 from tools.sweep import Sweep, separate
+from tools.synthesis import Synthesise
 from tools.walk import Walk
 
 Command = (
@@ -39,6 +40,7 @@ Command = (
     | Annotated[Bench, tyro.conf.subcommand("bench")]
     | Annotated[Sweep, tyro.conf.subcommand("sweep")]
     | Annotated[Reproduce, tyro.conf.subcommand("reproduce")]
+    | Annotated[Synthesise, tyro.conf.subcommand("synthesise")]
 )
 
 

@@ -4,10 +4,10 @@ import logging
 import multiprocessing
 import signal
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from os import cpu_count
-from typing import TypeVar
+from typing import Any, Self, TypeVar
 
 import mujoco
 from rich.progress import (
@@ -48,30 +48,81 @@ def side_by_side(
         UsageError: `jobs` is below 1.
         WindupError: From `work`, or a process has died.
     """
-    if jobs is not None and jobs < 1:
-        raise UsageError(f"--jobs {jobs}: give 1 or more")
     if not items:
+        check_jobs(jobs)
         return
-    count = min(len(items), jobs or cpu_count() or 1)
-    with ProcessPoolExecutor(max_workers=count, initializer=_quiet_worker) as pool:
+    with Workers(label, total=len(items), jobs=jobs) as workers:
+        yield from workers.run(work, items)
+
+
+class Workers:
+    """Processes that stay for several lists of items, under one progress bar.
+
+    Args:
+        label: What the progress bar says.
+        total: Items to come, in all the lists.
+        done: Items of them that were done before.
+        jobs: Number of processes; one a core by default, and never more than items.
+
+    Raises:
+        UsageError: `jobs` is below 1.
+    """
+
+    def __init__(self, label: str, *, total: int, done: int = 0, jobs: int | None = None) -> None:
+        check_jobs(jobs)
+        count = max(min(total, jobs or cpu_count() or 1), 1)
+        self._pool = ProcessPoolExecutor(max_workers=count, initializer=_quiet_worker)
+        self._progress = _bar()
+        self._bar = self._progress.add_task(label, total=total, completed=done, said="")
+        self._futures: set[Future[Any]] = set()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._progress.stop()
+        if all(future.done() for future in self._futures):
+            self._pool.shutdown()
+            return
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        for process in multiprocessing.active_children():
+            process.terminate()
+
+    def run(
+        self, work: Callable[[Item], Result], items: list[Item]
+    ) -> Iterator[tuple[Item, Result]]:
+        """Yield each item with its result, in the order in which they finish.
+
+        Raises:
+            WindupError: From `work`, or a process has died.
+        """
         # Submitted before the bar starts its thread: a process forked under it could inherit a
         # lock that nobody will ever release.
-        futures = {pool.submit(work, item): item for item in items}
+        futures = {self._pool.submit(work, item): item for item in items}
+        self._futures = set(futures)
+        self._progress.start()
         try:
-            with _bar() as progress:
-                bar = progress.add_task(label, total=len(items))
-                for future in as_completed(futures):
-                    progress.advance(bar)
-                    yield futures[future], future.result()
+            for future in as_completed(futures):
+                self._progress.advance(self._bar)
+                yield futures[future], future.result()
         except BrokenProcessPool:
             raise WindupError(
                 "a worker process died (out of memory?); run again to go on"
             ) from None
-        finally:
-            if not all(future.done() for future in futures):
-                pool.shutdown(wait=False, cancel_futures=True)
-                for process in multiprocessing.active_children():
-                    process.terminate()
+
+    def say(self, text: str) -> None:
+        """Let the progress bar say how it is going."""
+        self._progress.update(self._bar, said=text)
+
+
+def check_jobs(jobs: int | None) -> None:
+    """Raise a number of processes that cannot be.
+
+    Raises:
+        UsageError: It is below 1.
+    """
+    if jobs is not None and jobs < 1:
+        raise UsageError(f"--jobs {jobs}: give 1 or more")
 
 
 def _quiet_worker() -> None:
@@ -90,6 +141,7 @@ def _bar() -> Progress:
         TimeElapsedColumn(),
         TextColumn("left:"),
         TimeRemainingColumn(),
+        TextColumn("{task.fields[said]}"),
         console=console,
         transient=True,
         disable=not console.is_terminal,

@@ -85,6 +85,24 @@ class WalkReport:
         look = self.robot.clearance
         return None if look is None else 1e3 * look.smallest
 
+    def motion(self) -> dict[str, Any]:
+        """Return what was measured at every tick: flights, work, how much the base shook."""
+        gauges = self.robot.gauges
+        if gauges is None:
+            return {}
+        way = float(np.linalg.norm((self._position() - self._origin)[:2]))
+        return {
+            "flights": gauges.flights,
+            "flight_time_s": gauges.flight_time,
+            "touches": "".join(
+                self.robot.description.feet[foot].name[0] for foot in gauges.touches
+            ),
+            "skips": gauges.skips,
+            "work_j": gauges.work,
+            "cost_of_transport": gauges.cost_of_transport(self.walker.body.mass, way),
+            "shake_rad_s": gauges.shake,
+        }
+
     def _mean(self, name: str, *, whole_strides: bool = False) -> float | None:
         """Return the mean over time of a speed in the records, m/s."""
         records = self.walker.records[SETTLED:]
@@ -123,6 +141,7 @@ class WalkReport:
             "side_m_s": self.side,
             "turn_deg_s": None if self.turn is None else float(np.degrees(self.turn)),
             "foot_clearance_mm": self.clearance,
+            **self.motion(),
             **self.route(),
             "sim_time_s": loop.sim_time,
             "wall_time_s": loop.wall_time,
@@ -173,6 +192,8 @@ def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
         "heading_max_deg": float(np.max(headings)) if headings else None,
         "side_mean_m_s": _mean_of(rows, "side_m_s"),
         "turn_mean_deg_s": _mean_of(rows, "turn_deg_s"),
+        "flights_min": min((row["flights"] for row in rows), default=0),
+        "cost_of_transport_mean": _mean_of(rows, "cost_of_transport"),
         "foot_clearance_min_mm": min((clear(row) for row in rows), default=None),
         "crossed": sum(clear(row) < 0.0 for row in rows),
         "steps_min": min(row["steps"] for row in rows),

@@ -21,7 +21,9 @@ from sim_twin.push import Push
 from sim_twin.rollouts import RolloutPredictor
 from sim_twin.twin import Twin
 from sim_twin.world import World
-from tools.build import build_walk, find_gait
+from tools.build import build_walk
+from tools.gaits import find_gait
+from tools.gauges import Gauges
 from tools.plan_process import ProcessPlanner, plan_aside
 from tools.report import WalkReport
 from tools.session import Session
@@ -43,12 +45,14 @@ class Robot(Session):
         noise: Noise of the start pose, degrees.
         seed: Seed of everything random.
         clearance: How close the feet of a twin came in the last walk.
+        gauges: What was measured at every tick of the last walk.
     """
 
     predictor: RolloutPredictor = field(kw_only=True)
     noise: float = 0.0
     seed: int = 0
     clearance: FootClearance | None = field(default=None, init=False)
+    gauges: Gauges | None = field(default=None, init=False)
 
     @classmethod
     def open(
@@ -243,8 +247,9 @@ class Robot(Session):
         return planner.wait_ready()
 
     def _watch_feet(self) -> None:
-        """From now on remember how close the feet of a twin come."""
+        """From now on measure what the feet do, and how close those of a twin come."""
         twin = self.stack.twin
+        self.gauges = Gauges(self.description.contacts)
         self.clearance = None
         if twin is not None:
             self.clearance = FootClearance(self.description, twin.model, twin.data)
@@ -255,6 +260,8 @@ class Robot(Session):
         def until(observation: Observation) -> str | None:
             if self.clearance is not None:
                 self.clearance.look()
+            if self.gauges is not None:
+                self.gauges.look(observation)
             return end(observation)
 
         return until

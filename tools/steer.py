@@ -1,6 +1,6 @@
 """Putting together what steers a walk: speed, side, turns, style, a route."""
 
-from math import isfinite, radians
+from math import radians
 
 from control.course import Course
 from control.gait import Gait
@@ -12,6 +12,7 @@ from control.style import Styling
 from hal.errors import UsageError
 from robots import RobotDescription
 from tools.route import guide_of
+from tools.spells import styles_of_walk
 from tools.walk_options import WalkOptions
 
 
@@ -34,24 +35,6 @@ def steering_of(robot: RobotDescription, gait: Gait, options: WalkOptions) -> St
         guide=options.guide or route or Steady(order),
         speed=SpeedControl(gait, options.speed),
         side=SideControl(gait, options.side),
-        style=Styling(gait, amounts(options.style)),
+        style=Styling(gait, spells=styles_of_walk(options)),
         course=None if heading is None else Course(heading, turn),
     )
-
-
-def amounts(given: tuple[str, ...]) -> dict[str, float]:
-    """Return amounts by name from "NAME=AMOUNT", or a bare NAME for an amount of one.
-
-    Raises:
-        UsageError: An amount is no number.
-    """
-    found = {}
-    for text in given:
-        name, equals, value = text.partition("=")
-        try:
-            found[name] = float(value) if equals else 1.0
-        except ValueError:
-            raise UsageError(f"--style {text}: {value!r} is no number") from None
-        if not isfinite(found[name]):
-            raise UsageError(f"--style {text}: {value!r} is no amount")
-    return found

@@ -43,9 +43,13 @@ class Walk(TwinOptions, Common):
     stand: float = 0.0
     """Afterwards come to rest and stand for some seconds."""
     style: tuple[str, ...] = ()
-    """Styles and how much of them, NAME=AMOUNT; any perturbation of the gait is one too."""
+    """Styles and how much of them, NAME=AMOUNT; any perturbation of the gait is one too. With
+    NAME=AMOUNT@BEGIN:END it comes and goes, s."""
+    blend: tuple[str, ...] = ()
+    """Gaits to blend into this one and how far, GAIT=AMOUNT, also with @BEGIN:END; at 1 the poses,
+    times and targets are all theirs."""
     gait: str = "walk"
-    """Name of the gait."""
+    """Name of the gait, or the path of a gait file of your own."""
     rv: tuple[str, ...] | None = None
     """Regulation variables, such as: up, or up.forward swing_com.lateral."""
     sampling: Literal["sp", "fl", "lf", "full"] | None = None
@@ -130,6 +134,7 @@ class Walk(TwinOptions, Common):
             side=self.side,
             turn=self.turn,
             style=self.style,
+            blend=self.blend,
             path=self.path,
             to=self.to,
             rv=self.rv,
@@ -202,8 +207,15 @@ def _line(report: WalkReport) -> str:
     return (
         f"{result['robot']} {end}{pace}: {result['distance_m']:.2f} m forward, "
         f"{result['lateral_m']:+.2f} m to the left, heading {result['heading_deg']:+.1f} degrees, "
-        f"{ratio:.1f} x real time{_crossing(report)}"
+        f"{ratio:.1f} x real time{_flying(result)}{_crossing(report)}"
     )
+
+
+def _flying(result: dict[str, Any]) -> str:
+    """Return how often the robot left the ground."""
+    flights = result.get("flights", 0)
+    share = result.get("flight_time_s", 0.0) / max(result["sim_time_s"], 1e-9)
+    return f", {flights} flights ({share:.0%} of the time)" if flights else ""
 
 
 def _crossing(report: WalkReport) -> str:

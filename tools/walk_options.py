@@ -16,6 +16,7 @@ class WalkOptions:
     side: float = 0.0
     turn: float = 0.0  # degrees/s
     style: tuple[str, ...] = ()
+    blend: tuple[str, ...] = ()
     path: str | None = None
     to: tuple[float, float] | None = None
     guide: Guide | None = None  # instead of all these

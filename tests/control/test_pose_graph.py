@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -66,12 +68,19 @@ def test_a_blend_is_linear_between() -> None:
 
 def test_graphs_of_different_states_cannot_be_blended() -> None:
     with pytest.raises(ConfigError) as error:
-        graph([1, 2, 0]).blend(graph([1, 2, 0], names="XYZ"), 0.5)
-    assert str(error.value) == (
-        "graph and graph have different states (X, Y, Z and A, B, C); they cannot be blended"
-    )
-    with pytest.raises(ConfigError, match="cannot be blended"):
         graph([1, 2, 0]).blend(graph([1, 2, 2]), 0.5)
+    assert str(error.value) == (
+        "graph and graph have different states (A, B, C and A, B, C) and cannot be blended; "
+        "give both as many, with the same `until`, `stance` and `ends_step`"
+    )
+    one = graph([1, 2, 0])
+    with pytest.raises(ConfigError, match="cannot be blended"):
+        one.blend(replace(one, stance=one.stance + 1), 0.5)
+
+
+def test_states_of_other_names_can_be_blended_where_they_end_alike() -> None:
+    blend = graph([1, 2, 0]).blend(graph([1, 2, 0], 1.0, names="XYZ"), 0.5)
+    np.testing.assert_allclose(blend.pose, 0.5)
 
 
 def test_a_perturbation_of_other_states_does_not_fit() -> None:

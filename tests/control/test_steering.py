@@ -10,11 +10,11 @@ from control.gait import Gait
 from control.gait_file import Heading, Side, Style, Turn
 from control.guide import WalkCommand
 from control.side import SideControl
-from control.style import Styling
+from control.style import Spell, Styling
 from hal.errors import UnknownNameError, UsageError
 from robots import load_robot
-from tools.build import find_gait
-from tools.steer import amounts
+from tools.gaits import find_gait
+from tools.spells import spell
 
 
 @pytest.fixture(scope="module")
@@ -86,11 +86,11 @@ def test_styles_compose_and_ramp(gait: Gait) -> None:
         name="low", scale={"crouch": 4.0, "lift": 1.0}, targets={"up.forward": 0.1}, steps=2
     )
     styling = Styling(with_file(gait, style=[low]), {"low": 1.0, "lift": -2.0})
-    styling.begin_step()
+    styling.begin_step(0.0)
     assert styling.scale()[gait.index("crouch")] == pytest.approx(2.0)
-    styling.begin_step()
+    styling.begin_step(0.3)
     assert styling.targets() == {"up.forward": pytest.approx(0.1)}
-    styling.begin_step()
+    styling.begin_step(0.6)
     assert styling.scale()[gait.index("lift")] == pytest.approx(-1.0)
 
 
@@ -99,6 +99,40 @@ def test_a_style_that_is_not_there_or_too_much_is_refused(gait: Gait) -> None:
         Styling(gait, {"crouh": 1.0})
     with pytest.raises(UsageError, match="outside its range"):
         Styling(gait, {"crouch": 40.0})
-    with pytest.raises(UsageError, match="'much' is no number"):
-        amounts(("crouch=much",))
-    assert amounts(("crouch", "lift=-2")) == {"crouch": 1.0, "lift": -2.0}
+
+
+def test_a_spell_comes_in_and_goes_out_by_the_ramp_of_its_style(gait: Gait) -> None:
+    low = Style(name="low", scale={"crouch": 4.0}, steps=2)
+    styling = Styling(with_file(gait, style=[low]), spells=(Spell("low", 1.0, 1.0, 3.0),))
+    seen = []
+    for time in range(10, 17):
+        styling.begin_step(float(time))
+        seen.append(styling.present.get("low", 0.0))
+    assert seen == pytest.approx([0.0, 0.5, 1.0, 0.5, 0.0, 0.0, 0.0])
+
+
+def test_a_spell_outside_the_range_of_its_style_is_refused(gait: Gait) -> None:
+    with pytest.raises(UsageError, match="style crouch=40 is outside its range"):
+        Styling(gait, spells=(Spell("crouch", 40.0, 5.0),))
+
+
+def test_spells_are_read_with_and_without_amount_and_times() -> None:
+    assert spell("duck", "--style") == Spell("duck", 1.0)
+    assert spell("duck=-2@5", "--style") == Spell("duck", -2.0, 5.0)
+    assert spell("duck=1@5:12", "--style") == Spell("duck", 1.0, 5.0, 12.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    {
+        "duck=much": "--style duck=much: 'much' is no number",
+        "duck=nan": "--style duck=nan: 'nan' is no amount",
+        "duck@5:4": "--style duck@5:4: begin at 0 s or later, and end after that",
+        "duck@-1": "--style duck@-1: begin at 0 s or later, and end after that",
+        "duck@soon": "--style duck@soon: 'soon' is no number",
+    }.items(),
+)
+def test_a_spell_that_cannot_be_is_refused(text: str, message: str) -> None:
+    with pytest.raises(UsageError) as error:
+        spell(text, "--style")
+    assert str(error.value) == message

@@ -1,0 +1,32 @@
+"""Finding a gait: one of the robot's own by name, or any file by its path."""
+
+from pathlib import Path
+
+from control.gait import Gait, load_gait
+from hal.errors import UnknownNameError
+from robots import RobotDescription
+
+
+def find_gait(robot: RobotDescription, name: str) -> Gait:
+    """Return a gait or pose graph of `robot` by name, or from the path of a file of your own.
+
+    Raises:
+        UnknownNameError: The robot has no such gait, and there is no such file.
+        ConfigError: The file says something that cannot be.
+    """
+    return load_gait(gait_path(robot, name), robot.joints, robot.contacts, robot.mirror)
+
+
+def gait_path(robot: RobotDescription, name: str) -> Path:
+    """Return the file of a gait of `robot`; `name` may be its path (it then ends in .toml).
+
+    Raises:
+        UnknownNameError: The robot has no such gait, and there is no such file.
+    """
+    gaits = robot.gaits()
+    if name in gaits:
+        return gaits[name]
+    path = Path(name)
+    if path.suffix == ".toml" and path.is_file():
+        return path
+    raise UnknownNameError(f"gait of {robot.name}", name, gaits)

@@ -1,0 +1,165 @@
+"""The command line of `windup synthesise`."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import msgspec
+import tyro
+
+from control.gait_file import GaitFile
+from hal.config import load_toml
+from hal.errors import UsageError
+from robots import load_robot
+from tools.build import build_walk
+from tools.gaits import gait_path
+from tools.output import check_writable, console, write_json
+from tools.parallel import Workers
+from tools.synthesis.gait_toml import write_gait
+from tools.synthesis.genes import Genome
+from tools.synthesis.log import Entry, SearchLog
+from tools.synthesis.score import Objective, objective
+from tools.synthesis.search import Search, Values
+from tools.synthesis.trial import Trial, walk_trial
+from tools.walk_options import WalkOptions
+
+FINALISTS = 5
+Positional = Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Synthesise:
+    """Improve a gait, or find one, with CMA-ES: `windup walk ROBOT --gait FILE` walks the result.
+
+    Trials are kept beside the result in FILE.trials: after Ctrl-C the same line goes on where it
+    was, and a larger --trials searches on. In the end the best trials walk again from other starts,
+    and the best of these is written.
+
+    windup synthesise op3 --speed 0.2 --aim 0.2 --objective falls speed effort --out thrifty.toml
+    """
+
+    robot: Positional
+    """A robot's name, or the path of a folder with your own."""
+    gait: str = "walk"
+    """The gait to begin with: its name, or the path of a gait file."""
+    vary: tuple[str, ...] | None = None
+    """What may change, * for anything: pose.STATE.JOINT, hold.STATE, target.VARIABLE, limit.NAME,
+    change.NAME.JOINT. By default the angles of joints that move, hold times, and targets."""
+    objective: tuple[str, ...] = ()
+    """What counts, TERM or TERM=WEIGHT: falls, speed, effort, shake, drift, flight,
+    air, skip."""
+    aim: float | None = None
+    """The speed that `speed` wants, m/s."""
+    speed: float | None = None
+    """Commanded speed, m/s; the gait's own by default."""
+    trials: int = 300
+    """How many gaits to try."""
+    steps: int = 40
+    """Steps of a walk."""
+    seeds: int = 3
+    """Noisy starts of each trial."""
+    noise: float = 0.2
+    """Standard deviation of noise on the start pose, degrees."""
+    seed: int = 0
+    """Seed of the search."""
+    population: int | None = None
+    """Trials in a generation."""
+    spread: float = 1.0
+    """How far the first trials are from the gait: one is 4 degrees, 0.02 s, 0.03 of a target."""
+    out: Path
+    """Gait file to write, .toml."""
+    jobs: int | None = None
+    """Processes; one a core by default."""
+    json: Path | None = None
+    """Write what came of it as JSON to a file, or to standard output with '-'."""
+
+    def run(self) -> int:
+        """Search; returns 0 if the gait written walks from all starts, else 1."""
+        self._check()
+        robot = load_robot(self.robot)
+        start = load_toml(gait_path(robot, self.gait), GaitFile)
+        build_walk(robot, WalkOptions(gait=self.gait, speed=self.speed), None)
+        genome = Genome(start, robot.joints, robot.mirror)
+        genes = genome.choose(self.vary)
+        aim = objective(self.objective, self.aim)
+        log = SearchLog(self._log_path(), self._setup(start, [gene.name for gene in genes], aim))
+        console.print(f"{len(genes)} genes, {len(log.entries)} of {self.trials} trials done before")
+        with Workers("trials", total=self.trials, done=len(log.entries), jobs=self.jobs) as workers:
+
+            def walk(todo: list[tuple[int, Values]]) -> Iterator[tuple[int, Entry]]:
+                seeds = tuple(range(self.seeds))
+                trials = [self._trial(n, genome.express(values), seeds) for n, values in todo]
+                for trial, rows in workers.run(walk_trial, trials):
+                    yield trial.number, {"cost": aim.cost(rows), "terms": aim.terms(rows)}
+                    workers.say(f"best cost {_best(log):.3f}")
+
+            search = Search(genes, log, walk, self.trials, self.seed, self.population, self.spread)
+            search.run()
+            finals = self._finals(search, genome, aim, workers)
+        return self._conclude(search, genome, finals)
+
+    def _check(self) -> None:
+        for name in ("trials", "steps", "seeds"):
+            if getattr(self, name) < 1:
+                raise UsageError(f"--{name} {getattr(self, name)}: give 1 or more")
+        if self.population is not None and self.population < 4:
+            raise UsageError(f"--population {self.population}: give 4 or more")
+        if self.spread <= 0.0 or self.noise < 0.0 or self.seed < 0:
+            raise UsageError("--spread has to be above 0, --noise and --seed 0 or more")
+        if self.out.suffix != ".toml":
+            raise UsageError(f"--out {self.out}: name it .toml")
+        check_writable(self.out, self._log_path())
+
+    def _log_path(self) -> Path:
+        return self.out.with_suffix(".trials")
+
+    def _setup(self, start: GaitFile, genes: list[str], aim: Objective) -> dict[str, Any]:
+        """Return what has to be the same for a search to go on."""
+        names = ("robot", "speed", "steps", "seeds", "noise", "seed", "population", "spread")
+        options = {name: getattr(self, name) for name in names}
+        told = {"objective": aim.weights, "aim": aim.aim, "vary": genes}
+        return {**options, **told, "gait": msgspec.to_builtins(start)}
+
+    def _trial(self, number: int, file: GaitFile, seeds: tuple[int, ...]) -> Trial:
+        return Trial(number, self.robot, file, self.steps, self.noise, seeds, self.speed)
+
+    def _finals(
+        self, search: Search, genome: Genome, aim: Objective, workers: Workers
+    ) -> dict[int, Entry]:
+        """Walk the gait that was there, and the best ones, from starts they were not chosen by."""
+        seeds = tuple(range(self.seeds, 3 * self.seeds))
+        numbers = list(dict.fromkeys([0, *search.ranking()[:FINALISTS]]))
+        trials = [self._trial(n, genome.express(search.values(n)), seeds) for n in numbers]
+        return {
+            trial.number: {
+                "cost": aim.cost(rows),
+                "terms": aim.terms(rows),
+                "walked": sum(row["reason"] == "done" for row in rows),
+                "runs": len(rows),
+            }
+            for trial, rows in workers.run(walk_trial, trials)
+        }
+
+    def _conclude(self, search: Search, genome: Genome, finals: dict[int, Entry]) -> int:
+        best = min(finals, key=lambda number: (finals[number]["cost"], number))
+        before, after = finals[0], finals[best]
+        file = genome.express(search.values(best))
+        source = f"windup synthesise {self.robot} --gait {self.gait}, trial {best}. {file.source}"
+        write_gait(self.out, msgspec.structs.replace(file, source=source.strip()))
+        for name, value in after["terms"].items():
+            console.print(f"{name:>8}  {before['terms'][name]:7.3f} -> {value:7.3f}", markup=False)
+        console.print(
+            f"cost {before['cost']:.3f} -> {after['cost']:.3f} on other starts, "
+            f"{after['walked']} of {after['runs']} walked to the end: {self.out}",
+            markup=False,
+            soft_wrap=True,
+        )
+        result = {"robot": self.robot, "gait": self.gait, "out": str(self.out), "trial": best}
+        told = {"before": before, "after": after, "values": search.values(best)}
+        write_json(self.json, "synthesise", {**result, "seed": self.seed, **told})
+        return 0 if after["walked"] == after["runs"] else 1
+
+
+def _best(log: SearchLog) -> float:
+    return min((entry["cost"] for entry in log.entries.values()), default=float("nan"))

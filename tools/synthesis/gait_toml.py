@@ -1,0 +1,46 @@
+"""Writing gait files: what differs from the format's defaults, as TOML."""
+
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from control.gait_file import GaitFile
+from hal.errors import UsageError
+
+
+def write_gait(path: Path, file: GaitFile) -> None:
+    """Write a gait file that `windup walk ROBOT --gait PATH` takes.
+
+    Raises:
+        UsageError: tomli-w is not installed, or the file cannot be written.
+    """
+    try:
+        import tomli_w
+    except ImportError:
+        raise UsageError(
+            "synthesis needs cma and tomli-w: pip install 'windup[synthesis]'"
+        ) from None
+    try:
+        path.write_text(tomli_w.dumps(sparse(file)), encoding="utf-8")
+    except OSError as error:
+        raise UsageError(f"{path} cannot be written: {error.strerror}") from None
+
+
+def sparse(value: Any) -> Any:
+    """Return a record as plain types without the keys that say no more than a default."""
+    if isinstance(value, msgspec.Struct):
+        fields = msgspec.structs.fields(value)
+        kept = {f.name: getattr(value, f.name) for f in fields}
+        return {f.name: sparse(kept[f.name]) for f in fields if kept[f.name] != _default(f)}
+    if isinstance(value, dict):
+        return {key: sparse(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [sparse(item) for item in value]
+    return value
+
+
+def _default(field: msgspec.structs.FieldInfo) -> Any:
+    if field.default_factory is not msgspec.NODEFAULT:
+        return field.default_factory()
+    return field.default

@@ -1,0 +1,61 @@
+"""The file of a search: a line for what is searched, then one for each trial."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from hal.errors import UsageError
+from tools.output import plain
+
+Entry = dict[str, Any]
+
+
+class SearchLog:
+    """Trials by number, each in the file as soon as it has been walked.
+
+    The optimiser is deterministic: given its seed and the costs it goes the same way again, so that
+    the costs are all that has to be kept to go on where a search broke off.
+
+    Args:
+        path: The file; it need not be there.
+        setup: What is searched.
+
+    Raises:
+        UsageError: The file holds another search, or cannot be read or written.
+    """
+
+    def __init__(self, path: Path, setup: dict[str, Any]) -> None:
+        self.path = path
+        self.entries: dict[int, Entry] = {}
+        setup = json.loads(json.dumps(plain(setup)))
+        try:
+            text = path.read_text(encoding="utf-8") if path.exists() else ""
+            whole = text[: text.rfind("\n") + 1]  # without a line that a kill has torn
+            if whole:
+                self._read(whole.splitlines(), setup)
+            else:
+                whole = json.dumps({"setup": setup}) + "\n"
+            path.write_text(whole, encoding="utf-8")
+        except OSError as error:
+            raise UsageError(f"{path}: {error.strerror}") from None
+
+    def add(self, number: int, entry: Entry) -> None:
+        """Keep a trial; it is in the file when this returns."""
+        entry = plain(entry)
+        self.entries[number] = entry
+        with self.path.open("a", encoding="utf-8") as file:
+            file.write(json.dumps({"trial": number, **entry}) + "\n")
+
+    def _read(self, lines: list[str], setup: dict[str, Any]) -> None:
+        try:
+            first, *rest = [json.loads(line) for line in lines]
+            kept = first["setup"]
+            self.entries = {entry.pop("trial"): entry for entry in rest}
+        except (ValueError, KeyError, TypeError, AttributeError):
+            raise UsageError(f"{self.path}: this file is no search's; name another --out") from None
+        other = [name for name in setup if kept.get(name) != setup[name]]
+        if other:
+            raise UsageError(
+                f"{self.path}: holds a search with another {', '.join(other)}; "
+                "give the same options to go on, or name another --out"
+            )

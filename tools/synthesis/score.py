@@ -1,0 +1,107 @@
+"""What a gait is worth: a weighted sum of terms, each about 1 for a gait that is poor in it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from hal.errors import UnknownNameError, UsageError
+
+Row = dict[str, Any]
+AIR = 0.2  # share of the time in the air that counts as flying
+
+
+def _speed(row: Row, aim: float) -> float:
+    if row["speed_m_s"] is None:
+        return 1.0
+    return abs(row["speed_m_s"] - aim) / max(abs(aim), 0.1)
+
+
+def _effort(row: Row, _: float) -> float:
+    cost = row["cost_of_transport"]
+    return 10.0 if cost is None else float(np.log1p(cost))
+
+
+def _drift(row: Row, _: float) -> float:
+    way = max(abs(row["distance_m"]), 0.1)
+    return abs(row["heading_deg"]) / 90.0 + min(abs(row["lateral_m"]) / way, 2.0)
+
+
+def _flight(row: Row, _: float) -> float:
+    return max(1.0 - row["flights"] / max(row["steps"] - 1, 1), 0.0)
+
+
+def _air(row: Row, _: float) -> float:
+    share = row["flight_time_s"] / max(row["sim_time_s"], 1e-9)
+    return max(1.0 - share / AIR, 0.0)
+
+
+def _skip(row: Row, _: float) -> float:
+    return 1.0 - float(row["skips"])
+
+
+TERMS: dict[str, Callable[[Row, float], float]] = {
+    "falls": lambda row, _: 1.0 - row["steps"] / row["steps_requested"],  # share not walked
+    "speed": _speed,  # error of the speed, as a share of --aim
+    "effort": _effort,  # log (1 + cost of transport), work / (weight x way)
+    "shake": lambda row, _: row["shake_rad_s"],  # rms of the base's angular velocity, rad/s
+    "drift": _drift,  # heading of 90 degrees, or as far sideways as forward
+    "flight": _flight,  # share of the steps without a flight
+    "skip": _skip,  # share of the touches that do not skip: left, left, right, right
+    "air": _air,  # short of a fifth of the time in the air
+}
+USUAL = {"falls": 10.0, "speed": 1.0, "effort": 1.0, "shake": 0.2, "drift": 0.2}
+
+
+@dataclass(frozen=True)
+class Objective:
+    """A weighted sum of terms.
+
+    Attributes:
+        weights: Weight of each term.
+        aim: Speed to walk at, m/s.
+    """
+
+    weights: dict[str, float]
+    aim: float | None = None
+
+    def cost(self, rows: list[Row]) -> float:
+        """Return the mean cost of several runs; smaller is better."""
+        return float(np.mean([self._of(row) for row in rows]))
+
+    def terms(self, rows: list[Row]) -> dict[str, float]:
+        """Return the mean of each term, without its weight."""
+        return {
+            name: float(np.mean([TERMS[name](row, self.aim or 0.0) for row in rows]))
+            for name in self.weights
+        }
+
+    def _of(self, row: Row) -> float:
+        aim = self.aim or 0.0
+        return sum(weight * TERMS[name](row, aim) for name, weight in self.weights.items())
+
+
+def objective(given: tuple[str, ...], aim: float | None) -> Objective:
+    """Return the objective from "TERM" or "TERM=WEIGHT", or the usual one.
+
+    Raises:
+        UnknownNameError: There is no such term.
+        UsageError: A weight is no number of 0 or more, or the speed has no aim.
+    """
+    weights = {}
+    for text in given:
+        name, equals, value = text.partition("=")
+        if name not in TERMS:
+            raise UnknownNameError("--objective", name, TERMS)
+        try:
+            weights[name] = float(value) if equals else USUAL.get(name, 1.0)
+        except ValueError:
+            raise UsageError(f"--objective {text}: {value!r} is no number") from None
+        if not 0.0 <= weights[name] < np.inf:
+            raise UsageError(f"--objective {text}: give a weight of 0 or more")
+    if not weights:
+        weights = {name: w for name, w in USUAL.items() if name != "speed" or aim is not None}
+    if "speed" in weights and aim is None:
+        raise UsageError("--objective speed: say which with --aim, m/s")
+    return Objective(weights, aim)

@@ -1,0 +1,109 @@
+"""The search itself: CMA-ES asks for gaits, they are walked, and it is told what they cost."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from hal.errors import UsageError
+from hal.joints import Array
+from tools.synthesis.genes import Gene, shape
+from tools.synthesis.log import Entry, SearchLog
+
+Values = dict[str, float]
+# Walks gaits, given by their numbers and the values of their genes, and yields what came of each.
+Walker = Callable[[list[tuple[int, Values]]], Iterator[tuple[int, Entry]]]
+
+
+@dataclass
+class Search:
+    """A search over genes.
+
+    Hansen 2016, "The CMA evolution strategy: a tutorial". Every gene is scaled by its spread.
+    Trial 0 is the gait as it stands in its file.
+
+    Attributes:
+        genes: What may change.
+        log: Trials, also of an earlier run.
+        walk: Walks gaits.
+        trials: How many, at least; the last generation is always whole.
+        seed: Seed of the optimiser.
+        population: Trials in a generation; by default what CMA-ES takes for so many genes.
+        spread: Scale of all spreads.
+    """
+
+    genes: list[Gene]
+    log: SearchLog
+    walk: Walker
+    trials: int
+    seed: int
+    population: int | None = None
+    spread: float = 1.0
+    _next: int = field(default=0, init=False)
+
+    def run(self) -> None:
+        """Search until there were enough trials.
+
+        Raises:
+            UsageError: cma is not installed.
+        """
+        strategy = self._strategy()
+        start, *_ = shape(self.genes)
+        self._costs([start])
+        while self._next < self.trials and not strategy.stop():
+            candidates = strategy.ask()
+            strategy.tell(candidates, self._costs(candidates))
+
+    def values(self, number: int) -> Values:
+        """Return the values of the genes in a trial."""
+        kept: Values = self.log.entries[number]["values"]
+        return kept
+
+    def ranking(self) -> list[int]:
+        """Return the numbers of the trials, the best one first."""
+        entries = self.log.entries
+        return sorted(entries, key=lambda number: (entries[number]["cost"], number))
+
+    def _costs(self, candidates: list[Array]) -> list[float]:
+        """Return the costs of a generation; what the log has is not walked again."""
+        numbers = range(self._next, self._next + len(candidates))
+        self._next += len(candidates)
+        todo = [
+            (number, self._express(candidate))
+            for number, candidate in zip(numbers, candidates, strict=True)
+            if number not in self.log.entries
+        ]
+        given = dict(todo)
+        for number, entry in self.walk(todo):
+            self.log.add(number, {"values": given[number], **entry})
+        return [float(self.log.entries[number]["cost"]) for number in numbers]
+
+    def _express(self, candidate: Array) -> Values:
+        return {
+            gene.name: gene.round(gene.value + gene.spread * x)
+            for gene, x in zip(self.genes, candidate, strict=True)
+        }
+
+    def _strategy(self) -> Any:
+        try:
+            import cma
+        except ImportError:
+            raise UsageError(
+                "synthesis needs cma and tomli-w: pip install 'windup[synthesis]'"
+            ) from None
+        start, lower, upper = shape(self.genes)
+        random = np.random.default_rng(self.seed)
+        options: dict[str, Any] = {
+            "bounds": [_finite(lower), _finite(upper)],
+            "randn": lambda *size: random.standard_normal(size),
+            "seed": float("nan"),  # the generator above is the only one
+            "verbose": -9,
+        }
+        if self.population is not None:
+            options["popsize"] = self.population
+        return cma.CMAEvolutionStrategy(start, self.spread, options)
+
+
+def _finite(bounds: Array) -> list[float | None]:
+    return [float(bound) if np.isfinite(bound) else None for bound in bounds]
