@@ -12,6 +12,7 @@ import numpy as np
 
 from control.body import Body
 from control.gait import Gait
+from control.goal_limits import GoalLimits
 from control.planner import Planner, StepRequest
 from control.policy import policy_input
 from control.pose_tracker import PoseTracker
@@ -86,6 +87,7 @@ class Balancer:
             )
         self._columns = [self.gait.index(name) for name in self.perturbations]
         self._sent: deque[Array] = deque(maxlen=IN_FLIGHT)
+        self._limits = GoalLimits(self.joints)
         self._hold = JointCommand.hold(self.joints, observation.joints.position)
         scale = np.zeros((1, len(self.gait.perturbations)))
         self._tracker = PoseTracker(self.gait, self.contacts, scale, None, self.torso_servo)
@@ -115,7 +117,7 @@ class Balancer:
         if self._asked:
             self._take_answer(observation.time)
         goals = self._tracker.step(policy_input(observation), dt)[0]
-        goals = np.minimum(np.maximum(goals, self.joints.lower), self.joints.upper)
+        goals = self._limits.apply(goals, self._sent[-1] if self._sent else None, dt)
         self._sent.append(goals)
         block = self._hold.block.copy()
         block[0] = goals

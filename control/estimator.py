@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 
 from control.foot_load import FootLoad
+from control.fused_attitude import FusedAttitude
 from control.height_filter import HeightFilter
 from control.leg_odometry import FootNoise, leg_odometry
 from control.soles import spin
@@ -41,7 +42,9 @@ class BaseEstimator:
         lag: Delay of the IMU's own low-pass filter, s.
         noise: What is believed about the IMU.
         feet: What is believed about the feet.
-        fused: Use the IMU's own orientation for the tilt, where it has one.
+        fused: The IMU tells its attitude instead of rates; those it has are differences, half
+            the time between two samples late.
+        read: How much older than their age the joints' samples are, s.
     """
 
     def __init__(
@@ -53,8 +56,10 @@ class BaseEstimator:
         noise: ImuNoise | None = None,
         feet: FootNoise | None = None,
         fused: bool = False,
+        read: float = 0.0,
     ) -> None:
-        self.load, self.soles, self.lag, self.fused = load, load.soles, lag, fused
+        self.load, self.soles, self.lag, self.read = load, load.soles, lag, read
+        self._fused = FusedAttitude() if fused else None
         self._imu, self._feet = imu, feet or FootNoise()
         self._filter = TiltFilter(noise)
         self.reset()
@@ -63,6 +68,8 @@ class BaseEstimator:
         """Begin anew at the next observation; what is known of the gyro's bias stays."""
         self._last: tuple[float, float, float, ImuState] | None = None
         self._height = HeightFilter()
+        if self._fused is not None:
+            self._fused.reset()
         self._position = np.zeros(3)
         self._airborne = 0.0
 
@@ -97,12 +104,14 @@ class BaseEstimator:
 
     def _carry(self, time: float, youngest: float, imu: ImuState) -> tuple[float, Array]:
         """Integrate the IMU; return the joints' time that has passed, s, and the gyro (3,)."""
-        lead = min(imu.age - youngest, LONGEST) + self.lag
+        lead = min(imu.age - youngest - self.read, LONGEST) + self.lag
         last = self._last
         if last is None or time < last[0]:
             self.reset()
             self._filter.start(_upright(imu))
             self._last = (time, youngest, lead, imu)
+            if self._fused is not None:
+                self._fused.follow(imu, time - imu.age, time - youngest - self.read)
             return 0.0, imu.angular_velocity
         self._last = (time, youngest, lead, imu)
         passed = min(time - last[0] + last[1] - youngest, LONGEST)
@@ -112,11 +121,16 @@ class BaseEstimator:
         # Between two samples the trapezoid, and each sample held over its lead.
         half = 0.5 * (passed - lead + before)
         now, then = half + lead, half - before
-        turn = now * imu.angular_velocity + then * old.angular_velocity
+        rate = imu.angular_velocity
+        if self._fused is not None:
+            turn, rate = self._fused.follow(imu, time - imu.age, time - youngest - self.read)
+        else:
+            turn = now * rate + then * old.angular_velocity
+            ahead = min(self.lag / passed, 1.0)
+            rate = (1.0 + ahead) * rate - ahead * old.angular_velocity
         boost = now * imu.acceleration + then * old.acceleration
         self._filter.predict(turn, boost, passed, 1.0 + max(lead - self.lag, 0.0) / STALE)
-        ahead = min(self.lag / passed, 1.0)
-        return passed, (1.0 + ahead) * imu.angular_velocity - ahead * old.angular_velocity
+        return passed, rate
 
     def _stand(self, contacts: Array, imu: ImuState, rate: Array, passed: float) -> Array:
         """Let the soles correct the filter; return (p,) their shares of the weight."""
@@ -132,7 +146,7 @@ class BaseEstimator:
             self._airborne += passed
             if self._airborne > PATIENCE:
                 self._filter.measure_velocity(np.zeros(3), AIRBORNE)
-        if self.fused and imu.orientation is not None:
+        if self._fused is not None and imu.orientation is not None:
             frame = np.empty(9)
             mujoco.mju_quat2Mat(frame, imu.orientation)
             self._filter.measure_up(frame[6:])

@@ -12,6 +12,7 @@ import numpy as np
 
 from control.body import Body
 from control.gait import Gait
+from control.goal_limits import GoalLimits
 from control.policy import StepPolicy
 from control.pose_tracker import PoseTracker, TrackerState
 from control.regulation import RegulationVariable
@@ -113,6 +114,7 @@ class StepPlanner:
 
     def __post_init__(self) -> None:
         self._columns = [self.gait.index(name) for name in self.perturbations]
+        self._limits = GoalLimits(self.joints)
         self._answer: Array | None = None
         self._due = 0.0
 
@@ -154,6 +156,7 @@ class StepPlanner:
         first = np.repeat(request.before[None], size, axis=0) if ticks else scale
         at = request.at.repeat(size)
         tracker = PoseTracker(self.gait, self.contacts, first, at, self.torso_servo)
-        policy = StepPolicy(tracker, self.joints.lower, self.joints.upper)
+        sent = request.start.in_flight
+        policy = StepPolicy(tracker, self._limits, sent[-1] if len(sent) else None)
         policy.rescale_at(ticks * request.start.dt, scale)
         return policy

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from control.goal_limits import GoalLimits
 from control.pose_tracker import PoseTracker
 from hal.controller import PolicyInput
 from hal.joints import Array, Mask
@@ -13,12 +14,12 @@ class StepPolicy:
 
     Args:
         tracker: m trackers at the start of the step.
-        lower: (n,) smallest target, rad; the guard would clamp there.
-        upper: (n,) largest target, rad.
+        limits: Of the targets.
+        sent: (n,) the last target before that, rad, or None.
     """
 
-    def __init__(self, tracker: PoseTracker, lower: Array, upper: Array) -> None:
-        self.tracker, self.lower, self.upper = tracker, lower, upper
+    def __init__(self, tracker: PoseTracker, limits: GoalLimits, sent: Array | None = None) -> None:
+        self.tracker, self.limits, self._sent = tracker, limits, sent
         self.size = len(tracker.scale)
         self.done: Mask = np.zeros(self.size, dtype=bool)
         self._ticks = 0
@@ -39,7 +40,8 @@ class StepPolicy:
         self._ticks += 1
         self._time += dt
         goals = self.tracker.step(state, dt)
-        return np.minimum(np.maximum(goals, self.lower), self.upper)
+        self._sent = self.limits.apply(goals, self._sent, dt)
+        return self._sent
 
 
 def policy_input(observation: Observation) -> PolicyInput:

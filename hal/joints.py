@@ -10,6 +10,7 @@ from hal.errors import UnknownNameError
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
+ARRAYS = ("lower", "upper", "stiffness", "damping", "torque", "velocity", "goal_speed")
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +25,7 @@ class Joint:
         damping: Default derivative gain, N m s/rad.
         torque: Largest torque, N m.
         velocity: Largest velocity, rad/s.
+        goal_speed: Fastest that the servo lets its goal run, rad/s.
     """
 
     name: str
@@ -33,6 +35,7 @@ class Joint:
     damping: float
     torque: float = np.inf
     velocity: float = np.inf
+    goal_speed: float = np.inf
 
 
 @dataclass(frozen=True)
@@ -51,10 +54,11 @@ class Joints:
     damping: Array = field(init=False, repr=False)
     torque: Array = field(init=False, repr=False)
     velocity: Array = field(init=False, repr=False)
+    goal_speed: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "names", tuple(joint.name for joint in self.joints))
-        for key in ("lower", "upper", "stiffness", "damping", "torque", "velocity"):
+        for key in ARRAYS:
             values = np.array([getattr(joint, key) for joint in self.joints], dtype=np.float64)
             values.setflags(write=False)
             object.__setattr__(self, key, values)

@@ -79,6 +79,7 @@ class ServoModel:
         counts_per_rev: Counts of one turn; where the encoder sees less, as many as it would have.
         pwm_limit: Largest duty.
         encoder_counts: How many counts the encoder has.
+        goal_speed: Fastest that the firmware lets a goal run, rad/s.
     """
 
     name: str
@@ -91,6 +92,7 @@ class ServoModel:
     counts_per_rev: float = 4096
     pwm_limit: float = 1.0
     encoder_counts: int = 4096
+    goal_speed: float = np.inf
 
     def motor(self, voltage: float) -> Motor:
         """Return the motor at a supply of `voltage` V.

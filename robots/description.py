@@ -193,11 +193,12 @@ def _mount(entry: JointEntry) -> ServoMount | None:
 
 def _joint(entry: JointEntry, servo: ServoMount | None, drive: Drive) -> Joint:
     """Return a joint; what its entry leaves open is what its servo can do."""
-    torque = velocity = float("inf")
+    torque = velocity = goal_speed = float("inf")
     if servo is not None:
         motor = servo.model.motor(drive.supply)
         torque = motor.stall_torque * servo.ratio
         velocity = motor.no_load_speed / servo.ratio
+        goal_speed = servo.model.goal_speed / servo.ratio
     return Joint(
         name=entry.name,
         lower=entry.lower,
@@ -206,6 +207,7 @@ def _joint(entry: JointEntry, servo: ServoMount | None, drive: Drive) -> Joint:
         damping=entry.damping or 0.0,
         torque=torque if entry.torque is None else entry.torque,
         velocity=velocity if entry.velocity is None else entry.velocity,
+        goal_speed=goal_speed,
     )
 
 

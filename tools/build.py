@@ -18,7 +18,7 @@ from control.shaken import Shaken
 from control.soles import Soles
 from control.step_memory import Reuse, memory_of
 from control.step_model import StepModel
-from control.tilt_filter import GRAVITY
+from control.tilt_filter import GRAVITY, ImuNoise
 from control.torso_servo import TorsoServo
 from hal.controller import Predictor
 from hal.errors import StateMissingError, UnknownNameError, UsageError
@@ -36,12 +36,15 @@ def body_of(robot: RobotDescription) -> Body:
     return Body(robot.spec().compile(), robot.base, robot.torso, soles)
 
 
-def build_estimator(robot: RobotDescription, *, switches: bool = True) -> BaseEstimator:
+def build_estimator(
+    robot: RobotDescription, *, switches: bool = True, attitude: bool = False
+) -> BaseEstimator:
     """Return what estimates the base of `robot` from its sensors.
 
     Args:
         robot: The robot.
         switches: Its contact sensors exist; without them the soles' heights tell who stands.
+        attitude: Its IMU tells its attitude and has no gyroscope.
 
     Raises:
         StateMissingError: The robot has no IMU or no feet.
@@ -55,7 +58,15 @@ def build_estimator(robot: RobotDescription, *, switches: bool = True) -> BaseEs
     soles = Soles(model, [foot.body for foot in robot.feet], robot.contacts)
     weight = float(model.body_subtreemass[model.body(robot.base).id]) * GRAVITY
     load = FootLoad(soles, robot.contacts, weight, sensed=switches)
-    return BaseEstimator(load, model.site(robot.imu.site).pos.copy(), lag=OPENCR.lag)
+    return BaseEstimator(
+        load,
+        model.site(robot.imu.site).pos.copy(),
+        lag=OPENCR.lag,
+        # What is no gyroscope has no bias; and what is on no servo bus is not read with the joints.
+        noise=ImuNoise(start_bias=0.0, drift=0.0) if attitude else None,
+        fused=attitude,
+        read=robot.drive.wire_delay if attitude else 0.0,
+    )
 
 
 def build_walk(

@@ -140,7 +140,7 @@ def wire_stack(
 def _estimator(robot: RobotDescription, twin: Twin | None, state: State) -> Estimator:
     """Return what fills in the base state behind a port; no servo bus carries foot switches."""
     if state == "estimated":
-        return build_estimator(robot, switches=False)
+        return build_estimator(robot, switches=False, attitude=not _imu_on_the_bus(robot))
     if twin is None:
         raise UsageError("--state true needs a twin; a robot has `--state estimated`")
     return Truth(Sensors(twin))
@@ -170,17 +170,20 @@ def servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
     bauds = {bus.name: bus.baud for bus in robot.buses}
     urls = _urls(robot, port)
     imu = urls.pop(IMU, None)
-    # An OP3's IMU hangs on the servo bus; other robots have theirs on a port of its own.
-    on_the_bus = robot.imu is not None and robot.buses[0].protocol == "dynamixel2"
     return ServoBackend(
         robot.joints,
         mounts,
         {name: BusPort(url, bauds[name]) for name, url in urls.items()},
         supply=robot.drive.supply,
-        board=OpenCr(robot.buses[0].name) if on_the_bus else None,
+        board=OpenCr(robot.buses[0].name) if _imu_on_the_bus(robot) else None,
         imu=Bno08xRvc(imu) if imu is not None else None,
         contacts=len(robot.contacts.names),
     )
+
+
+def _imu_on_the_bus(robot: RobotDescription) -> bool:
+    """An OP3's IMU hangs on the servo bus; other robots have a BNO08x on a port of its own."""
+    return robot.imu is not None and robot.buses[0].protocol == "dynamixel2"
 
 
 def _urls(robot: RobotDescription, port: str) -> dict[str, str]:
@@ -190,7 +193,7 @@ def _urls(robot: RobotDescription, port: str) -> dict[str, str]:
         UsageError: A bus has none, or a name is no bus of the robot.
     """
     names = [bus.name for bus in robot.buses]
-    apart = robot.imu is not None and robot.buses[0].protocol != "dynamixel2"
+    apart = robot.imu is not None and not _imu_on_the_bus(robot)
     first, equals, _ = port.partition("=")
     if equals and first in names:
         given = dict(part.partition("=")[::2] for part in port.split(","))

@@ -11,7 +11,8 @@ The data sheet's own example says so: pitch -1.10 and roll 20.85 degrees go with
 
 There is no gyroscope in a frame. The body's rates are the rotation between two frames over the
 time between them, which the index counts in steps of 10 ms: half a frame late, and 0.01 degree of
-resolution makes 0.017 rad/s of noise.
+resolution makes 0.017 rad/s of noise. A sample is as old as its frame is long on the wire, and
+older by what its host lets it lie; `FrameClock` finds out how long.
 """
 
 from collections.abc import Iterator
@@ -19,6 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hal.imu.frame_clock import FrameClock
 from hal.imu.quaternion import between, conjugate, euler_zxy, multiply, rotate
 from hal.joints import Array
 from hal.observation import ImuState
@@ -29,6 +31,8 @@ LENGTH = 19
 PERIOD = 0.01
 """Time from one frame to the next, s."""
 BAUD = 115_200
+ON_THE_WIRE = 10 * LENGTH / BAUD
+"""From a sample to the end of its frame, s."""
 DEGREE = 0.01 * np.pi / 180.0
 """rad of one count of an angle."""
 ACCELERATION = 1e-3 * 9.80665
@@ -114,14 +118,16 @@ class Bno08xRvc:
         self.parser = FrameParser()
         self._port: Port | None = None
         self._state: ImuState | None = None
-        self._index, self._at = 0, -np.inf
+        self._clock = FrameClock(PERIOD)
+        self._index, self._seen, self._at = 0, -np.inf, -np.inf
         self.implausible = 0
 
     def attach(self, port: Port) -> None:
         """Listen on `port` from now on; a frame begun on another port is forgotten."""
         self._port = port
         self.parser = FrameParser()
-        self._at = -np.inf
+        self._clock.reset()
+        self._seen = self._at = -np.inf
 
     def poll(self) -> None:
         """Take in what has come; waits for nothing.
@@ -150,12 +156,13 @@ class Bno08xRvc:
             return
         acceleration = rotate(self.mounting, frame.acceleration)
         self._state = ImuState(orientation, rates, acceleration, 0.0)
-        self._index, self._at = frame.number, now
+        self._index, self._seen = frame.number, now
+        self._at = self._clock.date(frame.number, now) - ON_THE_WIRE
 
     def _rates(self, index: int, orientation: Array, now: float) -> Array:
         """Return the body's rates (3,) rad/s since the last frame; 0 where that is too old."""
         last, frames = self._state, (index - self._index) % 256
-        recent = now - self._at < LONGEST_GAP * PERIOD and 0 < frames <= LONGEST_GAP
+        recent = now - self._seen < LONGEST_GAP * PERIOD and 0 < frames <= LONGEST_GAP
         if last is None or last.orientation is None or not recent:
             return np.zeros(3)
         return between(last.orientation, orientation) / (frames * PERIOD)

@@ -19,6 +19,9 @@ from hal.servo_model import Row, ServoModel
 GAIN = 4096 / (2.0 * pi) / 4000
 """Duty per rad and unit of P: 0.16297."""
 
+GOAL_SPEED = 3400 * 2.0 * pi / 4096
+"""An STS as it leaves the factory lets its goal run no faster (measured by bam), rad/s."""
+
 STS3215_7V4 = (Row.of(6.0, 1.6, 55 * 6.0 / 7.4), Row.of(7.4, 1.91, 55))
 STS3215_12V = (Row.of(12.0, 2.94, 45, 2.7),)
 STS3250_12V = (Row.of(12.0, 4.9, 75),)
@@ -27,10 +30,16 @@ SCS_COUNTS_PER_REV = 1024 * 360 / 300
 
 # name, model number, rows, duty per rad and P, default P, armature kg m2, friction N m
 FEETECH = (
-    ServoModel("STS3215-7.4V", 777, STS3215_7V4, GAIN, 32, 0.0284, 0.0524, pwm_limit=0.97),
-    ServoModel("STS3215-12V", 777, STS3215_12V, GAIN, 32, 0.0284, 0.0524),
+    ServoModel(
+        "STS3215-7.4V", 777, STS3215_7V4, GAIN, 32, 0.0284, 0.0524,
+        pwm_limit=0.97, goal_speed=GOAL_SPEED,
+    ),
+    ServoModel("STS3215-12V", 777, STS3215_12V, GAIN, 32, 0.0284, 0.0524, goal_speed=GOAL_SPEED),
     ServoModel(
         "SCS0009", 1284, SCS0009_6V, GAIN, 15, 0.0034, 0.0062, SCS_COUNTS_PER_REV, 0.97, 1024
     ),
-    ServoModel("STS3250", 2825, STS3250_12V, GAIN, 32, 0.0284, 0.0524, pwm_limit=0.97),
-)
+    ServoModel(
+        "STS3250", 2825, STS3250_12V, GAIN, 32, 0.0284, 0.0524,
+        pwm_limit=0.97, goal_speed=GOAL_SPEED,
+    ),
+)  # fmt: skip

@@ -1,8 +1,9 @@
 """A BNO08x IMU in UART-RVC mode: it sends a frame a hundred times a second, and hears nothing.
 
 Frame: ``AA AA, index, yaw, pitch, roll, acceleration x y z, three reserved bytes, checksum``. Words
-are signed, low byte first; angles in 0.01 degrees, turned about z, then y, then x; accelerations
-in 0.001 g. The checksum is the sum of what lies between it and the header.
+are signed, low byte first; angles in 0.01 degrees; accelerations in 0.001 g. The checksum is the
+sum of what lies between it and the header. The chip turns yaw about z, then pitch about x, then
+roll about y: the data sheet's example, pitch -1.10 and roll 20.85 degrees, feels -0.371 g along x.
 """
 
 import math
@@ -10,8 +11,9 @@ import struct
 from functools import partial
 from typing import Final
 
+from hal.joints import Array
 from sim_twin.wire.bus import Bus, Heard
-from sim_twin.wire.opencr import GRAVITY, ImuSource, roll_pitch_yaw
+from sim_twin.wire.opencr import GRAVITY, ImuSource
 
 HEADER: Final = b"\xaa\xaa"
 BAUD: Final = 115_200
@@ -24,10 +26,20 @@ _BODY = struct.Struct("<B6h3x")
 
 def encode_rvc(index: int, imu: ImuSource) -> bytes:
     """Return the frame of what `imu` feels now."""
-    roll, pitch, yaw = roll_pitch_yaw(imu.orientation) / ANGLE_UNIT
-    words = [yaw, pitch, roll, *(imu.acceleration / ACCELERATION_UNIT)]
+    angles = [angle / ANGLE_UNIT for angle in yaw_pitch_roll(imu.orientation)]
+    words = [*angles, *(imu.acceleration / ACCELERATION_UNIT)]
     body = _BODY.pack(index & 0xFF, *(max(-32768, min(32767, round(word))) for word in words))
     return HEADER + body + bytes((sum(body) & 0xFF,))
+
+
+def yaw_pitch_roll(quaternion: Array) -> tuple[float, float, float]:
+    """Return the turns about z, then x, then y of a wxyz quaternion, rad."""
+    w, x, y, z = quaternion
+    return (
+        math.atan2(2.0 * (w * z - x * y), 1.0 - 2.0 * (x * x + z * z)),
+        math.asin(max(-1.0, min(1.0, 2.0 * (w * x + y * z)))),
+        math.atan2(2.0 * (w * y - x * z), 1.0 - 2.0 * (x * x + y * y)),
+    )
 
 
 class Mute:

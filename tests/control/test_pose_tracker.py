@@ -6,6 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from control.gait import Gait
+from control.goal_limits import GoalLimits
 from control.policy import StepPolicy
 from control.pose_tracker import PoseTracker, TrackerState
 from control.torso_servo import TorsoServo
@@ -230,7 +231,7 @@ def test_copies_of_a_tracker_start_where_it_is(tmp_path: Path) -> None:
 
 
 def test_a_step_policy_is_done_when_the_step_ends(tmp_path: Path) -> None:
-    policy = StepPolicy(tracker(gait(tmp_path, TIMED), 2), JOINTS.lower, JOINTS.upper)
+    policy = StepPolicy(tracker(gait(tmp_path, TIMED), 2), GoalLimits(JOINTS))
     done = []
     for _ in range(7):
         policy.step(policy_state([AIR] * 2), DT)
@@ -241,7 +242,7 @@ def test_a_step_policy_is_done_when_the_step_ends(tmp_path: Path) -> None:
 def test_a_step_policy_asks_for_nothing_that_the_guard_would_clamp(tmp_path: Path) -> None:
     subject = tracker(gait(tmp_path, WALK))
     subject.rescale(np.array([[500.0, -500.0]]))
-    goals = StepPolicy(subject, JOINTS.lower, JOINTS.upper).step(policy_state([AIR]), DT)[0]
+    goals = StepPolicy(subject, GoalLimits(JOINTS)).step(policy_state([AIR]), DT)[0]
     assert goals.shape == (N,)
     assert goals[1] == JOINTS.upper[1]
     assert ((goals >= JOINTS.lower) & (goals <= JOINTS.upper)).all()
@@ -249,7 +250,7 @@ def test_a_step_policy_asks_for_nothing_that_the_guard_would_clamp(tmp_path: Pat
 
 def test_a_step_policy_takes_late_scalings_at_their_time(tmp_path: Path) -> None:
     graph = gait(tmp_path, TIMED.replace("0.03", "1.0") + PERTURBATION)
-    policy = StepPolicy(tracker(graph), JOINTS.lower, JOINTS.upper)
+    policy = StepPolicy(tracker(graph), GoalLimits(JOINTS))
     policy.rescale_at(0.02, np.array([[10.0]]))
     hips = [float(policy.step(policy_state([AIR]), DT)[0, 1]) for _ in range(4)]
     np.testing.assert_allclose(np.degrees(hips), [10, 10, 20, 20])

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.imu.bno08x_rvc import Bno08xRvc, FrameParser
+from hal.imu.bno08x_rvc import ON_THE_WIRE, Bno08xRvc, FrameParser
 from hal.port import Port
 from tests.hal.fake_bus import FakeSerial, VirtualClock
 from tests.hal.fake_bus1 import STS
@@ -43,7 +43,8 @@ def test_the_data_sheets_example_is_decoded_and_gravity_is_where_the_angles_say(
     w, x, y, z = state.orientation
     up = [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]
     assert up == pytest.approx([-0.356, -0.019, 0.934], abs=1e-3)
-    assert state.angular_velocity.tolist() == [0.0] * 3 and state.age == 0.0
+    assert state.angular_velocity.tolist() == [0.0] * 3
+    assert state.age == pytest.approx(ON_THE_WIRE)
 
 
 @given(st.lists(st.binary(max_size=12), min_size=4, max_size=4), st.integers(1, 60))
@@ -116,10 +117,10 @@ def test_a_turn_that_cannot_be_is_refused_and_the_sample_ages() -> None:
     send(serial, imu, rvc(1, (0, 120.0, 0)))
     assert imu.implausible == 2
     state = imu.state(serial.clock.now())
-    assert state is not None and state.age == pytest.approx(0.02)
+    assert state is not None and state.age == pytest.approx(0.02 + ON_THE_WIRE)
     send(serial, imu, rvc(3, (0.1, 0, 0)))
     again = imu.state(serial.clock.now())
-    assert again is not None and again.age == 0.0
+    assert again is not None and again.age == pytest.approx(ON_THE_WIRE)
 
 
 def test_the_backend_listens_beside_its_buses_and_survives_an_unplugged_imu() -> None:

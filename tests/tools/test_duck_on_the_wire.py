@@ -16,3 +16,10 @@ def test_a_duck_squats_over_the_wire(windup: Windup) -> None:
     line = "play duck squat --port twin://duck --seconds 2 --json -"
     ran = windup(*line.split())
     assert (ran.status, ran.json["fell"]) == (0, False)
+
+
+def test_a_duck_walks_over_the_wire_on_what_its_sensors_say(windup: Windup) -> None:
+    line = "walk duck --port twin://duck?clock=virtual --faults drop:0.01 --steps 12 --turn 15"
+    ran = windup(*line.split(), "--json", "-")
+    assert (ran.status, ran.json["steps"], ran.json["fell"]) == (0, 12, False)
+    assert ran.json["heading_deg"] > 5.0

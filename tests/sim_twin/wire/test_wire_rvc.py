@@ -1,10 +1,11 @@
 """A BNO08x in UART-RVC mode on a port of its own."""
 
-import math
-
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
+from hal.imu.bno08x_rvc import decode
+from hal.imu.quaternion import euler_zxy
 from sim_twin.twin import Twin
 from sim_twin.wire import drop_world
 from sim_twin.wire.opencr import GRAVITY
@@ -15,17 +16,9 @@ EXAMPLE = "AA AA DE 01 00 92 FF 25 08 8D FE EC FF D1 03 00 00 00 E7"  # of the d
 
 
 def turned(yaw: float, pitch: float, roll: float) -> np.ndarray:
-    """Return the quaternion of turns about z, then y, then x, degrees."""
-    c = [math.cos(math.radians(a) / 2) for a in (roll, pitch, yaw)]
-    s = [math.sin(math.radians(a) / 2) for a in (roll, pitch, yaw)]
-    return np.array(
-        [
-            c[0] * c[1] * c[2] + s[0] * s[1] * s[2],
-            s[0] * c[1] * c[2] - c[0] * s[1] * s[2],
-            c[0] * s[1] * c[2] + s[0] * c[1] * s[2],
-            c[0] * c[1] * s[2] - s[0] * s[1] * c[2],
-        ]
-    )
+    """Return the quaternion of turns about z, then x, then y, degrees."""
+    turns = Rotation.from_euler("ZXY", [yaw, pitch, roll], degrees=True)
+    return np.roll(turns.as_quat(), 1)
 
 
 class Example:
@@ -36,6 +29,20 @@ class Example:
 
 def test_the_data_sheets_frame() -> None:
     assert encode_rvc(222, Example()) == bytes.fromhex(EXAMPLE)
+
+
+@pytest.mark.parametrize("angles", [(30, 10, -20), (-170, 60, 5), (0, -85, 120), (90, 0, 179)])
+def test_the_driver_and_it_mean_the_same_angles(angles: tuple[float, float, float]) -> None:
+    imu = Example()
+    imu.orientation = turned(*angles)
+    read = euler_zxy(*decode(encode_rvc(0, imu)).angles)
+    assert abs(read @ imu.orientation) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_the_data_sheets_angles_are_where_its_gravity_is() -> None:
+    up = Rotation.from_quat(np.roll(Example.orientation, -1)).inv().apply([0.0, 0.0, 1.0])
+    felt = Example.acceleration / np.linalg.norm(Example.acceleration)
+    assert up == pytest.approx(felt, abs=0.02)
 
 
 def test_a_hundred_frames_a_second_come_unasked() -> None:
