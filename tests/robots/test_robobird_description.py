@@ -128,3 +128,12 @@ def test_it_hops_on_both_feet() -> None:
     assert result["flights"] >= 11
     assert result["flight_time_s"] > 0.3 * result["sim_time_s"]
     assert abs(result["touches"].count("l") - result["touches"].count("r")) <= 1
+
+
+def test_it_skips_twice_on_one_foot_and_twice_on_the_other() -> None:
+    with Robot.open("robobird", noise=0.2, seed=4) as robot:
+        result = robot.walk(steps=20, options=WalkOptions(gait="skip")).result()
+    assert result["reason"] == "done"
+    assert "rrllrrll" in result["touches"]
+    assert result["skips"] > 0.8
+    assert result["flights"] >= 16
