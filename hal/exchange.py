@@ -16,6 +16,12 @@ TURNAROUND = 20e-6
 """What a servo with a return delay of 0 takes to answer, s."""
 UNSET_TURNAROUND = 550e-6
 """The same as it leaves the factory, s."""
+BITS = 10.0
+"""A byte on the wire: start, eight, stop."""
+GRACE = 3e-3
+"""Silence granted to servos that are late, before all are asked again, s."""
+LATE = 10
+"""Requests without an answer after which a servo is not late, but gone."""
 
 
 _NOBODY: Mask = np.zeros(0, dtype=bool)
@@ -48,12 +54,15 @@ class Exchange:
         self._wire_free = 0.0
         self._deadline = 0.0
         self._pending: CyclicRead | None = None
+        self._owed: dict[int, int] = {}  # who has not answered, and how often by now
+        self._silence = 0.0
 
     def move_to(self, port: Port) -> None:
         """Go on over another port; what was asked on the old one is forgotten."""
         self.port = port
-        self._wire_free = self._deadline = 0.0
+        self._wire_free = self._deadline = self._silence = 0.0
         self._pending = None
+        self._owed = {}
 
     def send(self, frames: Iterable[bytes]) -> None:
         """Send frames that nobody answers."""
@@ -78,11 +87,42 @@ class Exchange:
         self.cycles += 1
         if isinstance(read, ChainRead):
             return self._collect_chain(read)
+        read.owed = frozenset(self._owed)
         stream = self.port.read(read.length, self._deadline)
+        if self._owed:
+            stream = self._newest(read, stream)
         read.decode(stream)
         if not read.complete:
             self._resynchronise(read, stream)
+        self._note_owed(read)
         return read.valid
+
+    def _newest(self, read: CyclicRead, stream: bytes) -> bytes:
+        """Return `stream` as far as it can be an answer, where earlier ones may still be coming.
+
+        A whole answer that comes sooner than the wire can carry it, or has more behind it, is
+        what an adapter held back.
+        """
+        soonest = self._wire_free + (read.length - 1) * BITS / self.port.baud
+        now = self.port.clock.now()
+        if len(stream) == read.length and now < soonest:
+            return b""
+        return stream + self.port.read(read.longest, now)
+
+    def _note_owed(self, read: CyclicRead) -> None:
+        """Remember who was asked and has not answered; a doubtful reply may have been it.
+
+        Where a servo is late, so are all behind it: they are let finish before the next request,
+        a few times. One that is silent alone is not waited for.
+        """
+        if read.complete or not read.confusable:
+            self._owed = {}
+            return
+        silent = [span.id for span, came in zip(read.spans, read.valid, strict=True) if not came]
+        self._owed = {id: self._owed.get(id, 0) + 1 for id in silent if id not in read.doubted}
+        late = self._owed.get(read.spans[-1].id, 0)
+        if len(silent) > 1 and 0 < late <= LATE:
+            self._silence = self._deadline + GRACE
 
     def _collect_chain(self, chain: ChainRead) -> Mask:
         """Take in the first answer of a chain, then ask and take in one after the other."""
@@ -98,10 +138,12 @@ class Exchange:
 
     def answer_time(self, read: CyclicRead) -> float:
         """Return how long the answer to `read` may take once the request is on the wire, s."""
-        wire = read.length * 10.0 / self.port.baud
+        wire = read.length * BITS / self.port.baud
         return wire + len(read.spans) * self.turnaround + self.port.latency + SLACK
 
     def _ask(self, read: CyclicRead) -> None:
+        if self._silence > self.port.clock.now():
+            self.port.clock.wait_until(self._silence)
         self.port.flush_input()
         self.port.write(read.request)
         self._occupy(len(read.request))
@@ -127,4 +169,4 @@ class Exchange:
 
     def _occupy(self, count: int) -> None:
         start = max(self._wire_free, self.port.clock.now())
-        self._wire_free = start + count * 10.0 / self.port.baud
+        self._wire_free = start + count * BITS / self.port.baud

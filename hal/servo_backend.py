@@ -27,7 +27,7 @@ from hal.wiring import check_mounts
 
 __all__ = ["BusPort", "ServoBackend"]
 
-ATTEMPTS = 5
+ATTEMPTS = 10
 
 
 class ServoBackend:

@@ -26,6 +26,7 @@ class BlockRead(CyclicRead):
     def __init__(self, spans: Sequence[Span], fast: bool = False) -> None:
         super().__init__(spans)
         self.fast = fast
+        self.confusable = not fast  # no other answer has its shape
         uniform = len({(span.address, span.size) for span in self.spans}) == 1
         ids = [span.id for span in self.spans]
         if uniform:

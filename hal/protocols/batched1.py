@@ -4,7 +4,6 @@ In the manner of `hal.protocols.batched`. A whole frame, header and checksum inc
 0xFD modulo 256, so one `add.reduceat` over bytes checks every reply.
 """
 
-from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
@@ -55,23 +54,7 @@ class StatusRead(CyclicRead):
         return bool((sums == FRAME_SUM).all())
 
     def _statuses(self, stream: bytes) -> list[Status]:
-        """Return the replies to believe: good, from who was asked, once each, and in order.
-
-        A servo answers once, in its turn. Two frames with one id, or one out of its turn, mean
-        that a wrong id or a late reply has passed the checksum.
-        """
-        found = list(protocol1.salvage(stream, self._sizes))
-        often = Counter(item.id for item in found)
-        return self._in_turn([item for item in found if often[item.id] == 1])
-
-    def _in_turn(self, items: list[Status]) -> list[Status]:
-        """Return the longest run of `items` whose rows rise."""
-        best: list[list[Status]] = []
-        for item in items:
-            row = self._rows[item.id]
-            before = [run for run in best if self._rows[run[-1].id] < row]
-            best.append([*max(before, key=len, default=[]), item])
-        return max(best, key=len, default=[])
+        return list(protocol1.salvage(stream, self._sizes))
 
 
 class ChainRead(CyclicRead):

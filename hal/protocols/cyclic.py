@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from hal.joints import Mask
 from hal.protocols.protocol2 import Span, Status
+from hal.protocols.turns import doubtful, in_turn, newest
 
 Bytes = npt.NDArray[np.uint8]
 Index = npt.NDArray[np.intp]
@@ -27,6 +28,9 @@ class CyclicRead(ABC):
         longest: Bytes of the longest answer there can be.
         valid: (n,) bool: who answered the last request.
         complete: Did all?
+        owed: Ids that an earlier request may still be answered by; who asks keeps it.
+        doubted: Ids whose replies may have been to an earlier request.
+        confusable: Could a late answer pass for that to another request?
         error: (n,) error bytes, and what the properties below show: as of each servo's last
             good answer.
         payload: The parameters of all replies, one behind the other.
@@ -35,6 +39,7 @@ class CyclicRead(ABC):
     request: bytes
     length: int
     longest: int
+    confusable = True
     _payload_at: Index
     _error_at: Index
 
@@ -44,6 +49,8 @@ class CyclicRead(ABC):
         self._ends: list[int] = np.cumsum([span.size for span in self.spans]).tolist()
         self.valid: Mask = np.zeros(len(self.spans), dtype=bool)
         self.complete = False
+        self.owed: frozenset[int] = frozenset()
+        self.doubted: frozenset[int] = frozenset()
         self.error: Bytes = np.zeros(len(self.spans), dtype=np.uint8)
         self.payload: Bytes = np.zeros(self._ends[-1], dtype=np.uint8)
 
@@ -89,9 +96,15 @@ class CyclicRead(ABC):
 
     def _salvage(self, stream: bytes) -> None:
         self.valid.fill(False)
-        for item in self._statuses(stream):
-            if self._fits(item):
-                self._take(self._rows[item.id], item)
+        found = [item for item in self._statuses(stream) if self._fits(item)]
+        self.doubted = frozenset()
+        if self.owed:
+            found = newest(found, self._rows, self.owed)
+            if doubtful(found, self._rows, self.owed):
+                self.doubted = frozenset(item.id for item in found)
+                found = []
+        for item in in_turn(found, self._rows):
+            self._take(self._rows[item.id], item)
         self.complete = bool(self.valid.all())
 
     def _take(self, row: int, item: Status) -> None:

@@ -40,20 +40,6 @@ def test_one_wrong_byte_costs_one_servo(data: list[bytes], place: int, flip: int
     assert [row for row in range(4) if row != place // 12] == np.flatnonzero(valid).tolist()
 
 
-def test_two_frames_under_one_id_are_believed_by_nobody() -> None:
-    read = sync_read(EVEN)
-    stream = b"".join(protocol1.status(id, bytes([id] * 6)) for id in (1, 2, 2, 9))
-    assert read.decode(stream).tolist() == [True, False, False, True]
-
-
-def test_a_frame_out_of_its_turn_is_not_believed() -> None:
-    read = sync_read(EVEN)
-    late_or_wrong = [9, 1, 2, 5], [1, 9, 2, 5]
-    for order in late_or_wrong:
-        stream = b"".join(protocol1.status(id, bytes([id] * 6)) for id in order)
-        assert read.decode(stream).tolist() == [True, True, True, False]
-
-
 def test_a_reply_that_fails_keeps_the_last_good_one() -> None:
     read = sync_read(EVEN)
     position = read.column(0, "<u2")
