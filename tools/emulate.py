@@ -25,7 +25,7 @@ class Emulate:
     tcp: int | None = None
     """Serve on this TCP port of this machine; 0: any."""
     faults: str = ""
-    """What goes wrong: drop:0.01,unplug:at=5:seconds=1,...; see docs of `sim_twin.wire.faults`."""
+    """What goes wrong: drop:0.01,unplug:at=5:seconds=1,...; a wrong word gets the list."""
     seed: int = 0
     """Seed of the faults."""
     supply: float | None = None

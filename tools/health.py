@@ -65,7 +65,8 @@ class Health:
             ) as reader:
                 return Diagnosis.of(reader, Limits.of(robot), time.time())
         except TelemetryError as error:
-            where = f" --port {self.port}" if self.port else " --realtime"
+            where = f" --port '{self.port}'" if self.port else " --realtime"
+            where += f" --faults '{self.faults}'" if self.faults else ""
             raise TelemetryError(
                 f"{error}; start a run with `windup walk {self.robot}{where}`"
             ) from None

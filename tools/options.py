@@ -21,7 +21,8 @@ class Common:
     port: str | None = None
     """Servo bus: /dev/ttyUSB0, usb:SERIAL, socket://HOST:PORT, twin://ROBOT; or BUS=URL,BUS=URL."""
     faults: str = ""
-    """What goes wrong on a twin:// port: drop:0.01,unplug:at=5:seconds=1,..."""
+    """What goes wrong on a twin:// port: drop:0.01,unplug:at=5:seconds=1,...; a wrong word gets the
+    list."""
     arm: bool = False
     """Allow torque on a port that is not twin://. Hold on to the robot."""
     state: State | None = None

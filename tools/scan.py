@@ -25,7 +25,8 @@ class Scan:
     robot: str | None = None
     """Compare with the servos of this robot."""
     faults: str = ""
-    """What goes wrong on a twin:// port: drop:0.01,unplug:at=5:seconds=1,..."""
+    """What goes wrong on a twin:// port: drop:0.01,unplug:at=5:seconds=1,...; a wrong word gets the
+    list."""
     baud: int | None = None
     """Look at this baud rate only."""
     json: Path | None = None

@@ -1,7 +1,7 @@
 """One fault: what goes wrong, how often or when, and for whom; and how a URL says so."""
 
 import random
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -23,6 +23,7 @@ ANSWERS: Final = {
 EVENTS: Final = {"dead": 0.0, "reset": 0.0, "brown_out": 0.1, "overload": 0.0, "unplug": 0.5}
 SECONDS: Final = {**ANSWERS, **EVENTS}
 KINDS: Final = tuple(SECONDS)
+KEYS: Final = ("rate", "at", "ids", "bus", "seconds", "volts")
 RATE = 0.01  # where neither rate nor time is given
 EXAMPLE = "'drop:0.01,late:0.02:seconds=0.003:ids=1-6,unplug:at=2.5:seconds=0.5'"
 
@@ -58,6 +59,21 @@ class Rule:
         """Whether this servo can be hit."""
         here = self.bus is None or self.bus == bus
         return here and (self.ids is None or identifier in self.ids)
+
+    def check_target(self, buses: Mapping[str, Sequence[int]]) -> None:
+        """Raise what could never happen on `buses`, name to ids.
+
+        Raises:
+            UsageError: There is no such bus, or nobody on it has one of the ids.
+        """
+        if self.bus is not None and self.bus not in buses:
+            raise UsageError(
+                f"faults: {self.kind}: unknown bus {self.bus!r}{suggest(self.bus, buses)}"
+            )
+        there = {id for name, ids in buses.items() if self.bus in (None, name) for id in ids}
+        if self.ids is not None and not self.ids & there:
+            given, known = (", ".join(map(str, sorted(ids))) for ids in (self.ids, there))
+            raise UsageError(f"faults: {self.kind}: nobody has id {given}; there are {known}")
 
     def strikes(self, dice: random.Random, bus: str, identifier: int, now: float) -> bool:
         """Whether the answer that a servo begins at `now` s is hit."""
@@ -98,8 +114,13 @@ def make_rule(
             raise UsageError(f"faults: {kind}: a rate or a time, not both")
         times = sorted(at) if isinstance(at, Sequence) else [at]
     lasts = SECONDS[kind] if seconds is None else seconds
-    if lasts < 0.0 or any(time < 0.0 for time in times):
+    if not all(time >= 0.0 for time in (lasts, *times)):  # nor nan
         raise UsageError(f"faults: {kind}: times are 0 s or later")
+    if seconds is not None and not SECONDS[kind]:
+        takers = ", ".join(other for other in KINDS if SECONDS[other])
+        raise UsageError(f"faults: {kind}: takes no seconds; these do: {takers}")
+    if volts and kind != "brown_out":
+        raise UsageError(f"faults: {kind}: takes no volts; only brown_out does")
     who = None if ids is None else frozenset(ids)
     return Rule(kind, rate or 0.0, times, who, bus, lasts, volts)
 
@@ -107,7 +128,8 @@ def make_rule(
 def parse_rules(text: str) -> list[Rule]:
     """Return the faults of a URL: ``KIND[:RATE][:KEY=VALUE...]``, joined by commas.
 
-    Keys are at (s; several joined by ';'), ids ("1-6;9"), bus, seconds and volts.
+    Keys are rate (may stand alone), at (s; several joined by ';'), ids ("1-6;9"), bus, seconds and
+    volts. Spaces around commas and colons do not count.
 
     >>> parse_rules("drop:0.02:ids=1-2;7")[0].ids == {1, 2, 7}
     True
@@ -115,17 +137,20 @@ def parse_rules(text: str) -> list[Rule]:
     Raises:
         UsageError: The text says something else.
     """
-    return [_parse(part) for part in text.split(",") if part]
+    return [_parse(part.strip()) for part in text.split(",") if part.strip()]
 
 
 def _parse(part: str) -> Rule:
-    kind, *words = part.split(":")
+    kind, *words = (word.strip() for word in part.split(":"))
     if kind not in KINDS:
         raise UsageError(f"faults: unknown kind {kind!r}{suggest(kind, KINDS)}")
     values: dict[str, str] = {}
     for word in words:
         key, equals, value = word.partition("=")
-        values[key if equals else "rate"] = value if equals else key
+        key, value = (key, value) if equals else ("rate", key)
+        if key not in KEYS:
+            raise UsageError(f"faults: {part!r}: unknown key {key!r}{suggest(key, KEYS)}")
+        values[key] = value
     try:
         return make_rule(
             kind,
@@ -135,18 +160,11 @@ def _parse(part: str) -> Rule:
             bus=values.pop("bus", None),
             seconds=float(values.pop("seconds")) if "seconds" in values else None,
             volts=float(values.pop("volts", "0")),
-            **_none_left(values),
         )
     except ValueError:
         raise UsageError(
             f"faults: {part!r}: a rate from 0 to 1 and keys, as in {EXAMPLE}"
         ) from None
-
-
-def _none_left(values: dict[str, str]) -> dict[str, str]:
-    if values:
-        raise ValueError(values)
-    return {}
 
 
 def _numbers(text: str) -> list[float]:
@@ -157,5 +175,8 @@ def _ids(text: str) -> list[int]:
     found: list[int] = []
     for word in text.split(";"):
         first, _, last = word.partition("-")
-        found += range(int(first), int(last or first) + 1)
+        ids = range(int(first), int(last or first) + 1)
+        if not ids:
+            raise ValueError(f"{word}: no ids")
+        found += ids
     return found

@@ -165,8 +165,16 @@ class Faults:
         return self
 
     def attach(self, world: "World") -> None:
-        """Take the world into which scripted faults go."""
+        """Take the world into which scripted faults go.
+
+        Raises:
+            UsageError: A fault concerns a bus or servos that are not in it.
+        """
         if self._world is None:
+            for rule in self._rules:
+                rule.check_target(
+                    {b.name: [d.identifier for d in b.devices] for b in world.buses.values()}
+                )
             self._world = world
             for rule in self._rules:
                 self._script(rule)

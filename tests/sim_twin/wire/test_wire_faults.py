@@ -254,7 +254,7 @@ def test_clearing_ends_it(host: Host1) -> None:
         ("drop:2", "a rate from 0 to 1"),
         ("drop:x", "'drop:x': a rate from 0 to 1 and keys, as in"),
         ("drop:0.1:at=3", "a rate or a time, not both"),
-        ("drop:0.1:id=3", "'drop:0.1:id=3': a rate from 0 to 1 and keys"),
+        ("drop:0.1:id=3", "'drop:0.1:id=3': unknown key 'id'; did you mean 'ids'?"),
         ("unplug:at=-1", "times are 0 s or later"),
     ],
 )
