@@ -11,9 +11,7 @@ from collections.abc import Collection, Mapping, Sequence
 from hal.protocols.protocol2 import Status
 
 
-def newest(
-    items: Sequence[Status], rows: Mapping[int, int], owed: Collection[int]
-) -> list[Status]:
+def newest(items: Sequence[Status], rows: Mapping[int, int], owed: Collection[int]) -> list[Status]:
     """Return the replies that are not certainly those to an earlier request.
 
     Args:
