@@ -153,12 +153,6 @@ class World:
             self.dead.append(device)
             device.set_supply(0.0, self.now)
 
-    def repair(self, device: Device) -> None:
-        """Give a device that had died its power back."""
-        if device in self.dead:
-            self.dead.remove(device)
-            device.set_supply(self.supply, self.now)
-
 
 class VirtualClock:
     """Time that passes only when somebody waits for it."""
