@@ -250,13 +250,8 @@ class Faults:
                 self._world.schedule.at(time, partial(self._strike, rule))
 
     def _strike(self, rule: Rule) -> None:
-        """Let a scripted event happen, unless its rule was cleared since."""
-        if any(known is rule for known in self._rules):
-            self.happen(rule)
-
-    def happen(self, rule: Rule) -> None:
-        """Let an event happen now, to all whom its rule concerns."""
-        if self._world is None:
+        """Let a scripted event happen to all whom it concerns."""
+        if self._world is None or not any(known is rule for known in self._rules):
             return
         for bus in self._world.buses.values():
             if rule.bus is not None and rule.bus != bus.name:
