@@ -20,7 +20,7 @@ BITS = 10.0
 """A byte on the wire: start, eight, stop."""
 GRACE = 3e-3
 """Silence granted to servos that are late, before all are asked again, s."""
-LATE = 10
+LATE = 6
 """Requests without an answer after which a servo is not late, but gone."""
 
 
@@ -87,13 +87,16 @@ class Exchange:
         self.cycles += 1
         if isinstance(read, ChainRead):
             return self._collect_chain(read)
-        read.owed = frozenset(self._owed)
+        gone = len(self._owed) == len(read.spans) and min(self._owed.values()) > LATE
+        read.owed = frozenset() if gone else frozenset(self._owed)
         stream = self.port.read(read.length, self._deadline)
-        if self._owed:
+        if read.owed:
             stream = self._newest(read, stream)
         read.decode(stream)
         if not read.complete:
             self._resynchronise(read, stream)
+        if gone and read.valid.any():
+            self._owed = {}  # they have power again, and may be late from now on
         self._note_owed(read)
         return read.valid
 

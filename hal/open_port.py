@@ -12,7 +12,7 @@ import serial
 from serial.tools import list_ports
 
 from hal.errors import PortError, UsageError
-from hal.port import DevicePort, Port
+from hal.port import GONE, DevicePort, Port
 
 BAUD = 1_000_000
 
@@ -45,7 +45,7 @@ def _open(target: str, url: str, baud: int, exclusive: bool) -> Any:
         if "://" in target:
             return serial.serial_for_url(target, baudrate=baud, timeout=0)
         return serial.Serial(target, baudrate=baud, timeout=0, exclusive=exclusive)
-    except (serial.SerialException, OSError) as error:
+    except GONE as error:
         raise PortError(_explain(target, url, error)) from None
     except ValueError as error:
         raise UsageError(f"{url}: {error}") from None

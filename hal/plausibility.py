@@ -1,10 +1,10 @@
-"""What a checksum of 8 bits lets through: one broken frame in 256 looks whole.
+"""What a checksum lets through: of 8 bits one broken frame in 256, of any a servo of a wrong id.
 
 A reading is believed if it lies within the encoder's range, if its velocity is one the motor has,
 and if the position is no further from the last one than the motor can turn in the time between.
 A joint that is not believed coasts, and the longer it coasts, the further it may have gone: after
 a true jump it is believed again within a moment. The very first reading has nothing to be compared
-with: it is believed when a second one agrees.
+with: behind a weak checksum it is believed when a second one agrees.
 """
 
 import numpy as np
@@ -24,13 +24,14 @@ class Plausibility:
         last: (n,) largest count.
         speed: (n,) counts a second without load.
         velocity_unit: (n,) counts a second of one unit of the velocity register.
+        weak: Does a first reading need a second one that agrees?
 
     Attributes:
         rejected: How many readings have been refused, first ones apart.
     """
 
-    def __init__(self, last: Array, speed: Array, velocity_unit: Array) -> None:
-        self._last = last
+    def __init__(self, last: Array, speed: Array, velocity_unit: Array, weak: bool = True) -> None:
+        self._last, self._weak = last, weak
         self._reach = FASTER * speed
         self._margin = MARGIN * (last + 1.0)
         self._fastest = self._reach / velocity_unit
@@ -51,7 +52,7 @@ class Plausibility:
         taken = good
         if not self._all_known:
             taken = good | can_be & ~self._known
-            good &= self._seen
+            good = good & self._seen if self._weak else taken
             self._seen |= taken
             self._known |= good
             self._all_known = bool(self._known.all())
@@ -61,7 +62,7 @@ class Plausibility:
         return good
 
     def forget(self) -> None:
-        """Believe two readings that agree, wherever they are, as after a servo had no power."""
+        """Start anew, wherever the servos are now, as after they had no power."""
         self._seen.fill(False)
         self._known.fill(False)
         self._all_known = False

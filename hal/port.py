@@ -3,6 +3,7 @@
 import contextlib
 import os
 import select
+import termios
 from typing import Any, Protocol
 
 from serial import SerialException
@@ -11,6 +12,8 @@ from hal.backend import Clock
 from hal.clock import WallClock
 from hal.errors import PortError
 
+GONE = (SerialException, OSError, termios.error)
+"""What an adapter that is pulled out raises, depending on what was going on."""
 LATENCY = 1e-3
 """What an adapter may hold back when its driver does not say, s."""
 
@@ -69,7 +72,7 @@ class Port:
         if rate != self._serial.baudrate:
             try:
                 self._serial.baudrate = rate
-            except (SerialException, OSError, ValueError) as error:
+            except (*GONE, ValueError) as error:
                 raise PortError(f"port {self.url} cannot run at {rate} baud: {error}") from None
 
     def read(self, count: int, deadline: float) -> bytes:
@@ -78,7 +81,7 @@ class Port:
         try:
             self._serial.timeout = wait if wait > 0.0 else 0.0
             data = self._serial.read(count)
-        except (SerialException, OSError) as error:
+        except GONE as error:
             raise self._gone(error) from None
         self.received += len(data)
         return data
@@ -87,7 +90,7 @@ class Port:
         """Send `data`; returns when the driver has it, not when the wire has."""
         try:
             self._serial.write(data)
-        except (SerialException, OSError) as error:
+        except GONE as error:
             raise self._gone(error) from None
         self.sent += len(data)
 
@@ -95,12 +98,12 @@ class Port:
         """Forget bytes that have arrived: a late answer must not pass for the next one."""
         try:
             self._serial.reset_input_buffer()
-        except (SerialException, OSError) as error:
+        except GONE as error:
             raise self._gone(error) from None
 
     def close(self) -> None:
         """Give the device back. Closing twice is no error."""
-        with contextlib.suppress(SerialException, OSError):
+        with contextlib.suppress(*GONE):
             self._serial.close()
 
     def __enter__(self) -> "Port":

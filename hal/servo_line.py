@@ -52,7 +52,7 @@ class ServoLine:
         ids: Their ids.
         rows: Their joints' indices.
         mounts: How they sit.
-        check: The plausibility of readings; None where the checksum is enough.
+        check: The plausibility of readings; None where nobody reads them.
         imu: The last bytes of the OpenCR, or None while there are none.
         imu_fresh: Did they come with the last answers?
         goals: Goal positions, counts.
@@ -132,6 +132,12 @@ class ServoLine:
         if asked.long is not None:
             self._take_health(asked, asked.long, believed, health)
         return believed
+
+    def forget(self) -> None:
+        """Take nothing for granted: servos may have been turned by hand, or be missing."""
+        self._broken_chain = True
+        if self.check is not None:
+            self.check.forget()
 
     def _put(self, asked: Asked, valid: Mask, counts: Array, error: npt.NDArray[np.uint8]) -> Mask:
         read, block = asked.read, asked.block

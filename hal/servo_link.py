@@ -134,8 +134,7 @@ class ServoLink:
         self.losses += 1
         self.barred = self._unsure = True
         self.torque.armed = self.torque.powered = False
-        if self.line.check is not None:
-            self.line.check.forget()
+        self.line.forget()
         self._replug.lose(self.clock.now())
 
     def _revive(self) -> None:

@@ -47,9 +47,8 @@ def lines_of(
     def build(name: str, rows: list[int]) -> BuildLine:
         here = [mounts[row] for row in rows]
         family = family_of(here[0].model.name)
-        check = None
-        if family.dialect.weak:
-            check = Plausibility(units.last[rows], units.speed[rows], units.speed_unit[rows])
+        bounds = units.last[rows], units.speed[rows], units.speed_unit[rows]
+        check = Plausibility(*bounds, weak=family.dialect.weak)
         ours = board if board is not None and board.bus == name else None
         return lambda port: ServoLine(Bus(port, family), here, rows, ours, check)
 

@@ -11,15 +11,17 @@ import tyro
 
 from hal.errors import UsageError
 from tools.bench_balance import measure_balance
+from tools.bench_faults import measure_faults
 from tools.bench_jitter import measure_jitter
 from tools.bench_loop import measure_tick, measure_twin
 from tools.bench_servo import measure_servos
 from tools.bench_stop import ENDS, measure_stops
+from tools.bench_unplug import measure_unplugs
 from tools.bench_wire import Maker, measure_bus
 from tools.output import console, write_json
 from tools.stop_rig import End
 
-What = Literal["tick", "twin", "balance", "servo", "bus", "stop", "loop"]
+What = Literal["tick", "twin", "balance", "servo", "bus", "stop", "loop", "faults", "unplug"]
 
 
 @dataclass(frozen=True)
@@ -31,7 +33,9 @@ class Bench:
     balance: the rollouts of one step. servo: the twin's servo against its data sheet.
     bus: a cycle of 20 servos against the wire and other packages.
     stop: how soon the torque is off when the controller ends, crashes or dies (10 minutes).
-    loop: how late our loop wakes at 125 Hz, beside a C program that only sleeps."""
+    loop: how late our loop wakes at 125 Hz, beside a C program that only sleeps.
+    faults: what becomes of the readings of each family while everything goes wrong (3 minutes).
+    unplug: what becomes of a robot whose adapter is pulled out and put in again (4 minutes)."""
     robot: str = "op3"
     """Name of the robot, or path of its folder."""
     vendor: Maker = "dynamixel2"
@@ -40,8 +44,12 @@ class Bench:
     """stop: random moments of each way to end."""
     end: End | Literal["all"] = "all"
     """stop: by what the run ends."""
+    reads: int = 1_000_000
+    """faults: how often servos of each family are read."""
+    times: int = 100
+    """unplug: how often."""
     seed: int = 0
-    """stop: seed of the moments."""
+    """stop, faults, unplug: seed of the moments."""
     minutes: float = 10.0
     """loop: how long."""
     json: Path | None = None
@@ -51,6 +59,8 @@ class Bench:
         """Measure; returns the exit status."""
         if self.moments < 1:
             raise UsageError(f"--moments {self.moments}: give 1 or more")
+        if self.times < 1:
+            raise UsageError(f"--times {self.times}: give 1 or more")
         if not 0.0 < self.minutes < inf:
             raise UsageError(f"--minutes {self.minutes:g}: give more than 0")
         measures: dict[str, Callable[[str], dict[str, Any]]] = {
@@ -60,6 +70,8 @@ class Bench:
             "servo": measure_servos,
             "bus": partial(measure_bus, maker=self.vendor),
             "loop": partial(measure_jitter, minutes=self.minutes),
+            "unplug": partial(measure_unplugs, times=self.times, seed=self.seed),
+            "faults": partial(measure_faults, reads=self.reads, seed=self.seed),
             "stop": partial(
                 measure_stops,
                 moments=self.moments,

@@ -159,10 +159,10 @@ def _hear(told: Connection, patience: float) -> str | float:
     return float(what) if kind == "crash" else str(what)
 
 
-def serve(name: str, path: Path, pipe: Connection) -> None:
+def serve(name: str, path: Path, pipe: Connection, faults: str = "") -> None:
     """Serve the robot for ever, telling how many motors are driven."""
     emulate(
-        parse_address(f"twin://{name}?clock=real"),
+        parse_address(f"twin://{name}?clock=real&faults={faults}"),
         pty=path,
         on_ready=lambda emulator: pipe.send(_port(emulator)),
         journal=lambda _, driven: pipe.send((time.monotonic(), driven)),

@@ -250,10 +250,13 @@ class Faults:
                 self._world.schedule.at(time, partial(self._strike, rule))
 
     def _strike(self, rule: Rule) -> None:
-        """Let a scripted event happen to all whom it concerns."""
-        if self._world is None or not any(known is rule for known in self._rules):
-            return
-        for bus in self._world.buses.values():
+        """Let a scripted event happen, unless it has been cleared."""
+        if any(known is rule for known in self._rules):
+            self.happen(rule)
+
+    def happen(self, rule: Rule) -> None:
+        """Let an event happen now, to all whom it concerns; before `attach`, to nobody."""
+        for bus in self._world.buses.values() if self._world is not None else ():
             if rule.bus is not None and rule.bus != bus.name:
                 continue
             if rule.kind in ("unplug", "brown_out"):

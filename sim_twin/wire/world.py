@@ -153,6 +153,13 @@ class World:
             self.dead.append(device)
             device.set_supply(0.0, self.now)
 
+    def repair(self, device: Device) -> None:
+        """Give a device that had died the power that the others have."""
+        if device in self.dead:
+            self.dead.remove(device)
+            others = [other.supply for other in self.devices if other not in self.dead]
+            device.set_supply(max(others, default=self.supply), self.now)
+
 
 class VirtualClock:
     """Time that passes only when somebody waits for it."""

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hal.exchange import TURNAROUND, Exchange
+from hal.exchange import LATE, TURNAROUND, Exchange
 from hal.port import Port
 from hal.protocols import protocol2
 from hal.protocols.batched import BlockRead
@@ -89,6 +89,23 @@ def test_a_late_reply_is_not_taken_for_the_next_answer(read: BlockRead) -> None:
     cycle(exchange, read)
     assert read.params(2) != bytes([9] * 10)
     assert exchange.errors == {}
+
+
+@pytest.mark.parametrize(("missed", "believed"), [(LATE - 2, False), (LATE + 2, True)])
+def test_servos_without_power_are_believed_at_once_when_they_are_back(
+    read: BlockRead, missed: int, believed: bool
+) -> None:
+    # After a few missed requests their answers may still be those to an earlier one.
+    serial, port = fake_port(IDS)
+    exchange = exchange_of(serial, port)
+    serial.silent |= set(IDS)
+    for _ in range(missed):
+        cycle(exchange, read)
+    serial.silent = {20}
+    cycle(exchange, read)
+    assert read.valid[:19].all() == read.valid.any() == believed
+    cycle(exchange, read)
+    assert read.valid[:19].all()
 
 
 def test_a_request_behind_a_long_write_has_its_deadline_moved(read: BlockRead) -> None:

@@ -1,5 +1,6 @@
 import fcntl
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -29,6 +30,23 @@ def test_a_pseudo_terminal_is_a_port(pty: tuple[int, str]) -> None:
         os.write(master, b"late")
         port.flush_input()
         assert port.read(1, port.clock.now()) == b""
+
+
+@pytest.mark.parametrize("doing", ["read", "write", "flush_input"])
+def test_a_port_that_is_pulled_out_is_an_error_whatever_is_going_on(
+    pty: tuple[int, str], doing: str
+) -> None:
+    master, path = pty
+    port = open_port(path)
+    calls: dict[str, Callable[[], object]] = {
+        "read": lambda: port.read(1, port.clock.now() + 0.1),
+        "write": lambda: port.write(b"x"),
+        "flush_input": port.flush_input,
+    }
+    os.close(master)
+    with pytest.raises(PortError, match="went away"):
+        calls[doing]()
+    port.close()
 
 
 def test_a_port_in_use_names_its_holder(pty: tuple[int, str]) -> None:

@@ -52,11 +52,12 @@ def written_registers(serial: FakeSerial) -> set[tuple[int, int]]:
 
 
 def test_counts_become_joint_angles_with_sign_and_zero() -> None:
-    robot = Robot().up()
+    robot = Robot()
     for id in (1, 2):
         robot.serial.put(id, 132, 2048 + 100, 4)
         robot.serial.put(id, 128, 10, 4)
         robot.serial.put(id, 126, -100, 2)
+    robot.up()
     state = robot.backend.read().joints
     assert state.position[:2] == pytest.approx([100 * COUNT, -100 * COUNT])
     speed = 10 * 0.229 * 2 * pi / 60
@@ -84,8 +85,8 @@ def test_a_linkage_ratio_divides_angles_and_squares_gains() -> None:
     ports = {"body": BusPort("fake://bus", 1_000_000)}
     backend = ServoBackend(joints_of(1, 0.7), [mount], ports, opener=lambda url, baud: port)
     backend.connect()
-    backend.configure()
     serial.put(1, 132, 2048 + 400, 4)
+    backend.configure()
     assert backend.read().joints.position[0] == pytest.approx(200 * COUNT)
     real = backend.write(JointCommand.hold(backend.joints, np.array([0.1])))
     assert serial.get(1, 84, 2) == 200  # a quarter of 800
@@ -133,11 +134,21 @@ def test_gains_are_sent_only_when_they_change() -> None:
     assert robot.serial.get(1, 84, 2) == 400
 
 
+def test_a_good_frame_that_jumps_is_another_servos() -> None:
+    robot = Robot().up()
+    robot.backend.read()
+    robot.serial.put(2, 132, 3000, 4)
+    robot.backend.clock.wait_until(robot.backend.clock.now() + 0.008)
+    state = robot.backend.read().joints
+    assert state.position[1] == 0.0 and state.age[1] > 0.0
+    assert robot.backend.bus_errors()["implausible"] == 1
+
+
 def test_a_silent_joint_keeps_its_state_and_grows_old() -> None:
     robot = Robot().up()
     robot.backend.read()
     robot.serial.silent.add(3)
-    robot.serial.put(3, 132, 0, 4)
+    robot.serial.put(3, 132, 2100, 4)
     for _ in range(30):
         robot.backend.clock.wait_until(robot.backend.clock.now() + 0.004)
         state = robot.backend.read().joints
@@ -299,8 +310,8 @@ def test_two_buses_are_read_side_by_side() -> None:
     ports = {name: BusPort(name, 1_000_000) for name in wires}
     backend = ServoBackend(joints_of(4), mounts, ports, opener=lambda url, baud: wires[url][1])
     backend.connect()
-    backend.configure()
     wires["right"][0].put(1, 132, 2148, 4)
+    backend.configure()
     start = clock.now()
     state = backend.read().joints
     one_bus = backend.lines[0].bus.exchange

@@ -1,0 +1,136 @@
+"""A bench of emulated servos whose every reading is known beforehand, behind the real driver."""
+
+from itertools import count
+from types import TracebackType
+from typing import Final, Self
+
+import numpy as np
+
+import sim_twin.wire as wire
+from hal.joints import Array, Joint, Joints, Mask
+from hal.observation import Observation
+from hal.servo_backend import BusPort, ServoBackend
+from hal.servo_model import ServoMount
+from hal.servos import servo_model
+from sim_twin.wire.address import BENCH
+from sim_twin.wire.faults import Faults
+from sim_twin.wire.shaft import InertiaShaft
+from sim_twin.wire.world import Bench
+
+# What people call a family, and the servo that stands for it.
+FAMILIES: Final = {
+    "dynamixel2": "XM430-W350",
+    "dynamixel1": "MX-28",
+    "ax": "AX-12A",
+    "sts": "STS3215-7.4V",
+    "scs": "SCS0009",
+}
+BAUD = 1_000_000
+FASTEST = 9  # counts that the fastest servo turns in a cycle; the slowest turns 1
+SWING = 0.3  # of the encoder's range, each way from the middle
+_worlds = count()
+
+
+class Puppets:
+    """Shafts that stand where they were put: physics in which nothing moves by itself."""
+
+    def __init__(self, shafts: tuple[InertiaShaft, ...], timestep: float) -> None:
+        self.shafts, self.timestep = shafts, timestep
+
+    def step(self) -> None:
+        """Let one step of time pass."""
+
+
+class SoakRig:
+    """Servos of one family on a bench, their driver, and what they should say.
+
+    Args:
+        family: A key of `FAMILIES`.
+        servos: How many.
+        seed: Seed of faults and of the way that the shafts go.
+
+    Attributes:
+        backend: The driver, configured and with torque on.
+        faults: What goes wrong on the bus; nothing yet.
+        truth: (servos,) counts where the encoders stand.
+        url: The port.
+    """
+
+    def __init__(self, family: str, servos: int = 20, seed: int = 0) -> None:
+        model, rng = servo_model(FAMILIES[family]), np.random.default_rng(seed)
+        self.name, self.servos = f"soak-{family}-{next(_worlds)}", servos
+        self.url = (
+            f"twin://bench?servos={FAMILIES[family]}:1-{servos}&baud={BAUD}&return_delay=0"
+            f"&world={self.name}&seed={seed}"
+        )
+        self._model, ids = model, range(1, servos + 1)
+        self._supply = min(12.0, model.rows[-1].voltage)
+        stiffness = model.stiffness(model.p_default, self._supply)
+        joints = Joints(tuple(Joint(f"servo {id}", -2.0, 2.0, stiffness, 0.1) for id in ids))
+        mounts = [ServoMount(model, "body", id, 1, model.middle, 1.0) for id in ids]
+        ports = {"body": BusPort(self.url, BAUD)}
+        self.backend = ServoBackend(joints, mounts, ports, supply=self._supply)
+        self.backend.connect()
+        self.world = wire.find_world(self.name)
+        bench = self.world.physics
+        assert isinstance(bench, Bench)
+        self._shafts = bench.shafts
+        self.world.physics = Puppets(self._shafts, bench.timestep)
+        self._pace = 1 + rng.integers(0, FASTEST, servos)
+        self._phase = rng.integers(0, model.encoder_counts, servos)
+        self._reach = int(SWING * model.encoder_counts)
+        self._cycle = 0
+        self.truth: Array = np.zeros(servos)
+        self.turn()
+        self.backend.configure()
+        self.backend.set_torque(True)
+
+    @property
+    def faults(self) -> Faults:
+        """What goes wrong on the bus."""
+        return self.world.buses[BENCH].faults
+
+    def turn(self) -> None:
+        """Turn every shaft by its own number of counts, to and fro within the encoder's range."""
+        self._cycle += 1
+        way = (self._phase + self._cycle * self._pace) % (4 * self._reach)
+        zigzag = np.abs(way - 2 * self._reach) - self._reach
+        self.truth = self._model.middle + zigzag.astype(np.float64)
+        angles = zigzag * 2.0 * np.pi / self._model.counts_per_rev
+        for shaft, angle in zip(self._shafts, angles.tolist(), strict=True):
+            shaft.position = angle
+
+    def read(self) -> tuple[Observation, Mask, Mask]:
+        """Read once; return what came, whose reading is fresh (servos,), and whose is true."""
+        seen = self.backend.read()
+        fresh: Mask = seen.joints.age <= 0.0
+        return seen, fresh, np.rint(self.counts(seen)) == self.truth
+
+    def counts(self, seen: Observation) -> Array:
+        """Return the counts (servos,) behind an observation."""
+        return self.backend.units.counts(seen.joints.position)
+
+    def listening(self) -> Mask:
+        """Return (servos,) bool: who is powered and has booted."""
+        now = self.world.now
+        return np.array([device.listens(now) for device in self.world.devices[: self.servos]])
+
+    def repair(self, servo: int) -> None:
+        """Give the servo of an id its power back."""
+        self.world.repair(self.world.devices[servo - 1])
+
+    def close(self) -> None:
+        """Give the port back and forget the world."""
+        self.backend.disconnect()
+        wire.drop_world(self.name)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
