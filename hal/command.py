@@ -73,12 +73,16 @@ def joint_torque(command: JointCommand, q: Array, dq: Array, limit: Array) -> Ar
     return np.clip(torque, -limit, limit)
 
 
-def shifted_goal(command: JointCommand) -> Array:
+def shifted_goal(command: JointCommand, stiffness: Array | None = None) -> Array:
     """Return the goal (n,) rad that makes a position servo give the feed-forward terms as well.
 
     ``position + (damping velocity + torque) / stiffness``; joints without stiffness keep theirs.
+
+    Args:
+        command: What is asked for.
+        stiffness: (n,) N m/rad that the joints really have, where that is not what is asked for.
     """
+    real = command.stiffness if stiffness is None else stiffness
     push = command.damping * command.velocity + command.torque
-    stiff = command.stiffness > 0.0
-    shift = np.divide(push, command.stiffness, out=np.zeros_like(push), where=stiff)
+    shift = np.divide(push, real, out=np.zeros_like(push), where=real > 0.0)
     return command.position + shift

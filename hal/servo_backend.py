@@ -177,7 +177,7 @@ class ServoBackend:
         block = command.block
         if block[3].tobytes() != self._gains:
             self._send_gains(block[3])
-        goal = shifted_goal(command) if block[1:3].any() else block[0]
+        goal = shifted_goal(command, self._realised[0]) if block[1:3].any() else block[0]
         if self._couplings:
             goal = self._couplings.servos(goal)
         counts = np.rint(self.units.counts(goal))

@@ -15,6 +15,7 @@ from hal.observation import Observation
 from robots import load_robot
 from sim_twin.backend import TwinBackend
 from sim_twin.twin import Twin
+from tests.contract.bench_robots import ROBOTS
 from tools.stack import servo_backend
 
 Opener = Callable[[], Backend]
@@ -23,6 +24,7 @@ BACKENDS: dict[str, Opener] = {
     "twin of human": lambda: TwinBackend(Twin(load_robot("human"))),
     "op3 on a Dynamixel wire": lambda: wired("op3"),
     "duck on a Feetech wire": lambda: wired("duck"),
+    **ROBOTS,
 }
 _worlds = count()
 

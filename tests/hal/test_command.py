@@ -50,6 +50,11 @@ def test_a_shifted_goal_gives_a_position_servo_the_feed_forward_terms() -> None:
     np.testing.assert_allclose(servo, whole)
 
 
+def test_a_shifted_goal_counts_on_the_stiffness_that_is_there() -> None:
+    asked = command(position=0.1, torque=0.6, stiffness=4.0)
+    np.testing.assert_allclose(shifted_goal(asked, np.full(N, 2.0)), 0.1 + 0.6 / 2.0)
+
+
 def test_a_joint_without_stiffness_keeps_its_goal() -> None:
     asked = command(position=0.1, velocity=1.0, torque=0.6, damping=0.2)
     np.testing.assert_array_equal(shifted_goal(asked), np.full(N, 0.1))

@@ -94,6 +94,21 @@ def test_an_ax_has_its_stiffness_in_slopes_of_powers_of_two() -> None:
     assert real.stiffness == pytest.approx([AX.stiffness(64, 12.0), MX.stiffness(60, 12.0)])
 
 
+def test_feed_forward_counts_on_the_stiffness_that_the_slopes_really_make() -> None:
+    wires = wire({1: AX})
+    backend = robot(wires, [mount(AX, "body", 1)], supply=12.0)
+    backend.connect()
+    backend.configure()
+    backend.set_torque(True)
+    command = JointCommand.hold(backend.joints, np.zeros(1))
+    command.stiffness[:] = AX.stiffness(50, 12.0)  # the next slope makes 64 of it
+    command.torque[:] = 0.3
+    real = backend.write(command)
+    assert real.stiffness[0] == pytest.approx(AX.stiffness(64, 12.0))
+    count = 2 * pi / AX.counts_per_rev
+    assert real.position[0] == pytest.approx(0.3 / real.stiffness[0], abs=count / 2)
+
+
 @pytest.mark.parametrize("model", FAMILIES, ids=names)
 def test_no_goal_is_sent_before_torque_is_on_since_a_goal_may_switch_it_on(
     model: ServoModel,
