@@ -1,13 +1,14 @@
 # Two commands do everything: `make walk` and `make test`.
 PYTHON ?= python3
 BIN := .venv/bin
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
 .PHONY: walk test check clean
 
 walk: .venv/run.stamp
 	$(BIN)/windup walk op3 --plot walk.png
 
-test: .venv/dev.stamp
+test: .venv/dev.stamp .venv/ftservo.stamp
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -17,12 +18,17 @@ test: .venv/dev.stamp
 	$(PYTHON) -m venv .venv
 
 .venv/run.stamp: pyproject.toml | .venv/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[plot]'
+	$(PIP) -e '.[plot]'
 	@touch $@
 
 .venv/dev.stamp: pyproject.toml | .venv/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev]'
+	$(PIP) -e '.[dev]'
 	@touch $@ .venv/run.stamp
+
+# A client for tests; it has the import name of feetech-servo-sdk, so it lies beside it.
+.venv/ftservo.stamp: Makefile | .venv/bin/python
+	$(PIP) --no-deps --upgrade --target .venv/ftservo ftservo-python-sdk==2.0.1
+	@touch $@
 
 clean:
 	rm -rf .venv

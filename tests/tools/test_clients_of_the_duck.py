@@ -1,6 +1,10 @@
 """Unmodified clients on `windup emulate duck`. Nothing here is timed; a busy machine may be late,
 so what is not answered is asked again, as their own callers do."""
 
+import json
+import os
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
@@ -109,8 +113,85 @@ def test_sync_write_moves_what_sync_read_shows(port: Any) -> None:
     )
 
 
-def test_rustypot_reads_what_the_duck_has(bus: str) -> None:
+@pytest.fixture
+def pot(bus: str) -> Any:
+    return rustypot.Sts3215PyController(bus, 1_000_000, 0.5)
+
+
+def asked(call: Callable[[], Any]) -> Any:
+    """Return what rustypot says; it raises where an answer is late."""
+    for _ in range(20):
+        try:
+            return call()
+        except RuntimeError as error:
+            late = error
+    raise late
+
+
+def test_rustypot_reads_what_the_duck_has(pot: Any) -> None:
     assert sorted(IDS) == sorted(mount.id for mount in load_robot("duck").servos if mount)
-    client = rustypot.Sts3215PyController(bus, 1_000_000, 0.5)
-    assert all(client.ping(id) for id in IDS)
-    assert len(client.sync_read_present_position(IDS)) == len(IDS)
+    assert all(asked(partial(pot.ping, id)) for id in IDS)
+    assert asked(partial(pot.read_model, 20)) == [MODEL]
+    at = asked(partial(pot.sync_read_raw_present_position, IDS))
+    assert len(at) == len(IDS)
+    assert all(0 <= counts < 4096 for counts in at)
+    assert asked(partial(pot.read_present_voltage, 20))[0] == pytest.approx(74, abs=2)
+
+
+def test_rustypot_writes_and_reads_back(pot: Any) -> None:
+    asked(partial(pot.write_torque_enable, 30, False))
+    asked(partial(pot.write_p_coefficient, 30, 12))
+    assert asked(partial(pot.read_p_coefficient, 30)) == [12]
+    asked(partial(pot.write_p_coefficient, 30, 32))
+
+
+@pytest.mark.parametrize("offset", [-100, 100])
+def test_rustypot_has_its_offsets_signed_as_the_servo_has(pot: Any, offset: int) -> None:
+    asked(partial(pot.write_torque_enable, 30, False))
+    asked(partial(pot.write_lock, 30, False))
+    asked(partial(pot.write_raw_offset, 30, 0))
+    before = asked(partial(pot.read_raw_present_position, 30))[0]
+    asked(partial(pot.write_raw_offset, 30, abs(offset) | (offset < 0) << 11))
+    after = asked(partial(pot.read_raw_present_position, 30))[0]
+    asked(partial(pot.write_raw_offset, 30, 0))
+    asked(partial(pot.write_lock, 30, True))
+    assert before - after == pytest.approx(offset, abs=20)
+
+
+@pytest.mark.parametrize("step", [80, -80])
+def test_rustypot_sync_writes_goals_and_sees_the_speed_with_its_sign(pot: Any, step: int) -> None:
+    here = asked(partial(pot.read_raw_present_position, 32))[0]
+    pot.sync_write_raw_goal_position([32], [here + step])
+    seen = [
+        (
+            asked(partial(pot.read_present_speed, 32))[0],
+            asked(partial(pot.read_raw_present_position, 32))[0],
+        )
+        for _ in range(300)
+    ]
+    fastest = max((speed for speed, _ in seen), key=abs)
+    assert fastest * step > 0.0
+    assert seen[-1][1] == pytest.approx(here + step, abs=30)
+
+
+def test_ftservos_own_sdk_in_a_process_of_its_own(bus: str) -> None:
+    # It has the name of feetech-servo-sdk, so it lies beside the environment, see the Makefile.
+    beside = Path(sys.prefix) / "ftservo"
+    client = Path(__file__).with_name("ftservo_client.py")
+    ran = subprocess.run(
+        [sys.executable, str(client), bus],
+        env={**os.environ, "PYTHONPATH": str(beside)},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert ran.returncode == 0, ran.stderr
+    said = json.loads(ran.stdout)
+    assert Path(said["sdk"]).is_relative_to(beside)
+    assert sorted(said["found"]) == sorted([id, MODEL] for id in IDS)
+    assert said["offset"] == pytest.approx(-100, abs=20)
+    assert said["middle"] == pytest.approx(2048, abs=20)
+    assert said["lock"] == [0, 1]
+    assert said["speeds"][0] > 0 > said["speeds"][1]
+    assert said["turned"] == pytest.approx([100, -100], abs=30)
+    assert said["sync"] == pytest.approx([2048] * 3, abs=40)
