@@ -38,6 +38,8 @@ def check_gait(path: Path, file: GaitFile, joints: Joints) -> None:
     if file.turn is not None:
         _known(path, "turn.perturbation", filter(None, [file.turn.perturbation]), names)
         _known(path, "turn.spread", file.turn.spread, names)
+    if file.incline is not None:
+        _known(path, "incline.perturbation", [file.incline.perturbation], names)
     for style in file.style:
         _known(path, f"style.{style.name}.scale", style.scale, names)
     if file.torso_servo is not None:

@@ -142,6 +142,19 @@ class Heading(Record, frozen=True):
     limit: float = 10.0
 
 
+class Incline(Record, frozen=True):
+    """Tilting the soles with the ground: a perturbation scaled by how far a variable misses.
+
+    The scaling tends to `gain` times the miss of `variable`, by the share `rate` a step.
+    """
+
+    perturbation: str
+    gain: float
+    limit: float
+    variable: str = "up.forward"
+    rate: float = 0.1
+
+
 class Style(Record, frozen=True):
     """A way of walking that can be had by any amount: scalings and targets for an amount of one.
 
@@ -181,5 +194,6 @@ class GaitFile(Record, frozen=True):
     side: Side | None = None
     turn: Turn | None = None
     heading: Heading | None = None
+    incline: Incline | None = None
     style: list[Style] = []
     torso_servo: TorsoServo | None = None

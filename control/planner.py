@@ -147,9 +147,9 @@ class StepPlanner:
             values = start.evaluate(outcomes, self.regulation, self.contacts)
             return values, outcomes.fell | ~policy.done
 
-        whole = start.time == request.start.observation.time
-        features = start.features() if whole else None
-        return self.model.control(sample, request.target, request.phase, features)
+        here = StepStart.of(request.start.observation, request.stance, self.body).features()
+        at = int(request.at.state[0])
+        return self.model.control(sample, request.target, request.phase, here, at)
 
     def policy(self, request: StepRequest, scale: Array) -> StepPolicy:
         """Return what plays the requested step with scalings (m, p)."""

@@ -7,6 +7,7 @@ import numpy as np
 from control.course import Course
 from control.gait import Gait
 from control.guide import Guide, Place, WalkCommand
+from control.incline import InclineControl
 from control.side import SideControl
 from control.speed import SpeedControl
 from control.step_record import StepRecord, StepStart
@@ -28,6 +29,7 @@ class Steering:
         side: Sideways speed.
         style: Styles.
         course: Heading, or None where the gait cannot turn.
+        incline: Slope of the ground, or None where the gait does not feel it.
         command: What the guide has said last.
     """
 
@@ -37,6 +39,7 @@ class Steering:
     side: SideControl
     style: Styling
     course: Course | None = None
+    incline: InclineControl | None = None
     command: WalkCommand = field(default_factory=WalkCommand, init=False)
     _quiet: int = field(default=0, init=False)
     _duration: float = field(default=STEP_SECONDS, init=False)
@@ -60,6 +63,8 @@ class Steering:
         self.style.reset()
         if self.course is not None:
             self.course.reset()
+        if self.incline is not None:
+            self.incline.reset()
 
     def begin_step(self, start: StepStart) -> None:
         """Ask the guide, and go one step toward what it says."""
@@ -77,6 +82,8 @@ class Steering:
     def scale(self, start: StepStart) -> Array:
         """Return the (p,) scalings of the step before balance."""
         scale = self.speed.scale() + self.side.scale() + self.style.scale()
+        if self.incline is not None:
+            scale[self.gait.index(self.incline.law.perturbation)] += self.incline.present
         course = self.course
         if course is not None:
             scale[self.gait.index(course.perturbation)] += course.scale(start.heading)
@@ -101,3 +108,5 @@ class Steering:
         self._duration = record.duration
         self.speed.measured(record.speed)
         self.side.measured(record.side)
+        if self.incline is not None:
+            self.incline.measured(record)

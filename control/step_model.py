@@ -23,6 +23,9 @@ Sampling = Literal["sp", "fl", "lf", "full"]
 # Plays steps with scalings (m, r): regulation variables (m, r) and which of the m fell.
 Sample = Callable[[Array], tuple[Array, Mask]]
 
+# Where a part of a graph begins: its first state, and features of the robot in it.
+Place = tuple[int, Array]
+
 SINGULAR = 1e-6
 COUNTERS = ("retried", "dropped", "kept_last", "clipped", "sampled", "reused")
 
@@ -67,7 +70,12 @@ class StepModel:
             self.memory.reset()
 
     def control(
-        self, sample: Sample, target: Array, side: int, start: Array | None = None
+        self,
+        sample: Sample,
+        target: Array,
+        side: int,
+        start: Array | None = None,
+        at: int | None = None,
     ) -> Array:
         """Return the scalings K (r,) that should end this step at `target` (r,).
 
@@ -75,14 +83,16 @@ class StepModel:
             sample: Plays steps.
             target: Wanted regulation variables.
             side: Side, or part of the graph, that the step is of; each remembers its own K.
-            start: Features (f,) of the state that the step begins in, for the memory; None for
-                the rest of a step, of which it knows nothing.
+            start: Features (f,) of the state that the sampled part begins in, for a library.
+            at: Part of the graph that begins there, if that is not `side`: the rest of a step has
+                models of its own.
         """
         last = self._last.get(side, np.zeros(len(self.samples)))
         origin = self.keep * last if self.from_last else np.zeros_like(last)
         if self.sampling == "full":
-            again = None if start is None else self._reused(sample, target, side, origin, start)
-            wanted = self._full(sample, target, side, origin, start) if again is None else again
+            place = side if at is None else at, np.zeros(0) if start is None else start
+            again = self._reused(sample, target, side, origin, place)
+            wanted = self._full(sample, target, side, origin, place) if again is None else again
         else:
             wanted = self._by_dimension(sample, target, origin, last)
         scalings = np.clip(wanted, -self.limits, self.limits)
@@ -155,13 +165,13 @@ class StepModel:
     # The whole Jacobian
 
     def _reused(
-        self, sample: Sample, target: Array, side: int, origin: Array, start: Array
+        self, sample: Sample, target: Array, side: int, origin: Array, place: Place
     ) -> Array | None:
         """Return K from a remembered model and one rollout; None where that will not do.
 
         The model has drifted when the last K again would miss the target by too much.
         """
-        if self.memory is None or (jacobian := self.memory.recall(side, start)) is None:
+        if self.memory is None or (jacobian := self.memory.recall(*place)) is None:
             return None
         if side not in self._last and not self.memory.complete:
             return None
@@ -175,9 +185,7 @@ class StepModel:
         self.counters["reused"] += 1
         return origin + self._solve(jacobian, target - values[0])
 
-    def _full(
-        self, sample: Sample, target: Array, side: int, origin: Array, start: Array | None
-    ) -> Array:
+    def _full(self, sample: Sample, target: Array, side: int, origin: Array, place: Place) -> Array:
         r = len(origin)
         self.counters["sampled"] += 1
         steps = np.diag(self.samples)
@@ -196,8 +204,8 @@ class StepModel:
             self.counters["kept_last"] += 1
             return self._last.get(side, origin)
         self._jacobian[side] = jacobian
-        if self.memory is not None and start is not None:
-            self.memory.store(side, start, jacobian)
+        if self.memory is not None:
+            self.memory.store(*place, jacobian)
         return origin + self._solve(jacobian, target - values[0])
 
     def _differences(

@@ -30,6 +30,9 @@ from tools.steer import steering_of
 from tools.step_models import memory_for
 from tools.walk_options import WalkOptions
 
+RARELY = 2.0
+"""How much more it takes to plan again where a step should need one rollout."""
+
 
 def body_of(robot: RobotDescription) -> Body:
     """Return the kinematics of a robot."""
@@ -105,7 +108,6 @@ def build_walk(
     body = body_of(robot)
     planner: Planner | None = None
     memory = memory_for(robot, options, variables, names)
-    one_rollout = memory is not None and memory.complete
     if predictor is not None and not options.open_loop:
         planner = StepPlanner(
             gait=gait,
@@ -128,19 +130,20 @@ def build_walk(
         regulation=variables,
         perturbations=names,
         planner=planner,
-        steering=steering_of(robot, gait, options),
+        steering=steering_of(robot, gait, options, variables),
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
         torso_servo=torso_servo,
-        shaken=_shaken(balance, options, one_rollout),
+        shaken=_shaken(balance, options, memory),
     )
 
 
-def _shaken(balance: Balance, options: WalkOptions, one_rollout: bool) -> Shaken | None:
-    """Planning again in mid-step needs another model, and so more than one rollout."""
-    if balance.replan is None or options.rv or one_rollout:
+def _shaken(balance: Balance, options: WalkOptions, memory: Memory | None) -> Shaken | None:
+    """Return who says when to plan again; where one rollout a step is the rule, less often."""
+    if balance.replan is None or options.rv:
         return None
-    return Shaken(balance.replan)
+    one_rollout = memory is not None and memory.complete
+    return Shaken(balance.replan * (RARELY if one_rollout else 1.0))
 
 
 def _resampled(balance: Balance, sampling: Sampling) -> Balance:

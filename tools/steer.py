@@ -5,6 +5,8 @@ from math import radians
 from control.course import Course
 from control.gait import Gait
 from control.guide import Steady, WalkCommand
+from control.incline import InclineControl
+from control.regulation import RegulationVariable
 from control.side import SideControl
 from control.speed import SpeedControl
 from control.steering import Steering
@@ -16,7 +18,9 @@ from tools.spells import styles_of_walk
 from tools.walk_options import WalkOptions
 
 
-def steering_of(robot: RobotDescription, gait: Gait, options: WalkOptions) -> Steering:
+def steering_of(
+    robot: RobotDescription, gait: Gait, options: WalkOptions, variables: list[RegulationVariable]
+) -> Steering:
     """Return what steers a walk; open loop it only follows the gait's own speed.
 
     Raises:
@@ -37,4 +41,13 @@ def steering_of(robot: RobotDescription, gait: Gait, options: WalkOptions) -> St
         side=SideControl(gait, options.side),
         style=Styling(gait, spells=styles_of_walk(options)),
         course=None if heading is None else Course(heading, turn),
+        incline=None if options.open_loop else _incline(gait, variables),
     )
+
+
+def _incline(gait: Gait, variables: list[RegulationVariable]) -> InclineControl | None:
+    """Return what feels a slope, where the gait wants it and its variable is regulated."""
+    law, names = gait.file.incline, [variable.name for variable in variables]
+    if law is None or law.variable not in names:
+        return None
+    return InclineControl(law, names.index(law.variable))

@@ -42,11 +42,11 @@ def test_from_the_first_step_on_one_rollout_reaches_the_target() -> None:
     assert steps(found[None])[0][0] == pytest.approx(TARGET, abs=1e-6)
 
 
-def test_the_rest_of_a_step_is_sampled_and_teaches_nothing() -> None:
+def test_the_rest_of_a_step_has_models_of_its_own() -> None:
     steps, memory = Steps(), LearntModels()
-    model(memory).control(steps, TARGET, 0, None)
-    assert steps.rollouts == 3
+    model(memory).control(steps, TARGET, 0, HERE, at=2)
     memory.complete = True
+    assert memory.recall(2, HERE) is not None
     assert memory.recall(0, HERE) is None
 
 
