@@ -108,6 +108,8 @@ def build_walk(
     body = body_of(robot)
     planner: Planner | None = None
     memory = memory_for(robot, options, variables, names)
+    # Models learnt on level soles do not hold on tilted ones.
+    one_rollout = memory is not None and memory.complete
     if predictor is not None and not options.open_loop:
         planner = StepPlanner(
             gait=gait,
@@ -130,19 +132,18 @@ def build_walk(
         regulation=variables,
         perturbations=names,
         planner=planner,
-        steering=steering_of(robot, gait, options, variables),
+        steering=steering_of(robot, gait, options, [] if one_rollout else variables),
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
         torso_servo=torso_servo,
-        shaken=_shaken(balance, options, memory),
+        shaken=_shaken(balance, options, one_rollout),
     )
 
 
-def _shaken(balance: Balance, options: WalkOptions, memory: Memory | None) -> Shaken | None:
+def _shaken(balance: Balance, options: WalkOptions, one_rollout: bool) -> Shaken | None:
     """Return who says when to plan again; where one rollout a step is the rule, less often."""
     if balance.replan is None or options.rv:
         return None
-    one_rollout = memory is not None and memory.complete
     return Shaken(balance.replan * (RARELY if one_rollout else 1.0))
 
 
