@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from control.body import Body
+from control.footfalls import Footfalls
 from control.gait import Gait
 from control.goal_limits import GoalLimits
 from control.planner import Planner, StepRequest
@@ -23,7 +24,7 @@ from control.step_record import StepRecord, StepStart
 from control.torso_servo import TorsoServo
 from hal.command import JointCommand
 from hal.contacts import ContactSensors
-from hal.controller import Outcomes, RolloutStart
+from hal.controller import LEVEL, Outcomes, RolloutStart
 from hal.errors import StateMissingError
 from hal.joints import Array, Joints
 from hal.observation import Observation
@@ -48,6 +49,7 @@ class Balancer:
         fixed_targets: Targets that win over the steering's, by name.
         torso_servo: The torso servo, or None.
         shaken: Says when a step has to be planned again, or None.
+        footfalls: Feels how the ground slopes, or None.
         replans: How often that was.
         records: Finished steps.
         late: Steps whose answer came too late to act in time, or never.
@@ -65,6 +67,7 @@ class Balancer:
     fixed_targets: dict[str, float] = field(default_factory=dict)
     torso_servo: TorsoServo | None = None
     shaken: Shaken | None = None
+    footfalls: Footfalls | None = None
     replans: int = field(default=0, init=False)
     records: list[StepRecord] = field(default_factory=list, init=False)
     late: int = field(default=0, init=False)
@@ -99,6 +102,8 @@ class Balancer:
         self.replans = 0
         if self.shaken is not None:
             self.shaken.reset()
+        if self.footfalls is not None:
+            self.footfalls.reset()
         self.records.clear()
         self.late = 0
         if self.planner is not None:
@@ -148,6 +153,8 @@ class Balancer:
         if not shaken.entered(state):
             return
         here = self.body.measure(observation)
+        if self.footfalls is not None:
+            self.footfalls.see(here.feet[0, start.stance])
         if shaken.by(state, here.com_velocity[0], start.heading) and self.planner is not None:
             self.replans += 1
             self._ask(observation, start, self._tracker.scale[0], dt)
@@ -158,7 +165,10 @@ class Balancer:
         Those `before` (p,) stay in force until the answer acts.
         """
         assert self.planner is not None
-        flight, now = RolloutStart(observation, np.array(self._sent), dt), self._tracker.now
+        ground = self.footfalls.plane() if self.footfalls is not None else LEVEL
+        foot = start.stance if self.footfalls is not None else -1
+        flight = RolloutStart(observation, np.array(self._sent), dt, ground, foot)
+        now = self._tracker.now
         request = StepRequest(
             flight, now, start.stance, self._first, self._scale, before, self._target, start
         )
@@ -192,6 +202,9 @@ class Balancer:
     def _end_step(self, time: float, end: Outcomes, start: StepStart) -> None:
         """Write down how the step went, and tell the steering."""
         duration = time - start.time
+        if self.footfalls is not None:
+            self.footfalls.see(end.feet[0, start.stance])
+            self.footfalls.end_step()
         self._turned += start.turned(end)
         forward, left = start.velocity(end, duration)
         record = StepRecord(

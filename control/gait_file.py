@@ -69,6 +69,9 @@ class Balance(Record, frozen=True):
     weights: dict[str, float] = {}
     drift: float = 0.5
     replan: float | None = None
+    footfalls: int = 0
+    rounds: int = 0
+    miss: float = 0.3
     horizon: float = 1.5
 
 

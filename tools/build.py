@@ -10,6 +10,7 @@ from control.balancer import Balancer
 from control.body import Body
 from control.estimator import BaseEstimator
 from control.foot_load import FootLoad
+from control.footfalls import Footfalls
 from control.gait import Gait
 from control.gait_file import Balance, Sampling
 from control.planner import Planner, StepPlanner
@@ -129,6 +130,7 @@ def build_walk(
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
         torso_servo=torso_servo,
+        footfalls=Footfalls(balance.footfalls) if balance.footfalls and not options.rv else None,
         shaken=None if balance.replan is None or options.rv else Shaken(balance.replan),
     )
 
@@ -188,6 +190,8 @@ def _step_model(
         regularisation=balance.regularisation,
         memory=memory_of(reuse),
         drift=balance.drift,
+        rounds=balance.rounds,
+        miss=balance.miss,
     )
 
 
