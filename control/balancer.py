@@ -24,7 +24,7 @@ from control.step_record import StepRecord, StepStart
 from control.torso_servo import TorsoServo
 from hal.command import JointCommand
 from hal.contacts import ContactSensors
-from hal.controller import LEVEL, Outcomes, RolloutStart
+from hal.controller import Outcomes, RolloutStart
 from hal.errors import StateMissingError
 from hal.joints import Array, Joints
 from hal.observation import Observation
@@ -115,6 +115,9 @@ class Balancer:
             self._begin_step(observation, self.body.measure(observation), dt)
         elif self._tracker.advance(observation.contacts[None])[0]:
             here = self.body.measure(observation)
+            if self.footfalls is not None:
+                self.footfalls.end_step()
+                self.footfalls.see(observation)
             self._end_step(observation.time, here, self._start)
             self._begin_step(observation, here, dt)
         elif self.shaken is not None:
@@ -154,7 +157,7 @@ class Balancer:
             return
         here = self.body.measure(observation)
         if self.footfalls is not None:
-            self.footfalls.see(here.feet[0, start.stance])
+            self.footfalls.see(observation)
         if shaken.by(state, here.com_velocity[0], start.heading) and self.planner is not None:
             self.replans += 1
             self._ask(observation, start, self._tracker.scale[0], dt)
@@ -165,9 +168,8 @@ class Balancer:
         Those `before` (p,) stay in force until the answer acts.
         """
         assert self.planner is not None
-        ground = self.footfalls.plane() if self.footfalls is not None else LEVEL
-        foot = start.stance if self.footfalls is not None else -1
-        flight = RolloutStart(observation, np.array(self._sent), dt, ground, foot)
+        ground = None if self.footfalls is None else self.footfalls.plane()
+        flight = RolloutStart(observation, np.array(self._sent), dt, ground)
         now = self._tracker.now
         request = StepRequest(
             flight, now, start.stance, self._first, self._scale, before, self._target, start
@@ -202,9 +204,6 @@ class Balancer:
     def _end_step(self, time: float, end: Outcomes, start: StepStart) -> None:
         """Write down how the step went, and tell the steering."""
         duration = time - start.time
-        if self.footfalls is not None:
-            self.footfalls.see(end.feet[0, start.stance])
-            self.footfalls.end_step()
         self._turned += start.turned(end)
         forward, left = start.velocity(end, duration)
         record = StepRecord(

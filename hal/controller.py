@@ -9,7 +9,6 @@ from hal.observation import Observation
 
 
 Plane = tuple[float, float, float]
-LEVEL: Plane = (0.0, 0.0, 0.0)
 
 
 class Controller(Protocol):
@@ -111,15 +110,13 @@ class RolloutStart:
         in_flight: (d, n) target positions sent before and not yet at the joints, oldest first,
             one a tick, rad.
         dt: Period of a tick, s.
-        ground: Ground as far as it was felt: height at the origin, m; rise along x; along y.
-        stance: Index of the foot that stands, or is the first to, where the ground matters.
+        ground: Ground as it was felt: height at the origin, m; rise along x; along y.
     """
 
     observation: Observation
     in_flight: Array
     dt: float
-    ground: Plane = LEVEL
-    stance: int = -1
+    ground: Plane | None = None
 
 
 class Predictor(Protocol):

@@ -3,7 +3,6 @@
 import mujoco
 import numpy as np
 
-from hal.controller import LEVEL, Plane
 from hal.observation import Observation
 from robots.description import RobotDescription
 
@@ -32,29 +31,17 @@ class FootLevel:
             name: self.model.site(foot.site).pos[2] for foot in robot.feet for name in foot.sensors
         }
         above = [self.model.site_pos[s, 2] for s in sites]
-        members = [[name in foot.sensors for name in robot.contacts.names] for foot in robot.feet]
-        self._of_foot = np.array(members, dtype=bool)
         names = robot.contacts.names
         self._above = np.array([z - soles[n] for z, n in zip(above, names, strict=True)])
 
-    def of(self, observation: Observation, ground: Plane = LEVEL, foot: int = -1) -> float:
-        """Return the height of the ground at the origin, m; level, 0 when too near to 0 to tell.
-
-        Args:
-            observation: Where the robot is.
-            ground: The ground as it was felt before; its slope holds, and its height where no foot
-                is on it.
-            foot: Index of the foot that counts alone, if it is on the ground.
-        """
+    def of(self, observation: Observation) -> float:
+        """Return the height of the ground, m; 0 when it is too near to 0 to tell."""
         base, pressed = observation.base, self.contacts.pressed(observation.contacts)
         if base is None or not pressed.any():
-            return ground[0]
-        alone = pressed & self._of_foot[foot] if foot >= 0 else pressed
-        pressed = alone if alone.any() else pressed
+            return 0.0
         self.data.qpos[:3], self.data.qpos[3:7] = base.position, base.orientation
         self.data.qpos[7:] = observation.joints.position
         mujoco.mj_kinematics(self.model, self.data)
         heights = self.data.site_xpos[self._sites, 2] - self._above
-        rise = self.data.site_xpos[self._sites, :2] @ np.array(ground[1:])
-        level = float((heights - rise)[pressed].min())
-        return level if abs(level) > self.sure or any(ground[1:]) else 0.0
+        level = float(heights[pressed].min())
+        return level if abs(level) > self.sure else 0.0

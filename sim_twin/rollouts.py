@@ -14,13 +14,14 @@ import numpy as np
 import numpy.typing as npt
 from mujoco.batch import Batch
 
-from hal.controller import BatchPolicy, Outcomes, PolicyInput, RolloutStart, Stopwatch
+from hal.controller import BatchPolicy, Outcomes, Plane, PolicyInput, RolloutStart, Stopwatch
 from hal.joints import Array, Mask
 from robots.description import RobotDescription
 from sim_twin.foot_level import FootLevel
 from sim_twin.terrain import Ground
 from sim_twin.world import World, build_model
 
+KNOWN: Plane = (0.0, 0.0, 0.0)
 STAGE = int(mujoco.mjtStage.mjSTAGE_VEL)
 
 
@@ -73,11 +74,18 @@ class RolloutPredictor:
                 min(self.threads, policy.size),
                 self.ground,
             )
-        level = self._level.of(start.observation, start.ground, start.stance) if self.ground.flat else 0.0
-        outcomes = self._worlds[policy.size].play(start, policy, horizon, level)
+        outcomes = self._worlds[policy.size].play(start, policy, horizon, self._felt(start))
         self.stopwatch.add(policy.size, wall.perf_counter() - began)
         return outcomes
 
+
+    def _felt(self, start: RolloutStart) -> Plane:
+        """Return the ground as it was felt, or level at the lowest foot; known ground stays."""
+        if not self.ground.flat:
+            return KNOWN
+        if start.ground is not None:
+            return start.ground
+        return self._level.of(start.observation), 0.0, 0.0
 
     def _let_tilt(self, model: mujoco.MjModel) -> None:
         """Let the floor's attitude count, which MuJoCo takes to be level once it has compiled it.
@@ -128,11 +136,12 @@ class _Worlds:
         mujoco.mj_getState(model, scratch, self.fresh, spec)
 
     def play(
-        self, start: RolloutStart, policy: BatchPolicy, horizon: float, level: float
+        self, start: RolloutStart, policy: BatchPolicy, horizon: float, felt: Plane
     ) -> Outcomes:
         """Play `policy` from `start` on ground at `level` m; see `RolloutPredictor.predict`."""
         self._place(start)
-        self._tilt(start.ground[1:])
+        level = felt[0]
+        self._tilt(felt[1:])
         self.qpos[:, 2] -= level
         outcomes = self._run(start, policy, horizon)
         for heights in (outcomes.base_position, outcomes.com, outcomes.feet):

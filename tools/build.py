@@ -130,7 +130,7 @@ def build_walk(
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
         torso_servo=torso_servo,
-        footfalls=Footfalls(balance.footfalls) if balance.footfalls and not options.rv else None,
+        footfalls=Footfalls(body, robot.contacts, balance.footfalls) if balance.footfalls and not options.rv else None,
         shaken=None if balance.replan is None or options.rv else Shaken(balance.replan),
     )
 
