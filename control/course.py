@@ -1,7 +1,7 @@
 """Holding and changing a course: the wanted heading moves on, and each step turns after it."""
 
 from dataclasses import dataclass, field
-from math import degrees, pi, radians
+from math import copysign, degrees, isfinite, pi, radians, sqrt
 
 import numpy as np
 
@@ -66,12 +66,24 @@ class Course:
         if command.direction is None:
             rate = command.turn
         else:
-            rate = wrapped(command.direction - self.direction) / max(duration, 1e-3)
-            rate = float(np.clip(rate, -command.turn, command.turn))
+            left = wrapped(command.direction - self.direction)
+            fast = self._fastest_to_stop(abs(left), max(duration, 1e-3))
+            rate = float(np.clip(copysign(fast, left), -abs(command.turn), abs(command.turn)))
         fastest = 0.0 if self.turn is None else radians(self.turn.limit)
         if self.turn is None and command.direction is not None:
             fastest = abs(command.turn)
         return float(np.clip(rate, -fastest, fastest))
+
+    def _fastest_to_stop(self, angle: float, duration: float) -> float:
+        """Return the rate from which the ramp comes to rest in `angle` rad and no later, rad/s.
+
+        Going down from k ramps to none turns by k (k + 1) / 2 ramps, one step's worth each.
+        """
+        ramp = inf_or_radians(self.turn)
+        if not isfinite(ramp):
+            return angle / duration
+        steps = 0.5 * (sqrt(1.0 + 8.0 * angle / (ramp * duration)) - 1.0)
+        return min(ramp * steps, angle / duration)
 
 
 def inf_or_radians(turn: Turn | None) -> float:

@@ -147,7 +147,9 @@ class StepPlanner:
             values = start.evaluate(outcomes, self.regulation, self.contacts)
             return values, outcomes.fell | ~policy.done
 
-        return self.model.control(sample, request.target, request.phase, start.features())
+        whole = start.time == request.start.observation.time
+        features = start.features() if whole else None
+        return self.model.control(sample, request.target, request.phase, features)
 
     def policy(self, request: StepRequest, scale: Array) -> StepPolicy:
         """Return what plays the requested step with scalings (m, p)."""

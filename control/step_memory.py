@@ -5,7 +5,7 @@ sampled before, so that a step needs one nominal rollout instead of one more for
 """
 
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import ClassVar, Literal, Protocol
 
 import numpy as np
 
@@ -16,6 +16,11 @@ Reuse = Literal["full", "frozen", "library"]
 
 class Memory(Protocol):
     """Keeps Jacobians."""
+
+    @property
+    def complete(self) -> bool:
+        """True when no model is sampled any more: each step has one here, and one rollout."""
+        ...
 
     def reset(self) -> None:
         """Forget everything that belongs to the last walk."""
@@ -38,6 +43,7 @@ class Frozen:
         settle: Steps of each side that are sampled before any model is used again.
     """
 
+    complete: ClassVar[bool] = False
     settle: int = 4
     _known: dict[int, Array] = field(default_factory=dict, init=False)
     _made: dict[int, int] = field(default_factory=dict, init=False)
@@ -66,6 +72,7 @@ class Library:
         size: Models kept for each side; the oldest goes first.
     """
 
+    complete: ClassVar[bool] = False
     reach: float = 0.05
     size: int = 64
     _known: dict[int, list[tuple[Array, Array]]] = field(default_factory=dict, init=False)

@@ -77,13 +77,13 @@ class StepModel:
             sample: Plays steps.
             target: Wanted regulation variables.
             side: Side, or part of the graph, that the step is of; each remembers its own K.
-            start: Features (f,) of the state that the step begins in, for a library.
+            start: Features (f,) of the state that the step begins in, for the memory; None for
+                the rest of a step, of which it knows nothing.
         """
         last = self._last.get(side, np.zeros(len(self.samples)))
         origin = self.keep * last if self.from_last else np.zeros_like(last)
         if self.sampling == "full":
-            start = np.zeros(0) if start is None else start
-            again = self._reused(sample, target, side, origin, start)
+            again = None if start is None else self._reused(sample, target, side, origin, start)
             wanted = self._full(sample, target, side, origin, start) if again is None else again
         else:
             wanted = self._by_dimension(sample, target, origin, last)
@@ -165,17 +165,23 @@ class StepModel:
 
         The model has drifted when the last K again would miss the target by too much.
         """
-        jacobian = None if self.memory is None else self.memory.recall(side, start)
-        if jacobian is None or side not in self._last:
+        if self.memory is None or (jacobian := self.memory.recall(side, start)) is None:
+            return None
+        if side not in self._last and not self.memory.complete:
             return None
         values, fell = sample(origin[None])
+        if self.memory.complete:
+            self.counters["reused"] += 1
+            return origin if fell[0] else origin + self._solve(jacobian, target - values[0])
         miss = target - values[0] - jacobian @ (self._last[side] - origin)
         if fell[0] or float(np.linalg.norm(self.weights * miss)) > self.drift:
             return None
         self.counters["reused"] += 1
         return origin + self._solve(jacobian, target - values[0])
 
-    def _full(self, sample: Sample, target: Array, side: int, origin: Array, start: Array) -> Array:
+    def _full(
+        self, sample: Sample, target: Array, side: int, origin: Array, start: Array | None
+    ) -> Array:
         r = len(origin)
         self.counters["sampled"] += 1
         steps = np.diag(self.samples)
@@ -194,7 +200,7 @@ class StepModel:
             self.counters["kept_last"] += 1
             return self._last.get(side, origin)
         self._jacobian[side] = jacobian
-        if self.memory is not None:
+        if self.memory is not None and start is not None:
             self.memory.store(side, start, jacobian)
         return origin + self._solve(jacobian, target - values[0])
 

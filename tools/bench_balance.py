@@ -1,8 +1,9 @@
 """What the rollouts of a step cost, beside the step's own duration."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from statistics import median
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,8 +16,16 @@ from tools.robot import Robot
 from tools.walk_options import WalkOptions
 
 ROUNDS = 20
-ROLLOUTS = 5
 WARM_UP = 5
+
+
+class Lap(NamedTuple):
+    """A step: its duration, and its rollouts on one thread, on two, and a single one, s."""
+
+    duration: float
+    one: float
+    two: float
+    single: float
 
 
 @dataclass
@@ -51,7 +60,7 @@ class Recorder:
 
 
 def measure_balance(name: str) -> dict[str, Any]:
-    """Return the time of five rollouts of one step, on one thread and on two.
+    """Return what a step's rollouts take: all of the full model, on one and two threads, and one.
 
     The steps are those of a real walk; the two predictors take turns on each.
 
@@ -72,20 +81,35 @@ def measure_balance(name: str) -> dict[str, Any]:
         two = RolloutPredictor(robot.description, threads=2)
         durations = [record.duration for record in walker.records]
         rounds = zip(recorder.requests[:steps], durations, strict=True)
+        every = 1 + len(walker.perturbations) * (1 + recorder.planner.model.centred)
         laps = [
-            (_time(recorder.planner, one, request), _time(recorder.planner, two, request), duration)
+            Lap(
+                duration,
+                _time(recorder.planner, one, request, every),
+                _time(recorder.planner, two, request, every),
+                _time(recorder.planner, one, request, 1),
+            )
             for request, duration in rounds
         ][WARM_UP:]
     return {
         "rounds": len(laps),
-        "step_s": round(median(duration for _, _, duration in laps), 4),
-        "one_thread_share_of_step": round(median(a / duration for a, _, duration in laps), 4),
-        "two_threads_over_one": round(median(b / a for a, b, _ in laps), 3),
+        "step_s": round(median(lap.duration for lap in laps), 4),
+        "rollouts": every,
+        "one_thread_share_of_step": _share(lap.one / lap.duration for lap in laps),
+        "two_threads_share_of_step": _share(lap.two / lap.duration for lap in laps),
+        "two_threads_over_one": _share(lap.two / lap.one for lap in laps),
+        "one_rollout_share_of_step": _share(lap.single / lap.duration for lap in laps),
     }
 
 
-def _time(planner: StepPlanner, predictor: RolloutPredictor, request: StepRequest) -> float:
-    """Return the wall time of five rollouts of one step, s."""
-    scale = np.repeat(request.scale[None], ROLLOUTS, axis=0)
+def _share(ratios: Iterable[float]) -> float:
+    return round(median(ratios), 4)
+
+
+def _time(
+    planner: StepPlanner, predictor: RolloutPredictor, request: StepRequest, rollouts: int
+) -> float:
+    """Return the wall time of some rollouts of one step, s."""
+    scale = np.repeat(request.scale[None], rollouts, axis=0)
     predictor.predict(request.start, planner.policy(request, scale), planner.horizon)
     return predictor.stopwatch.laps[-1]

@@ -17,7 +17,7 @@ from control.planner import Planner, StepPlanner
 from control.regulation import RegulationVariable, regulation_variables
 from control.shaken import Shaken
 from control.soles import Soles
-from control.step_memory import Reuse, memory_of
+from control.step_memory import Memory
 from control.step_model import StepModel
 from control.tilt_filter import GRAVITY, ImuNoise
 from control.torso_servo import TorsoServo
@@ -28,6 +28,7 @@ from sim_twin.imu_errors import OPENCR
 from tools.gaits import find_gait
 from tools.spells import blended
 from tools.steer import steering_of
+from tools.step_models import memory_for
 from tools.walk_options import WalkOptions
 
 
@@ -104,6 +105,8 @@ def build_walk(
         variables = [_on_the_pelvis(variable) for variable in variables]
     body = body_of(robot)
     planner: Planner | None = None
+    memory = memory_for(robot, options, variables, names)
+    one_rollout = memory is not None and memory.complete
     if predictor is not None and not options.open_loop:
         planner = StepPlanner(
             gait=gait,
@@ -112,7 +115,7 @@ def build_walk(
             body=body,
             regulation=variables,
             perturbations=names,
-            model=_step_model(gait, balance, variables, names, options.model),
+            model=_step_model(gait, balance, variables, names, options, memory),
             predictor=predictor,
             torso_servo=torso_servo,
             horizon=balance.horizon,
@@ -130,9 +133,16 @@ def build_walk(
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
         torso_servo=torso_servo,
-        footfalls=Footfalls(body, robot.contacts, balance.footfalls) if balance.footfalls and not options.rv else None,
-        shaken=None if balance.replan is None or options.rv else Shaken(balance.replan),
+        footfalls=_footfalls(robot, body, balance, options),
+        shaken=_shaken(balance, options, one_rollout),
     )
+
+
+def _shaken(balance: Balance, options: WalkOptions, one_rollout: bool) -> Shaken | None:
+    """Planning again in mid-step needs another model, and so more than one rollout."""
+    if balance.replan is None or options.rv or one_rollout:
+        return None
+    return Shaken(balance.replan)
 
 
 def _resampled(balance: Balance, sampling: Sampling) -> Balance:
@@ -172,10 +182,13 @@ def _step_model(
     balance: Balance,
     variables: list[RegulationVariable],
     names: list[str],
-    reuse: Reuse,
+    options: WalkOptions,
+    memory: Memory | None,
 ) -> StepModel:
-    if reuse != "full" and balance.sampling != "full":
-        raise UsageError(f"--model {reuse} keeps whole Jacobians; it needs `--sampling full`")
+    reuse = options.model
+    if (reuse != "full" or options.learn is not None) and balance.sampling != "full":
+        option = "--learn" if options.learn is not None else f"--model {reuse}"
+        raise UsageError(f"{option} keeps whole Jacobians; it needs `--sampling full`")
     items = {item.name: item for item in gait.file.perturbation}
     for name in names:
         gait.index(name)
@@ -188,9 +201,9 @@ def _step_model(
         from_last=balance.from_last,
         keep=balance.keep,
         regularisation=balance.regularisation,
-        memory=memory_of(reuse),
+        memory=memory,
         drift=balance.drift,
-        rounds=balance.rounds,
+        rounds=balance.rounds if reuse == "full" else 0,
         miss=balance.miss,
     )
 

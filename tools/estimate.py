@@ -16,9 +16,12 @@ from hal.joints import Array
 from hal.observation import BaseState, Observation
 from sim_twin.backend import TwinBackend
 from sim_twin.imu_errors import OPENCR, ImuErrors
+from sim_twin.sensors import Sensors
 from tools.build import build_estimator
+from tools.faults import with_faults
 from tools.output import console, write_json
 from tools.robot import Robot
+from tools.stack import TWIN, Truth
 
 ATTITUDE_LIMIT = 1.0  # degrees rms
 VELOCITY_LIMIT = 0.03  # m/s rms
@@ -33,18 +36,21 @@ class Referee:
 
     Attributes:
         estimator: The one that is judged.
+        truth: Fills in the true base, where observations come without.
         listen: Hand on the true base, so that the robot does not depend on the estimate.
         rows: For each tick: roll, pitch and yaw error, rad; velocity error, m/s (3); height
             error, m; confidence; cost, s.
     """
 
     estimator: Estimator
+    truth: Estimator | None
     listen: bool
     rows: list[Array] = field(default_factory=list)
 
     def update(self, observation: Observation, dt: float) -> Observation:
         """Estimate, judge, and return what the robot shall go by."""
-        truth = observation.base
+        seen = observation if self.truth is None else self.truth.update(observation, dt)
+        truth = seen.base
         assert truth is not None, "the twin knows"
         began = perf_counter()
         result = self.estimator.update(replace(observation, base=None), dt)
@@ -76,10 +82,17 @@ class Referee:
 
 @dataclass(frozen=True, kw_only=True)
 class Estimate:
-    """Measure the estimated state against the twin's truth: standing, pushed, walking, and both."""
+    """Measure the estimated state against the twin's truth: standing, pushed, walking, and both.
+
+    Behind a port the truth is that of the tick, so the time that the wire takes counts as error.
+    """
 
     robot: Annotated[str, tyro.conf.Positional]
     """A robot's name (`windup robots` lists them), or the path of a folder with your own."""
+    port: str | None = None
+    """Emulated servo bus to measure through: twin://ROBOT. Only a twin knows the truth."""
+    faults: str = ""
+    """What goes wrong on that port, as of `windup walk`."""
     steps: int = 40
     """How many steps to walk."""
     pushes: int = 6
@@ -87,11 +100,11 @@ class Estimate:
     impulse: float | None = None
     """Impulse of the pushes, N s; by default 0.2 m/s times the robot's mass."""
     switches: bool = True
-    """Use the contact sensors; without, the heights of the soles tell who stands."""
+    """Use the contact sensors; without, and on a port, the soles' heights tell who stands."""
     rate: float | None = None
     """Rate of the control loop, Hz; the robot's own by default."""
     delay: float | None = None
-    """Delay of the servos, s."""
+    """Delay of the servos, s; on a port it is what it is."""
     seed: int = 0
     """Seed of pushes, start pose, and of the IMU's noise and bias."""
     json: Path | None = None
@@ -99,8 +112,7 @@ class Estimate:
 
     def run(self) -> int:
         """Measure; returns the exit status."""
-        if self.steps < 1 or self.pushes < 1:
-            raise UsageError("--steps and --pushes: give 1 or more")
+        self._check()
         rows = list(self._trials())
         good = [_good(row) for row in rows]
         write_json(
@@ -108,6 +120,8 @@ class Estimate:
             "estimate",
             {
                 "robot": self.robot,
+                "port": self.port,
+                "faults": self.faults,
                 "seed": self.seed,
                 "attitude_limit_deg": ATTITUDE_LIMIT,
                 "velocity_limit_m_s": VELOCITY_LIMIT,
@@ -116,6 +130,17 @@ class Estimate:
             },
         )
         return 0 if all(good) else 1
+
+    def _check(self) -> None:
+        if self.steps < 1 or self.pushes < 1:
+            raise UsageError("--steps and --pushes: give 1 or more")
+        with_faults(self.port, self.faults)
+        if self.port is None:
+            return
+        if not self.port.startswith(TWIN):
+            raise UsageError(f"--port {self.port}: only a twin knows the truth; give {TWIN}ROBOT")
+        if self.delay is not None:
+            raise UsageError("--delay is that of a twin without a wire; leave it or --port away")
 
     def _trials(self) -> Iterable[dict[str, Any]]:
         """Run every trial under both states; yield a row for each."""
@@ -127,7 +152,12 @@ class Estimate:
 
     def _trial(self, trial: str, listen: bool) -> dict[str, Any]:
         with Robot.open(
-            self.robot, rate=self.rate, delay=self.delay, seed=self.seed, noise=0.2
+            self.robot,
+            port=with_faults(self.port, self.faults),
+            rate=self.rate,
+            delay=self.delay,
+            seed=self.seed,
+            noise=0.2,
         ) as robot:
             referee = self._referee(robot, listen)
             robot.start_at(None)
@@ -148,9 +178,15 @@ class Estimate:
 
     def _referee(self, robot: Robot, listen: bool) -> Referee:
         """Give the robot real sensors, and an estimator that is judged."""
+        estimator = robot.stack.estimator
+        if estimator is not None:  # behind a port, where the sensors are real ones already
+            referee = Referee(estimator, Truth(Sensors(robot.twin)), listen)
+            robot.stack = replace(robot.stack, estimator=referee)
+            return referee
         errors = ImuErrors(OPENCR, robot.twin.timestep, self.seed)
         backend = TwinBackend(robot.twin, imu_errors=errors)
-        referee = Referee(build_estimator(robot.description, switches=self.switches), listen)
+        estimator = build_estimator(robot.description, switches=self.switches)
+        referee = Referee(estimator, None, listen)
         guarded = replace(robot.backend, backend=backend)
         robot.stack = replace(robot.stack, backend=guarded, estimator=referee)
         return referee

@@ -100,11 +100,15 @@ class Robot(Session):
                 seed=seed,
                 world=world,
             )
-        elif world is not None:
-            raise UsageError("only a twin has another ground or plant; leave --port away")
         else:
             stack = wire_stack(
-                description, port, state=state or "estimated", arm=arm, noise=noise, seed=seed
+                description,
+                port,
+                state=state or "estimated",
+                arm=arm,
+                noise=noise,
+                seed=seed,
+                around=world,
             )
         return cls(
             description=description,

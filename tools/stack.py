@@ -102,7 +102,14 @@ def twin_stack(
 
 
 def wire_stack(
-    robot: RobotDescription, port: str, *, state: State, arm: bool, noise: float, seed: int
+    robot: RobotDescription,
+    port: str,
+    *,
+    state: State,
+    arm: bool,
+    noise: float,
+    seed: int,
+    around: World | None = None,
 ) -> Stack:
     """Return a stack on a port with the servos of `robot`.
 
@@ -113,15 +120,18 @@ def wire_stack(
         arm: Torque may be switched on. It always may on a twin:// port.
         noise: Noise of the pose that an emulated robot begins in, degrees.
         seed: Seed of that noise.
+        around: Ground and plant of an emulated robot.
 
     Raises:
-        UsageError: The port does not fit the robot.
+        UsageError: The port does not fit the robot, or has no ground or plant of ours.
         HardwareError: Something on the bus is not as the robot's file says.
     """
     given, emulated = port, port.startswith(TWIN)
     world = ""
     if emulated:
-        port, world = _in_a_world(robot, port)
+        port, world = _in_a_world(robot, port, around)
+    elif around is not None:
+        raise UsageError("only a twin has another ground or plant; leave --port away")
     backend = _guarded(servo_backend(robot, port), robot)
     backend.connect()
     twin = _twin_behind(world) if emulated else None
@@ -211,18 +221,22 @@ def _urls(robot: RobotDescription, port: str) -> dict[str, str]:
     return {names[0]: port}
 
 
-def _in_a_world(robot: RobotDescription, port: str) -> tuple[str, str]:
+def _in_a_world(robot: RobotDescription, port: str, around: World | None = None) -> tuple[str, str]:
     """Return a twin:// URL that names its world, and the name if it is ours to forget.
 
     Raises:
-        UsageError: It names another robot.
+        UsageError: It names another robot, or a world that has its ground and plant already.
     """
     address = wire.parse_address(port)
     if address.robot != robot.name and address.robot != str(robot.folder):
         raise UsageError(f"the port is a twin of {address.robot!r}, the robot is {robot.name!r}")
+    if address.world and around is not None:
+        raise UsageError(f"world {address.world!r} may be others' too; leave world= away")
     if address.world:
         return port, address.world
     name = f"{robot.name}-{next(_worlds)}"
+    if around is not None:
+        wire.put_world(name, wire.build_world(address, around), address.clock)
     return f"{port}{'&' if '?' in port else '?'}world={name}", name
 
 

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from os import cpu_count
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -17,6 +18,7 @@ from tools.output import console, write_json
 from tools.plot import Trace, plot_walk
 from tools.report import WalkReport, summary
 from tools.robot import Robot
+from tools.step_models import check_learning, keep_learnt
 from tools.twin_options import TwinOptions
 from tools.walk_options import WalkOptions
 
@@ -56,7 +58,10 @@ class Walk(TwinOptions, Common):
     """How the step model is sampled."""
     model: Literal["full", "frozen", "library"] = "full"
     """Sample the step model every step, or only when regulation drifts (frozen), or look it up by
-    the start of the step (library): one rollout then does."""
+    the start of the step (library): one rollout then does. See --learn."""
+    learn: Path | None = None
+    """Add the step models of this walk to a file: GAIT.models.json beside the gait is the library
+    of `--model library`, and every step then takes one rollout."""
     target: tuple[str, ...] = ()
     """Targets of the regulation variables: VALUE for the first forward one, or NAME=VALUE."""
     torso_servo: bool = True
@@ -72,6 +77,7 @@ class Walk(TwinOptions, Common):
             raise UsageError(f"--steps {self.steps}: give 1 or more")
         if self.stand < 0.0:
             raise UsageError(f"--stand {self.stand:g}: give 0 s or more")
+        check_learning(self._options(), alone=self.seeds is None and not self.realtime)
         seeds = self.all_seeds
         if len(seeds) == 1 and self.seeds is None:
             result = self._one(seeds[0], show=True)
@@ -103,6 +109,8 @@ class Walk(TwinOptions, Common):
             robot.watch = trace.add if self.plot and show else None
             with _progress(show and not self.realtime) as progress:
                 report = self._walk(robot, progress)
+        if self.learn is not None:
+            keep_learnt(self.learn, report)
         if show:
             console.print(_line(report))
             if self.plot is not None:
@@ -140,6 +148,7 @@ class Walk(TwinOptions, Common):
             rv=self.rv,
             sampling=self.sampling,
             model=self.model,
+            learn=self.learn,
             target=self.target,
             torso_servo=self.torso_servo,
             open_loop=self.open_loop,

@@ -1,6 +1,7 @@
 """What a user asks of a walk."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from control.gait_file import Sampling
 from control.guide import Guide
@@ -24,5 +25,6 @@ class WalkOptions:
     sampling: Sampling | None = None
     target: tuple[str, ...] = ()
     model: Reuse = "full"
+    learn: Path | None = None  # file that keeps the step models
     torso_servo: bool = True
     open_loop: bool = False

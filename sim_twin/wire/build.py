@@ -1,6 +1,7 @@
 """Builds the world that an address names."""
 
 import math
+from dataclasses import replace
 
 from hal.errors import UsageError
 from hal.servo_model import ServoMount
@@ -19,6 +20,7 @@ from sim_twin.wire.schedule import Schedule
 from sim_twin.wire.shaft import InertiaShaft, Shaft
 from sim_twin.wire.twin_shaft import TwinImu, TwinPhysics, TwinShaft
 from sim_twin.wire.world import Bench, Physics, World
+from sim_twin.world import World as Surroundings
 
 NOMINAL = 12.0  # V, for servos that stand so much
 IMU = "imu"  # name of the port of an IMU
@@ -56,16 +58,22 @@ class Workshop:
         return World(physics, self.schedule, self.buses, supply, owned)
 
 
-def build_world(address: Address) -> World:
+def build_world(address: Address, around: Surroundings | None = None) -> World:
     """Return a new world.
+
+    Args:
+        address: What is in it.
+        around: Ground and plant of a robot's twin.
 
     Raises:
         UnknownNameError: There is no such robot or servo.
-        UsageError: The robot has nothing on a wire.
+        UsageError: The robot has nothing on a wire, or there is no twin to put on a ground.
     """
+    if around is not None and (address.robot == BENCH or address.physics != "mujoco"):
+        raise UsageError("only a robot with physics=mujoco has another ground or plant")
     if address.robot == BENCH:
         return _bench(address)
-    return _robot(address, load_robot(address.robot))
+    return _robot(address, load_robot(address.robot), around or Surroundings())
 
 
 def _bench(address: Address) -> World:
@@ -87,13 +95,15 @@ def _bench(address: Address) -> World:
     return shop.world(Bench(shafts), address.supply or NOMINAL)
 
 
-def _robot(address: Address, robot: RobotDescription) -> World:
+def _robot(address: Address, robot: RobotDescription, around: Surroundings) -> World:
     mounts = [(joint, mount) for joint, mount in enumerate(robot.servos) if mount is not None]
     if not mounts:
         raise UsageError(f"robot {robot.name!r} has no servos on a wire; 'windup walk' takes it")
     shop = Workshop(address)
-    supply = address.supply or robot.drive.supply
-    twin = Twin(robot, delay=0.0, supply=supply) if address.physics == "mujoco" else None
+    supply = address.supply or around.plant.supply or robot.drive.supply
+    twin = None
+    if address.physics == "mujoco":
+        twin = Twin(robot, delay=0.0, supply=supply, world=_behind_a_wire(around, robot, supply))
     bauds = {bus.name: address.baud or bus.baud for bus in robot.buses}
     protocols = {bus.name: bus.protocol for bus in robot.buses}
     hung: dict[str, list[Device]] = {name: [] for name in bauds}
@@ -127,6 +137,15 @@ def _robot(address: Address, robot: RobotDescription) -> World:
     if isinstance(source, TwinImu):
         source.held = lambda: physics.held
     return shop.world(physics, supply, (twin,))
+
+
+def _behind_a_wire(around: Surroundings, robot: RobotDescription, supply: float) -> Surroundings:
+    """Return `around` with what is left of its plant's delay when the wire has taken its own."""
+    plant = replace(around.plant, supply=supply)
+    if plant.delay is not None:
+        left = max(plant.delay - robot.drive.wire_delay, 0.0)
+        plant = replace(plant, delay=round(left / robot.timestep) * robot.timestep)
+    return replace(around, plant=plant)
 
 
 def _loose_shaft(name: str, supply: float) -> InertiaShaft:

@@ -46,6 +46,7 @@ class TwinShaft:
         self._range = twin.model.actuator_forcerange[joint]
         self._limited = twin.model.actuator_forcelimited
         self._limit_open = True
+        self._factor = twin.world.plant.stiffness
         self._damping = mount.model.damping(twin.supply) * mount.ratio**2
         self._q, self._dq = twin.data.qpos[7:], twin.data.qvel[6:]
         self._ctrl, self._force = twin.data.ctrl, twin.data.actuator_force
@@ -70,7 +71,7 @@ class TwinShaft:
         if volts <= 0.0:
             self.push(0.0)
             return
-        self._set(stiffness * self._turn**2, self._damping, volts, torque)
+        self._set(self._factor * stiffness * self._turn**2, self._damping, volts, torque)
         self._ctrl[self._joint] = (goal - self._zero) / self._turn
 
     def push(self, volts: float) -> None:

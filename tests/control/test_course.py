@@ -1,8 +1,11 @@
+from math import radians
+
 import numpy as np
 import pytest
 
 from control.course import Course
-from control.gait_file import Heading
+from control.gait_file import Heading, Turn
+from control.guide import WalkCommand
 
 
 def course(direction: float = 0.0) -> Course:
@@ -24,3 +27,14 @@ def test_it_takes_the_short_way_round() -> None:
 
 def test_it_says_which_perturbation_turns() -> None:
     assert course().perturbation == "turn"
+
+
+def test_it_begins_to_end_a_turn_in_time_and_does_not_swing_past() -> None:
+    course = Course(Heading("turn", gain=0.5), Turn(limit=50.0, ramp=3.0))
+    order = WalkCommand(turn=radians(50.0), direction=radians(38.0))
+    ways = []
+    for _ in range(60):
+        course.begin_step(order, course.direction, duration=0.25)
+        ways.append(course.direction)
+    assert max(ways) == pytest.approx(radians(38.0), abs=radians(0.3))
+    assert ways[-1] == pytest.approx(radians(38.0), abs=radians(0.1))

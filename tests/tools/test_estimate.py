@@ -44,3 +44,30 @@ def test_op3_walks_on_its_own_sensors(
         report = robot.walk(steps=30)
     assert report.done
     assert report.speed is not None and report.speed > 0.15
+
+
+def test_an_estimate_through_a_wire_is_judged_by_the_twin_behind_it(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("tools.estimate.TRIALS", ("stand",))
+    target = tmp_path / "estimate.json"
+    line = "estimate duck --port twin://duck?clock=virtual --faults drop:0.01 --json"
+    assert run([*line.split(), str(target)]) == 0
+    rows = json.loads(target.read_text())["rows"]
+    assert [row["state"] for row in rows] == ["true", "estimated"]
+    assert all(0.0 < row["attitude_rms_deg"] < 1.0 for row in rows)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ("--port /dev/ttyUSB0", "only a twin knows the truth; give twin://ROBOT"),
+        ("--port twin://duck --delay 0.01", "leave it or --port away"),
+        ("--faults drop:0.01", "needs a twin:// port"),
+    ],
+)
+def test_an_estimate_without_a_truth_to_compare_is_refused(
+    options: str, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["estimate", "duck", *options.split()]) == 2
+    assert message in " ".join(capsys.readouterr().err.split())

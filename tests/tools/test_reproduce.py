@@ -121,6 +121,9 @@ def fake_result(job: Job, steps: int = 24) -> Result:
     trace[:, NAMES.index("up.l")] = 0.1 * np.sin(2.0 * np.pi * at / 0.8)
     return {
         "requested": job.options["steps"],
+        "arrived": steps >= job.options["steps"],
+        "flights": steps,
+        "flight_time": 0.1 * steps,
         "steps": steps,
         "fell": steps < job.options["steps"],
         "time": 0.4 * steps,

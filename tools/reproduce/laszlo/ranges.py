@@ -10,7 +10,7 @@ from tools.reproduce.laszlo.jobs import NAMES, SAMPLINGS, SEEDS, STEPS, cell, se
 from tools.reproduce.laszlo.pictures import hip_plot, numbers, steps_text
 
 UP_GRID = (0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4)
-FEW = (0.15, 0.25, 0.4)
+FEW = (0.25, 0.4)
 SWING_GRID = (-0.1, -0.05, 0.0, 0.05, 0.1)
 COLORS = dict(zip(SAMPLINGS, ("tab:blue", "tab:orange", "tab:green"), strict=True))
 

@@ -11,7 +11,7 @@ from tools.reproduce.laszlo.pictures import hip_plot
 from tools.reproduce.laszlo.recorder import records
 
 DEGREES = (2.0, 4.0, 6.0, 8.0)
-FEW = (2.0, 4.0, 8.0)
+FEW = (2.0, 8.0)
 RADIUS = 2.5  # m, the thesis' smallest without servo
 
 

@@ -17,6 +17,7 @@ from tools.build import body_of, build_walk
 from tools.reproduce.figure import Job, Result
 from tools.reproduce.laszlo.laws import ConstantTurn, SpeedLaw
 from tools.reproduce.laszlo.recorder import Recorder
+from tools.reproduce.laszlo.tours import run_tour
 from tools.robot import Robot
 from tools.walk_options import WalkOptions
 
@@ -29,7 +30,11 @@ PERTURBATIONS = ("stance_hip_pitch", "stance_hip_roll")
 
 def work(job: Job) -> Result:
     """Run a job."""
-    kinds: dict[str, Callable[..., Result]] = {"walk": walk, "response": response}
+    kinds: dict[str, Callable[..., Result]] = {
+        "walk": walk,
+        "response": response,
+        "tour": run_tour,
+    }
     return kinds[job.kind](**job.options)
 
 

@@ -1,0 +1,116 @@
+"""Step models that were learnt in earlier walks and stand in a file beside the gait.
+
+With them every step is planned from one rollout, the first one too: a small computer needs no more.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import msgspec
+import numpy as np
+
+from hal.config import Record
+from hal.errors import ConfigError
+from hal.joints import Array
+
+
+class LearntModel(Record, frozen=True):
+    """The model of a step from around one start.
+
+    Attributes:
+        phase: Index of the state that the step begins with.
+        start: (f,) features of its start.
+        jacobian: (r, r) change of each variable for each scaling.
+        steps: Steps that both are the mean of.
+    """
+
+    phase: int
+    start: list[float]
+    jacobian: list[list[float]]
+    steps: int = 1
+
+
+class ModelFile(Record, frozen=True):
+    """A file of models, and what they are models of."""
+
+    regulation: list[str]
+    perturbations: list[str]
+    models: list[LearntModel]
+
+
+@dataclass
+class LearntModels:
+    """A memory of models by the start of the step: it learns them, or only looks them up.
+
+    Attributes:
+        complete: Nothing is sampled any more; the nearest model serves every step.
+        reach: Starts that are no farther apart share one model, the mean of theirs.
+    """
+
+    complete: bool = False
+    reach: float = 0.02
+    _known: dict[int, list[tuple[Array, Array, int]]] = field(default_factory=dict, init=False)
+
+    def reset(self) -> None:
+        """Keep everything: what was learnt in one walk serves the next."""
+
+    def recall(self, side: int, start: Array) -> Array | None:
+        """Return the Jacobian learnt nearest to `start`; None while there are more to learn."""
+        entries = self._known.get(side, [])
+        if not self.complete or not entries:
+            return None
+        return entries[self._nearest(entries, start)][1]
+
+    def store(self, side: int, start: Array, jacobian: Array) -> None:
+        """Let a model that has just been sampled count."""
+        self.add(side, start, jacobian, 1)
+
+    def add(self, side: int, start: Array, jacobian: Array, steps: int) -> None:
+        """Let the mean of some steps count."""
+        entries = self._known.setdefault(side, [])
+        if entries:
+            at = self._nearest(entries, start)
+            here, known, count = entries[at]
+            if float(np.linalg.norm(here - start)) <= self.reach:
+                part = steps / (count + steps)
+                mean = here + part * (start - here), known + part * (jacobian - known)
+                entries[at] = (*mean, count + steps)
+                return
+        entries.append((start, jacobian, steps))
+
+    def read(self, path: Path, regulation: list[str], perturbations: list[str]) -> None:
+        """Add the models in a file.
+
+        Raises:
+            ConfigError: It is no such file, or its models are of other variables.
+        """
+        try:
+            file = msgspec.json.decode(path.read_bytes(), type=ModelFile)
+        except (OSError, msgspec.DecodeError) as error:
+            raise ConfigError(f"{path}: no file of step models: {error}") from None
+        if (file.regulation, file.perturbations) != (regulation, perturbations):
+            raise ConfigError(
+                f"{path}: models of {', '.join(file.regulation)} by {', '.join(file.perturbations)}"
+                "; the walk has others. Learn them anew: `windup walk ... --learn FILE`"
+            )
+        for model in file.models:
+            self.add(model.phase, np.array(model.start), np.array(model.jacobian), model.steps)
+
+    def write(self, path: Path, regulation: list[str], perturbations: list[str]) -> None:
+        """Write all models into a file."""
+        models = [
+            LearntModel(
+                phase=phase,
+                start=np.round(start, 4).tolist(),
+                jacobian=np.round(jacobian, 6).tolist(),
+                steps=steps,
+            )
+            for phase, entries in sorted(self._known.items())
+            for start, jacobian, steps in entries
+        ]
+        file = ModelFile(regulation=regulation, perturbations=perturbations, models=models)
+        path.write_bytes(msgspec.json.format(msgspec.json.encode(file), indent=1) + b"\n")
+
+    @staticmethod
+    def _nearest(entries: list[tuple[Array, Array, int]], start: Array) -> int:
+        return int(np.argmin([float(np.linalg.norm(known - start)) for known, _, _ in entries]))

@@ -1,0 +1,71 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from control.learnt_models import LearntModels
+from hal.errors import ConfigError
+from tests.control.test_step_memory import HERE, TARGET, J, Steps, model
+
+NAMES = ["up.forward", "up.lateral"], ["a", "b"]
+
+
+def learnt(*places: float, complete: bool = True) -> LearntModels:
+    models = LearntModels(complete=complete)
+    for place in places:
+        models.store(0, np.array([place, 0.0]), (1.0 + place) * J)
+    return models
+
+
+def test_starts_within_reach_share_the_mean_of_their_models() -> None:
+    models = learnt(0.0, 0.01)
+    assert models.recall(0, np.zeros(2)) == pytest.approx(1.005 * J)
+
+
+def test_the_nearest_model_serves_however_far_it_is() -> None:
+    assert learnt(0.0, 0.1).recall(0, np.array([3.0, 0.0])) == pytest.approx(1.1 * J)
+
+
+def test_while_it_learns_it_lends_nothing() -> None:
+    assert learnt(0.0, complete=False).recall(0, np.zeros(2)) is None
+
+
+def test_a_part_of_the_graph_without_a_model_is_sampled() -> None:
+    assert learnt(0.0).recall(1, np.zeros(2)) is None
+
+
+def test_from_the_first_step_on_one_rollout_reaches_the_target() -> None:
+    steps, memory = Steps(), LearntModels(complete=True)
+    memory.store(0, HERE, J)
+    found = model(memory).control(steps, TARGET, 0, HERE)
+    assert steps.rollouts == 1
+    assert steps(found[None])[0][0] == pytest.approx(TARGET, abs=1e-6)
+
+
+def test_the_rest_of_a_step_is_sampled_and_teaches_nothing() -> None:
+    steps, memory = Steps(), LearntModels()
+    model(memory).control(steps, TARGET, 0, None)
+    assert steps.rollouts == 3
+    memory.complete = True
+    assert memory.recall(0, HERE) is None
+
+
+def test_what_is_written_is_read_again(tmp_path: Path) -> None:
+    learnt(0.0, 0.1).write(tmp_path / "walk.models.json", *NAMES)
+    again = LearntModels(complete=True)
+    again.read(tmp_path / "walk.models.json", *NAMES)
+    assert again.recall(0, np.array([0.09, 0.0])) == pytest.approx(1.1 * J)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[", "no file of step models"),
+        ('{"regulation":["up.forward"],"perturbations":["a"],"models":[]}', "Learn them anew"),
+    ],
+)
+def test_another_file_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "walk.models.json"
+    path.write_text(text)
+    with pytest.raises(ConfigError, match=message):
+        LearntModels().read(path, *NAMES)

@@ -1,0 +1,74 @@
+"""Walks by the product's own control, for what the thesis shows and its control alone does not."""
+
+from dataclasses import replace
+from typing import Any
+
+from hal.errors import DivergedError
+from hal.observation import Observation
+from tools.build import body_of, build_walk
+from tools.gauges import Gauges
+from tools.reproduce.figure import Job, Result
+from tools.reproduce.laszlo.recorder import Recorder
+from tools.robot import Robot
+from tools.walk_end import WalkEnd
+from tools.walk_options import WalkOptions
+
+NOISE = 0.2  # degrees
+KEPT = ("gait", "speed", "torso_servo", "path")
+
+
+def tour(**options: Any) -> Job:
+    """Return a walk; options are those of `run_tour`."""
+    base: dict[str, Any] = {"robot": "human", "steps": 60, "seed": 0}
+    return Job("tour", base | options)
+
+
+def run_tour(
+    *,
+    robot: str,
+    steps: int,
+    seed: int,
+    style: list[str] | None = None,
+    to: list[float] | None = None,
+    **options: Any,
+) -> Result:
+    """Walk as `windup walk` would and keep every step and a trace of the motion.
+
+    Args:
+        robot: Its name.
+        steps: How many, unless a goal is reached before.
+        seed: Of the noise on the start pose.
+        style: As `--style` has it.
+        to: Point to walk to, m.
+        options: Further ones of `WalkOptions`; see `KEPT`.
+    """
+    assert set(options) <= set(KEPT), options
+    asked = WalkOptions(style=tuple(style or ()), **options)
+    if to is not None:
+        asked = replace(asked, to=(to[0], to[1]))
+    with Robot.open(robot, seed=seed, noise=NOISE) as machine:
+        walker = build_walk(machine.description, asked, machine.predictor)
+        recorder = Recorder(body_of(machine.description), walker, traced=True)
+        gauges = Gauges(machine.description.contacts)
+
+        def watch(observation: Observation) -> None:
+            recorder.add(observation)
+            gauges.look(observation)
+
+        machine.watch = watch
+        machine.start_at(walker.gait.file.start)
+        try:
+            machine.run(walker, until=WalkEnd(walker, steps))
+            reason = machine.loop.reason
+        except DivergedError:
+            reason = "fell"  # so violently that the physics gave up
+        return {
+            "requested": steps,
+            "steps": walker.steps,
+            "fell": reason == "fell",
+            "arrived": reason == "done",
+            "time": machine.loop.sim_time,
+            "flights": gauges.flights,
+            "flight_time": gauges.flight_time,
+            **recorder.result(),
+        }

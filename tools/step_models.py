@@ -1,0 +1,67 @@
+"""Where the step models of a walk come from, and where those that it learns go."""
+
+from pathlib import Path
+
+from control.learnt_models import LearntModels
+from control.planner import StepPlanner
+from control.regulation import RegulationVariable
+from control.step_memory import Memory, memory_of
+from hal.errors import UsageError
+from robots import RobotDescription
+from tools.gaits import gait_path
+from tools.report import WalkReport
+from tools.walk_options import WalkOptions
+
+SUFFIX = ".models.json"
+
+
+def memory_for(
+    robot: RobotDescription,
+    options: WalkOptions,
+    regulation: list[RegulationVariable],
+    perturbations: list[str],
+) -> Memory | None:
+    """Return what remembers the step models of a walk; None where each is sampled.
+
+    A library is the gait's own file of models, where it has one and they fit.
+
+    Raises:
+        ConfigError: A file of models is broken, or of other variables.
+    """
+    names = [variable.name for variable in regulation]
+    if options.learn is not None:
+        learning = LearntModels()
+        if options.learn.exists():
+            learning.read(options.learn, names, perturbations)
+        return learning
+    own = gait_path(robot, options.gait).with_suffix(SUFFIX)
+    plain = options.rv is None and not options.blend
+    if options.model == "library" and plain and own.exists():
+        known = LearntModels(complete=True)
+        known.read(own, names, perturbations)
+        return known
+    return memory_of(options.model)
+
+
+def check_learning(options: WalkOptions, *, alone: bool) -> None:
+    """Raise what cannot be.
+
+    Raises:
+        UsageError: Nothing would be learnt, or several walks would at once.
+    """
+    if options.learn is None:
+        return
+    if options.open_loop or options.model != "full":
+        raise UsageError("--learn samples every step; leave --model and --open-loop away")
+    if not alone:
+        raise UsageError("--learn is for one walk without --realtime; leave it or --seeds away")
+
+
+def keep_learnt(path: Path, report: WalkReport) -> None:
+    """Write the step models of a walk that has gone well into a file."""
+    walker = report.walker
+    planner = walker.planner
+    if report.done and isinstance(planner, StepPlanner):
+        assert isinstance(planner.model.memory, LearntModels), "see `memory_for`"
+        names = [variable.name for variable in walker.regulation]
+        planner.model.memory.write(path, names, walker.perturbations)
