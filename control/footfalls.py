@@ -14,7 +14,7 @@ from hal.observation import Observation
 
 NOISE = 0.004
 """How far a point that touches is from the plane, m."""
-PRIOR = 0.05
+PRIOR = 0.1
 """Slope that ground usually has, so that two feet side by side prove little."""
 FADE = 0.4
 """What the points of a step weigh, beside those of the step after it."""
@@ -42,7 +42,8 @@ class Footfalls:
         self._sites = np.array([model.sensor(name).objid[0] for name in names], dtype=np.intp)
         data = mujoco.MjData(model)
         mujoco.mj_kinematics(model, data)
-        self._above = data.site_xpos[self._sites, 2] - data.site_xpos[self._sites, 2].min()
+        foot = self.contacts.members.argmax(axis=0)
+        self._above = data.site_xpos[self._sites, 2] - data.site_xpos[self.body.soles[foot], 2]
         self.reset()
 
     def reset(self) -> None:

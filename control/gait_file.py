@@ -55,7 +55,9 @@ class Balance(Record, frozen=True):
     """How the gait keeps its balance.
 
     A step is planned again in its middle when the centre of mass is `replan` m/s faster or slower
-    than it was at the same state two steps ago.
+    than it was at the same state two steps ago. Scalings found from farther away than `miss`
+    (weighted) are improved by up to `rounds` more models. The rollouts' ground is a plane through
+    what the feet have touched in the last `footfalls` steps; with 0 it is level.
     """
 
     regulation: list[str] = []

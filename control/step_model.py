@@ -40,6 +40,8 @@ class StepModel:
         from_last: Sample around `keep` times the same side's last K instead of around zero.
         keep: See `from_last`.
         regularisation: Damping of the least squares.
+        rounds: How often scalings found from afar ("full") are improved by another model.
+        miss: Weighted error that is afar, and that is worth another model.
         memory: Where "full" finds models to use again, or None.
         drift: Weighted error from which a remembered model is sampled anew.
         counters: What was retried, dropped or kept, by name.
@@ -58,6 +60,7 @@ class StepModel:
     rounds: int = 0
     miss: float = 0.3
     counters: dict[str, int] = field(default_factory=lambda: dict.fromkeys(COUNTERS, 0))
+    _far: float = field(default=0.0, init=False)
     _last: dict[int, Array] = field(default_factory=dict, init=False)
     _jacobian: dict[int, Array] = field(default_factory=dict, init=False)
 
@@ -82,6 +85,7 @@ class StepModel:
         """
         last = self._last.get(side, np.zeros(len(self.samples)))
         origin = self.keep * last if self.from_last else np.zeros_like(last)
+        self._far = 0.0
         if self.sampling == "full":
             again = None if start is None else self._reused(sample, target, side, origin, start)
             wanted = self._full(sample, target, side, origin, start) if again is None else again
@@ -89,7 +93,7 @@ class StepModel:
             wanted = self._by_dimension(sample, target, origin, last)
         scalings = np.clip(wanted, -self.limits, self.limits)
         self.counters["clipped"] += int((scalings != wanted).any())
-        if self.sampling == "full" and self.rounds:
+        if self._far > self.miss and self.rounds:
             scalings = self._refined(sample, target, scalings, last)
         self._last[side] = scalings
         return scalings
@@ -195,6 +199,7 @@ class StepModel:
         if fell[0]:
             self.counters["kept_last"] += 1
             return self._last.get(side, origin)
+        self._far = float(np.linalg.norm(self.weights * (target - values[0])))
         jacobian = self._differences(sample, origin, tried, values, fell, side)
         if np.abs(jacobian * self.samples).max() < SINGULAR:
             self.counters["kept_last"] += 1

@@ -7,7 +7,6 @@ from hal.command import JointCommand
 from hal.joints import Array, Mask
 from hal.observation import Observation
 
-
 Plane = tuple[float, float, float]
 
 

@@ -78,7 +78,6 @@ class RolloutPredictor:
         self.stopwatch.add(policy.size, wall.perf_counter() - began)
         return outcomes
 
-
     def _felt(self, start: RolloutStart) -> Plane:
         """Return the ground as it was felt, or level at the lowest foot; known ground stays."""
         if not self.ground.flat:

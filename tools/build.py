@@ -138,6 +138,15 @@ def build_walk(
     )
 
 
+def _footfalls(
+    robot: RobotDescription, body: Body, balance: Balance, options: WalkOptions
+) -> Footfalls | None:
+    """The thesis' control feels nothing of the ground."""
+    if not balance.footfalls or options.rv:
+        return None
+    return Footfalls(body, robot.contacts, balance.footfalls)
+
+
 def _shaken(balance: Balance, options: WalkOptions, one_rollout: bool) -> Shaken | None:
     """Planning again in mid-step needs another model, and so more than one rollout."""
     if balance.replan is None or options.rv or one_rollout:
