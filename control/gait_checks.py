@@ -42,6 +42,26 @@ def check_gait(path: Path, file: GaitFile, joints: Joints) -> None:
         _known(path, f"style.{style.name}.scale", style.scale, names)
     if file.torso_servo is not None:
         _known(path, "torso_servo.joint", [file.torso_servo.joint], joints.names, "joint")
+    if file.staged:
+        _check_stages(path, file)
+
+
+def _check_stages(path: Path, file: GaitFile) -> None:
+    """Check what only a graph that is played can have."""
+    if file.balance is not None or file.mirror:
+        raise _error(path, "state", "`move` and `reach` are for graphs without balance and mirror")
+    if file.tries < 1:
+        raise _error(path, "tries", f"{file.tries}: give 1 or more")
+    names = [state.name for state in file.state]
+    for state in file.state:
+        where = f"state.{state.name}"
+        if state.until.time is None:
+            raise _error(path, f"{where}.until", "beside `move` and `reach`, give a `time`")
+        if not 0.0 <= state.move <= state.until.time:
+            why = f"{state.move:g} s do not fit into the state's {state.until.time:g} s"
+            raise _error(path, f"{where}.move", why)
+        if state.reach is not None and state.reach.again is not None:
+            _known(path, f"{where}.reach.again", [state.reach.again], names, "state")
 
 
 def _check_speed(path: Path, file: GaitFile, names: list[str]) -> None:

@@ -21,11 +21,34 @@ class Until(Record, frozen=True):
     timeout: float | None = None
 
 
+class Reach(Record, frozen=True):
+    """What must be true before a played graph goes on; all of it, at one instant.
+
+    `joints` is how far any joint may be from its goal, degrees; `still` how fast any may move,
+    degrees/s; `lean` the least and the most forward lean of the base and `side` its lean to either
+    side, degrees; `feet` asks for every foot on the ground. What is not true `within` s of the
+    state's own time is tried again from the state `again` (this one by default).
+    """
+
+    joints: float | None = None
+    still: float | None = None
+    lean: tuple[float, float] | None = None
+    side: float | None = None
+    feet: bool = False
+    within: float = 1.0
+    again: str | None = None
+
+
 class State(Record, frozen=True):
-    """One row of a pose table; angles in degrees, added to the file's `pose`."""
+    """One row of a pose table; angles in degrees, added to the file's `pose`.
+
+    `move` is for graphs that are played, as `reach` is: the goals take so long to the pose, s.
+    """
 
     name: str
     until: Until
+    move: float = 0.0
+    reach: Reach | None = None
     pose: Pose = {}
     next: str | None = None
     stance: str | None = None
@@ -170,7 +193,10 @@ class TorsoServo(Record, frozen=True):
 
 
 class GaitFile(Record, frozen=True):
-    """One file of `gaits/`: a pose graph and, for a walk, how it is balanced."""
+    """One file of `gaits/`: a pose graph and, for a walk, how it is balanced.
+
+    `tries` is how often a state with a `reach` is tried before the graph is given up.
+    """
 
     title: str
     state: list[State]
@@ -180,6 +206,7 @@ class GaitFile(Record, frozen=True):
     pose: dict[str, float] = {}
     mirror: bool = False
     loop: bool = True
+    tries: int = 3
     perturbation: list[Perturbation] = []
     balance: Balance | None = None
     speed: Speed | None = None
@@ -188,3 +215,8 @@ class GaitFile(Record, frozen=True):
     heading: Heading | None = None
     style: list[Style] = []
     torso_servo: TorsoServo | None = None
+
+    @property
+    def staged(self) -> bool:
+        """True where a state moves to its pose or has to reach something."""
+        return any(state.move > 0.0 or state.reach is not None for state in self.state)

@@ -41,7 +41,14 @@ class GraphPlayer:
         gait: The graph; its perturbations stay at zero.
         joints: The robot's joints.
         contacts: The robot's contact sensors.
+
+    Attributes:
+        failed: None; what waits for nothing cannot miss it.
+        retries: 0, likewise.
     """
+
+    failed: str | None = None
+    retries = 0
 
     def __init__(self, gait: Gait, joints: Joints, contacts: ContactSensors) -> None:
         self.joints = joints

@@ -86,7 +86,7 @@ class Workers:
             return
         self._pool.shutdown(wait=False, cancel_futures=True)
         for process in multiprocessing.active_children():
-            process.terminate()
+            process.kill()  # a run that it is at would only take SIGTERM for a wish to end
 
     def run(
         self, work: Callable[[Item], Result], items: list[Item]

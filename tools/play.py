@@ -3,18 +3,20 @@
 from contextlib import suppress
 from dataclasses import dataclass
 from math import inf
-from typing import Annotated
+from typing import Annotated, Any
 
 import tyro
 
 from hal.errors import UsageError
+from robots import load_robot
 from tools.options import Common
 from tools.output import console, write_json
 from tools.robot import Robot
+from tools.twin_options import TwinOptions
 
 
 @dataclass(frozen=True, kw_only=True)
-class Play(Common):
+class Play(TwinOptions, Common):
     """Play a pose graph to its end, or for some seconds."""
 
     graph: Annotated[str, tyro.conf.Positional]
@@ -26,18 +28,34 @@ class Play(Common):
         """Play; returns the exit status."""
         if self.seconds is not None and not 0.0 < self.seconds < inf:
             raise UsageError(f"--seconds {self.seconds:g}: give more than 0")
-        rows = [self._one(seed) for seed in self.all_seeds]
-        for row in rows:
-            console.print(
-                f"{self.robot} played {self.graph!r} for {row['sim_time_s']:.2f} s: {row['reason']}"
-            )
+        rows = []
+        for seed in self.all_seeds:
+            rows.append(self._one(seed))
+            console.print(self._said(rows[-1]), markup=False, soft_wrap=True)
+            if rows[-1]["reason"] == "interrupted":
+                break
+        if self.seeds is not None:
+            well = sum(row["done"] for row in rows)
+            console.print(f"{well} of {len(rows)} seeds came to the end")
         result = rows[0] if self.seeds is None else {"robot": self.robot, "rows": rows}
         write_json(self.json, "play", result)
-        if any(row["reason"] == "interrupted" for row in rows):
+        if rows[-1]["reason"] == "interrupted":
             return 130
-        return 1 if any(row["fell"] for row in rows) else 0
+        return 0 if all(row["done"] for row in rows) else 1
 
-    def _one(self, seed: int) -> dict[str, object]:
+    def _said(self, row: dict[str, Any]) -> str:
+        """Return the line for people about one run."""
+        again = f", {row['retries']} tried again" if row["retries"] else ""
+        worked = ""
+        if row["peak_joint"]:
+            load = 100.0 * row["peak_load"]
+            worked = f"; peak load {load:.0f} % of stall at {row['peak_joint']}"
+        return (
+            f"{self.robot} played {self.graph!r} for {row['sim_time_s']:.2f} s{again}: "
+            f"{row['reason']}{worked}"
+        )
+
+    def _one(self, seed: int) -> dict[str, Any]:
         with Robot.open(
             self.robot,
             port=self.url,
@@ -47,16 +65,23 @@ class Play(Common):
             realtime=self.realtime,
             seed=seed,
             noise=self.noise,
+            world=self.world(load_robot(self.robot), seed),
         ) as robot:
             with suppress(KeyboardInterrupt):  # the robot has stopped
-                robot.play(self.graph, self.seconds)
-            report = robot.loop
+                robot.play(self.graph, self.seconds, disturb=self.disturb())
+            report, player, load = robot.loop, robot.player, robot.load
+            assert player is not None
             return {
                 "robot": robot.description.name,
                 "graph": self.graph,
                 "seed": seed,
+                "done": report.reason == "done" and not robot.fallen,
                 "fell": robot.fallen,
                 "reason": report.reason,
+                "retries": player.retries,
+                "peak_load": None if load is None else load.peak,
+                "peak_joint": "" if load is None else load.joint,
+                "high_load_s": 0.0 if load is None else load.high_time,
                 "sim_time_s": report.sim_time,
                 "wall_time_s": report.wall_time,
                 "tick_ms": report.tick_ms(),

@@ -12,6 +12,7 @@ from typing import Self
 
 from control.loop import LoopReport, Until
 from control.play import GraphPlayer, PoseHolder
+from control.staged import StagedPlayer
 from hal.controller import Stopwatch
 from hal.errors import UnknownNameError, UsageError
 from hal.observation import Observation
@@ -24,6 +25,7 @@ from sim_twin.world import World
 from tools.build import build_walk
 from tools.gaits import find_gait
 from tools.gauges import Gauges
+from tools.load_gauge import LoadGauge
 from tools.plan_process import ProcessPlanner, plan_aside
 from tools.report import WalkReport
 from tools.session import Session
@@ -46,6 +48,8 @@ class Robot(Session):
         seed: Seed of everything random.
         clearance: How close the feet of a twin came in the last walk.
         gauges: What was measured at every tick of the last walk.
+        player: What played the last pose graph.
+        load: How hard the servos worked for that.
     """
 
     predictor: RolloutPredictor = field(kw_only=True)
@@ -53,6 +57,8 @@ class Robot(Session):
     seed: int = 0
     clearance: FootClearance | None = field(default=None, init=False)
     gauges: Gauges | None = field(default=None, init=False)
+    player: GraphPlayer | StagedPlayer | None = field(default=None, init=False)
+    load: LoadGauge | None = field(default=None, init=False)
 
     @classmethod
     def open(
@@ -182,17 +188,37 @@ class Robot(Session):
         """Hold the stance for `seconds` s of the robot's time."""
         return self.run(PoseHolder(self.description.joints, self.description.stance), seconds)
 
-    def play(self, graph: str, seconds: float | None = None) -> LoopReport:
+    def play(
+        self,
+        graph: str,
+        seconds: float | None = None,
+        disturb: Callable[["Robot"], None] | None = None,
+    ) -> LoopReport:
         """Play a pose graph of the robot to its end, or for `seconds` s.
 
-        A graph without an end is played for 5 s.
+        A graph without an end is played for 5 s. One that waits for the sensors in vain is given
+        up, and the report's reason says why.
+
+        Args:
+            graph: Name of the graph, or the path of a file.
+            seconds: How long at most.
+            disturb: Called when it is in its start pose, to arrange pushes on a twin.
         """
         gait = find_gait(self.description, graph)
         if seconds is None and gait.graph.periodic:
             seconds = PLAY_SECONDS
-        player = GraphPlayer(gait, self.description.joints, self.description.contacts)
+        kind = StagedPlayer if gait.file.staged else GraphPlayer
+        player = self.player = kind(gait, self.description.joints, self.description.contacts)
         self.start_at(gait.file.start)
-        return self.run(player, seconds, until=lambda _: "done" if player.finished else None)
+        if disturb is not None:
+            disturb(self)
+        load = self.load = LoadGauge(self.description.joints)
+
+        def until(observation: Observation) -> str | None:
+            load.look(observation)
+            return "done" if player.finished else player.failed
+
+        return self.run(player, seconds, until=until)
 
     def walk(
         self,

@@ -26,8 +26,6 @@ class TwinOptions:
     """Rough ground, as much as this above or below the start, m."""
     friction: float | None = None
     """Friction coefficient of feet and floor."""
-    known_ground: bool = False
-    """Let the rollouts know the ground."""
     plant: int | None = None
     """Draw a random plant with this seed: gains, friction, delay, floor, mass, supply."""
     self_collision: bool = False

@@ -42,6 +42,8 @@ class Walk(TwinOptions, Common):
     """Follow a path: a CSV file of x,y waypoints, circle:RADIUS or square:SIDE, m."""
     to: tuple[float, float] | None = None
     """Walk to the point X Y, m, and stop."""
+    known_ground: bool = False
+    """Let the rollouts know the ground."""
     stand: float = 0.0
     """Afterwards come to rest and stand for some seconds."""
     style: tuple[str, ...] = ()

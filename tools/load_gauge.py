@@ -1,0 +1,45 @@
+"""How hard the servos of a robot worked: the highest load, and how long one was loaded highly."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from hal.joints import Joints
+from hal.observation import Observation
+
+HIGH = 0.5  # share of the stall torque that a geared servo bears for a moment only
+
+
+@dataclass
+class LoadGauge:
+    """Adds up what the torque of a run shows, as shares of what each joint can give at most.
+
+    Attributes:
+        joints: The robot's joints.
+        peak: The highest share seen; NaN where no joint measures its torque.
+        joint: Name of the joint that had it, or "".
+        high_time: The longest time without a break that one joint was above half, s.
+    """
+
+    joints: Joints
+    peak: float = field(default=float("nan"), init=False)
+    joint: str = field(default="", init=False)
+    high_time: float = field(default=0.0, init=False)
+    _last: float | None = field(default=None, init=False)
+
+    def __post_init__(self) -> None:
+        self._high = np.zeros(len(self.joints))
+
+    def look(self, observation: Observation) -> None:
+        """Take the observation of a tick."""
+        now = observation.time
+        dt = 0.0 if self._last is None else now - self._last
+        self._last = now
+        share = np.nan_to_num(np.abs(observation.joints.torque) / self.joints.torque)
+        self._high = np.where(share > HIGH, self._high + dt, 0.0)
+        self.high_time = max(self.high_time, float(self._high.max()))
+        if np.isnan(observation.joints.torque).all():
+            return
+        top = int(share.argmax())
+        if not share[top] <= self.peak:
+            self.peak, self.joint = float(share[top]), self.joints.names[top]
