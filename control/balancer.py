@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from control.body import Body
+from control.footfalls import Footfalls
 from control.gait import Gait
 from control.goal_limits import GoalLimits
 from control.planner import Planner, StepRequest
@@ -48,6 +49,7 @@ class Balancer:
         fixed_targets: Targets that win over the steering's, by name.
         torso_servo: The torso servo, or None.
         shaken: Says when a step has to be planned again, or None.
+        footfalls: Feels how the ground slopes, or None.
         replans: How often that was.
         records: Finished steps.
         late: Steps whose answer came too late to act in time, or never.
@@ -65,6 +67,7 @@ class Balancer:
     fixed_targets: dict[str, float] = field(default_factory=dict)
     torso_servo: TorsoServo | None = None
     shaken: Shaken | None = None
+    footfalls: Footfalls | None = None
     replans: int = field(default=0, init=False)
     records: list[StepRecord] = field(default_factory=list, init=False)
     late: int = field(default=0, init=False)
@@ -99,6 +102,8 @@ class Balancer:
         self.replans = 0
         if self.shaken is not None:
             self.shaken.reset()
+        if self.footfalls is not None:
+            self.footfalls.reset()
         self.records.clear()
         self.late = 0
         if self.planner is not None:
@@ -110,6 +115,9 @@ class Balancer:
             self._begin_step(observation, self.body.measure(observation), dt)
         elif self._tracker.advance(observation.contacts[None])[0]:
             here = self.body.measure(observation)
+            if self.footfalls is not None:
+                self.footfalls.end_step()
+                self.footfalls.see(observation)
             self._end_step(observation.time, here, self._start)
             self._begin_step(observation, here, dt)
         elif self.shaken is not None:
@@ -148,6 +156,8 @@ class Balancer:
         if not shaken.entered(state):
             return
         here = self.body.measure(observation)
+        if self.footfalls is not None:
+            self.footfalls.see(observation)
         if shaken.by(state, here.com_velocity[0], start.heading) and self.planner is not None:
             self.replans += 1
             self._ask(observation, start, self._tracker.scale[0], dt)
@@ -158,7 +168,9 @@ class Balancer:
         Those `before` (p,) stay in force until the answer acts.
         """
         assert self.planner is not None
-        flight, now = RolloutStart(observation, np.array(self._sent), dt), self._tracker.now
+        ground = None if self.footfalls is None else self.footfalls.plane()
+        flight = RolloutStart(observation, np.array(self._sent), dt, ground)
+        now = self._tracker.now
         request = StepRequest(
             flight, now, start.stance, self._first, self._scale, before, self._target, start
         )

@@ -19,13 +19,16 @@ class Body:
         base: Name of the body with the free joint.
         torso: Name of the body whose z axis is the up vector.
         soles: Names of the sites at the soles' centres, one a foot.
+
+    Attributes:
+        soles: Indices of these sites.
     """
 
     def __init__(self, model: mujoco.MjModel, base: str, torso: str, soles: Sequence[str]) -> None:
         self.model, self.data = model, mujoco.MjData(model)
         self._base = model.body(base).id
         self._torso = model.body(torso).id
-        self._soles = np.array([model.site(name).id for name in soles], dtype=np.intp)
+        self.soles = np.array([model.site(name).id for name in soles], dtype=np.intp)
         self.mass = float(model.body_subtreemass[self._base])
 
     def measure(self, observation: Observation) -> Outcomes:
@@ -56,7 +59,7 @@ class Body:
             joint_position=observation.joints.position[None],
             com=data.subtree_com[None, self._base].copy(),
             com_velocity=data.subtree_linvel[None, self._base].copy(),
-            feet=data.site_xpos[None, self._soles].copy(),
+            feet=data.site_xpos[None, self.soles].copy(),
             torso=data.xmat[None, self._torso, 2::3].copy(),
             contacts=observation.contacts[None],
             fell=np.zeros(1, dtype=bool),

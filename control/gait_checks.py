@@ -43,20 +43,28 @@ def check_gait(path: Path, file: GaitFile, joints: Joints) -> None:
     if file.torso_servo is not None:
         _known(path, "torso_servo.joint", [file.torso_servo.joint], joints.names, "joint")
     if file.staged:
-        _check_stages(path, file)
+        _check_stages(path, file, joints)
 
 
-def _check_stages(path: Path, file: GaitFile) -> None:
+def _check_stages(path: Path, file: GaitFile, joints: Joints) -> None:
     """Check what only a graph that is played can have."""
     if file.balance is not None or file.mirror:
-        raise _error(path, "state", "`move` and `reach` are for graphs without balance and mirror")
+        raise _error(
+            path, "state", "`move`, `reach` and `upright` are for graphs without balance and mirror"
+        )
     if file.tries < 1:
         raise _error(path, "tries", f"{file.tries}: give 1 or more")
     names = [state.name for state in file.state]
+    if file.upright is not None:
+        _known(path, "upright.states", file.upright.states or [], names, "state")
+        for key in ("forward", "forward_rate", "right", "right_rate"):
+            _known(path, f"upright.{key}", getattr(file.upright, key), joints.names, "joint")
     for state in file.state:
         where = f"state.{state.name}"
         if state.until.time is None:
-            raise _error(path, f"{where}.until", "beside `move` and `reach`, give a `time`")
+            raise _error(
+                path, f"{where}.until", "beside `move`, `reach` and `upright`, give a `time`"
+            )
         if not 0.0 <= state.move <= state.until.time:
             why = f"{state.move:g} s do not fit into the state's {state.until.time:g} s"
             raise _error(path, f"{where}.move", why)

@@ -78,7 +78,9 @@ class Balance(Record, frozen=True):
     """How the gait keeps its balance.
 
     A step is planned again in its middle when the centre of mass is `replan` m/s faster or slower
-    than it was at the same state two steps ago.
+    than it was at the same state two steps ago. Scalings found from farther away than `miss`
+    (weighted) are improved by up to `rounds` more models. The rollouts' ground is a plane through
+    what the feet have touched in the last `footfalls` steps; with 0 it is level.
     """
 
     regulation: list[str] = []
@@ -92,6 +94,9 @@ class Balance(Record, frozen=True):
     weights: dict[str, float] = {}
     drift: float = 0.5
     replan: float | None = None
+    footfalls: int = 0
+    rounds: int = 0
+    miss: float = 0.3
     horizon: float = 1.5
 
 
@@ -187,11 +192,27 @@ class TorsoServo(Record, frozen=True):
     angle: float = 0.0
 
 
+class Upright(Record, frozen=True):
+    """How a graph that is played keeps its balance, see `control.upright`.
+
+    Gains by joint: `forward` and `right` in degrees for one degree of the base's lean, the rates in
+    degrees for one degree/s. `limit` is the most that comes to a goal, degrees. `states` narrows
+    it down.
+    """
+
+    forward: dict[str, float] = {}
+    forward_rate: dict[str, float] = {}
+    right: dict[str, float] = {}
+    right_rate: dict[str, float] = {}
+    limit: float = 25.0
+    states: list[str] | None = None
+
+
 class GaitFile(Record, frozen=True):
     """One file of `gaits/`: a pose graph and, for a walk, how it is balanced.
 
     `tries` is how often a state with a `reach` is tried before the graph is given up. A graph that
-    gets the robot up says on which side it is `lying` before.
+    gets the robot up says on which side it is `lying` before; one that ends on the floor is `down`.
     """
 
     title: str
@@ -204,6 +225,8 @@ class GaitFile(Record, frozen=True):
     loop: bool = True
     tries: int = 3
     lying: Literal["front", "back"] | None = None
+    down: bool = False
+    upright: Upright | None = None
     perturbation: list[Perturbation] = []
     balance: Balance | None = None
     speed: Speed | None = None
@@ -215,5 +238,7 @@ class GaitFile(Record, frozen=True):
 
     @property
     def staged(self) -> bool:
-        """True where a state moves to its pose or has to reach something."""
+        """True where a state moves to its pose or has to reach something, or feedback balances."""
+        if self.upright is not None:
+            return True
         return any(state.move > 0.0 or state.reach is not None for state in self.state)

@@ -8,6 +8,7 @@ import numpy as np
 
 from control.gait import Gait
 from control.reach import Condition
+from control.upright import UprightFeedback
 from hal.command import JointCommand
 from hal.contacts import ContactSensors
 from hal.joints import Array, Joints
@@ -38,7 +39,14 @@ class StagedPlayer:
             None if state.reach is None else Condition(state.reach, joints, contacts)
             for state in gait.file.state
         ]
+        table, names = gait.file.upright, gait.graph.names
+        self._upright = None if table is None else UprightFeedback(table, joints, names)
         self.finished, self.retries = False, 0
+
+    @property
+    def ends_down(self) -> bool:
+        """Whether the robot is on the floor at the end, as it should be."""
+        return self.gait.file.down
 
     def reset(self, observation: Observation) -> None:
         """Begin at the first state, from the present pose.
@@ -53,6 +61,8 @@ class StagedPlayer:
         for condition in filter(None, self._conditions):
             condition.unmet(observation, self._goal)
         self._hold = JointCommand.hold(self.joints, self._goal)
+        if self._upright is not None:
+            self._upright.apply(self._goal, observation, 0)
         self._enter(0)
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
@@ -61,8 +71,11 @@ class StagedPlayer:
             self._advance(observation)
             self._elapsed += dt
             self._goal = self._on_the_way()
+        goal = self._goal
+        if self._upright is not None:
+            goal = self._upright.apply(goal, observation, self._state)
         block = self._hold.block.copy()
-        block[0] = self._goal
+        block[0] = goal
         return JointCommand(block)
 
     def _enter(self, state: int) -> None:

@@ -24,7 +24,7 @@ Sampling = Literal["sp", "fl", "lf", "full"]
 Sample = Callable[[Array], tuple[Array, Mask]]
 
 SINGULAR = 1e-6
-COUNTERS = ("retried", "dropped", "kept_last", "clipped", "sampled", "reused")
+COUNTERS = ("retried", "dropped", "kept_last", "clipped", "sampled", "reused", "refined")
 
 
 @dataclass
@@ -40,6 +40,8 @@ class StepModel:
         from_last: Sample around `keep` times the same side's last K instead of around zero.
         keep: See `from_last`.
         regularisation: Damping of the least squares.
+        rounds: How often scalings found from afar ("full") are improved by another model.
+        miss: Weighted error that is afar, and that is worth another model.
         memory: Where "full" finds models to use again, or None.
         drift: Weighted error from which a remembered model is sampled anew.
         counters: What was retried, dropped or kept, by name.
@@ -55,7 +57,10 @@ class StepModel:
     regularisation: float = 1e-3
     memory: Memory | None = None
     drift: float = 0.5
+    rounds: int = 0
+    miss: float = 0.3
     counters: dict[str, int] = field(default_factory=lambda: dict.fromkeys(COUNTERS, 0))
+    _far: float = field(default=0.0, init=False)
     _last: dict[int, Array] = field(default_factory=dict, init=False)
     _jacobian: dict[int, Array] = field(default_factory=dict, init=False)
 
@@ -80,6 +85,7 @@ class StepModel:
         """
         last = self._last.get(side, np.zeros(len(self.samples)))
         origin = self.keep * last if self.from_last else np.zeros_like(last)
+        self._far = 0.0
         if self.sampling == "full":
             again = None if start is None else self._reused(sample, target, side, origin, start)
             wanted = self._full(sample, target, side, origin, start) if again is None else again
@@ -87,6 +93,8 @@ class StepModel:
             wanted = self._by_dimension(sample, target, origin, last)
         scalings = np.clip(wanted, -self.limits, self.limits)
         self.counters["clipped"] += int((scalings != wanted).any())
+        if self._far > self.miss and self.rounds:
+            scalings = self._refined(sample, target, scalings, last)
         self._last[side] = scalings
         return scalings
 
@@ -191,6 +199,7 @@ class StepModel:
         if fell[0]:
             self.counters["kept_last"] += 1
             return self._last.get(side, origin)
+        self._far = float(np.linalg.norm(self.weights * (target - values[0])))
         jacobian = self._differences(sample, origin, tried, values, fell, side)
         if np.abs(jacobian * self.samples).max() < SINGULAR:
             self.counters["kept_last"] += 1
@@ -199,6 +208,31 @@ class StepModel:
         if self.memory is not None and start is not None:
             self.memory.store(side, start, jacobian)
         return origin + self._solve(jacobian, target - values[0])
+
+    def _refined(self, sample: Sample, target: Array, found: Array, last: Array) -> Array:
+        """Return what is best of `found`, the `last` scalings, and Newton's steps from these."""
+
+        def judged(tried: Array) -> tuple[Array, Array, float]:
+            values, fell = sample(tried)
+            misses = np.linalg.norm(self.weights * (target - values), axis=1)
+            i = int(np.where(fell, np.inf, misses).argmin())
+            return tried[i], values[i], float("inf") if fell[i] else float(misses[i])
+
+        best, value, miss = judged(np.stack([found, last]))
+        for _ in range(self.rounds):
+            if miss < self.miss or miss == float("inf"):
+                break
+            self.counters["refined"] += 1
+            near, lost = sample(best + np.diag(self.samples))
+            jacobian = (near - value).T / self.samples
+            jacobian[:, lost] = 0.0
+            change = self._solve(jacobian, target - value)
+            tried = np.clip(best + np.outer([1.0, 0.4], change), -self.limits, self.limits)
+            new, there, left = judged(tried)
+            if left > 0.95 * miss:
+                break
+            best, value, miss = new, there, left
+        return best
 
     def _differences(
         self, sample: Sample, origin: Array, tried: Array, values: Array, fell: Mask, side: int

@@ -7,6 +7,8 @@ from hal.command import JointCommand
 from hal.joints import Array, Mask
 from hal.observation import Observation
 
+Plane = tuple[float, float, float]
+
 
 class Controller(Protocol):
     """Observations in, joint commands out.
@@ -107,11 +109,13 @@ class RolloutStart:
         in_flight: (d, n) target positions sent before and not yet at the joints, oldest first,
             one a tick, rad.
         dt: Period of a tick, s.
+        ground: Ground as it was felt: height at the origin, m; rise along x; along y.
     """
 
     observation: Observation
     in_flight: Array
     dt: float
+    ground: Plane | None = None
 
 
 class Predictor(Protocol):

@@ -14,13 +14,14 @@ import numpy as np
 import numpy.typing as npt
 from mujoco.batch import Batch
 
-from hal.controller import BatchPolicy, Outcomes, PolicyInput, RolloutStart, Stopwatch
+from hal.controller import BatchPolicy, Outcomes, Plane, PolicyInput, RolloutStart, Stopwatch
 from hal.joints import Array, Mask
 from robots.description import RobotDescription
 from sim_twin.foot_level import FootLevel
 from sim_twin.terrain import Ground
 from sim_twin.world import World, build_model
 
+KNOWN: Plane = (0.0, 0.0, 0.0)
 STAGE = int(mujoco.mjtStage.mjSTAGE_VEL)
 
 
@@ -57,6 +58,7 @@ class RolloutPredictor:
         self.model = build_model(
             robot, delay=delay, supply=supply, bare=True, world=World(self.ground)
         )
+        self._let_tilt(self.model)
         self.threads = threads
         self.stopwatch = Stopwatch()
         self._worlds: dict[int, _Worlds] = {}
@@ -72,10 +74,26 @@ class RolloutPredictor:
                 min(self.threads, policy.size),
                 self.ground,
             )
-        level = self._level.of(start.observation) if self.ground.flat else 0.0
-        outcomes = self._worlds[policy.size].play(start, policy, horizon, level)
+        outcomes = self._worlds[policy.size].play(start, policy, horizon, self._felt(start))
         self.stopwatch.add(policy.size, wall.perf_counter() - began)
         return outcomes
+
+    def _felt(self, start: RolloutStart) -> Plane:
+        """Return the ground as it was felt, or level at the lowest foot; known ground stays."""
+        if not self.ground.flat:
+            return KNOWN
+        if start.ground is not None:
+            return start.ground
+        return self._level.of(start.observation), 0.0, 0.0
+
+    def _let_tilt(self, model: mujoco.MjModel) -> None:
+        """Let the floor's attitude count, which MuJoCo takes to be level once it has compiled it.
+
+        Its frame would stay the world's, and the midphase would look for contacts with it there.
+        """
+        if self.ground.flat:
+            model.geom_sameframe[model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE] = 0
+            model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_MIDPHASE)
 
 
 class _Worlds:
@@ -103,6 +121,8 @@ class _Worlds:
         self.base = model.body(robot.base).id
         self.torso = model.body(robot.torso).id
         self.soles = np.array([model.site(foot.site).id for foot in robot.feet])
+        planes = np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE)
+        self.floor, self.slope = planes, (0.0, 0.0)
         self.touch = np.array([model.sensor(name).adr[0] for name in robot.contacts.names])
         velocity = model.sensor("com_velocity").adr[0]
         self.com_velocity = slice(velocity, velocity + 3)
@@ -115,15 +135,27 @@ class _Worlds:
         mujoco.mj_getState(model, scratch, self.fresh, spec)
 
     def play(
-        self, start: RolloutStart, policy: BatchPolicy, horizon: float, level: float
+        self, start: RolloutStart, policy: BatchPolicy, horizon: float, felt: Plane
     ) -> Outcomes:
         """Play `policy` from `start` on ground at `level` m; see `RolloutPredictor.predict`."""
         self._place(start)
+        level = felt[0]
+        self._tilt(felt[1:])
         self.qpos[:, 2] -= level
         outcomes = self._run(start, policy, horizon)
         for heights in (outcomes.base_position, outcomes.com, outcomes.feet):
             heights[..., 2] += level
         return outcomes
+
+    def _tilt(self, slope: tuple[float, float]) -> None:
+        """Let flat ground rise by the gradient `slope`."""
+        if slope == self.slope or not self.ground.flat:
+            return
+        self.slope = slope
+        normal = np.array([-slope[0], -slope[1], 1.0])
+        quat = np.empty(4)
+        mujoco.mju_quatZ2Vec(quat, normal / np.linalg.norm(normal))
+        self.batch.expand("geom_quat")[:, self.floor] = quat
 
     def _run(self, start: RolloutStart, policy: BatchPolicy, horizon: float) -> Outcomes:
         substeps = round(start.dt / self.model.opt.timestep)
@@ -182,7 +214,9 @@ class _Worlds:
     def _fallen(self) -> Mask:
         fall = self.robot.fall
         low = self.qpos[:, 2] < fall.height
-        if not self.ground.flat:
+        if any(self.slope):
+            low = self.qpos[:, 2] - self.qpos[:, :2] @ np.array(self.slope) < fall.height
+        elif not self.ground.flat:
             ground = [self.ground.height(float(x), float(y)) for x, y in self.qpos[:, :2]]
             low = self.qpos[:, 2] - ground < fall.height
         return low | ~(self.xmat[:, self.torso, 8] > np.cos(fall.tilt))

@@ -10,6 +10,7 @@ from control.balancer import Balancer
 from control.body import Body
 from control.estimator import BaseEstimator
 from control.foot_load import FootLoad
+from control.footfalls import Footfalls
 from control.gait import Gait
 from control.gait_file import Balance, Sampling
 from control.planner import Planner, StepPlanner
@@ -132,8 +133,18 @@ def build_walk(
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
         torso_servo=torso_servo,
+        footfalls=_footfalls(robot, body, balance, options),
         shaken=_shaken(balance, options, one_rollout),
     )
+
+
+def _footfalls(
+    robot: RobotDescription, body: Body, balance: Balance, options: WalkOptions
+) -> Footfalls | None:
+    """The thesis' control feels nothing of the ground."""
+    if not balance.footfalls or options.rv:
+        return None
+    return Footfalls(body, robot.contacts, balance.footfalls)
 
 
 def _shaken(balance: Balance, options: WalkOptions, one_rollout: bool) -> Shaken | None:
@@ -201,6 +212,8 @@ def _step_model(
         regularisation=balance.regularisation,
         memory=memory,
         drift=balance.drift,
+        rounds=balance.rounds if reuse == "full" else 0,
+        miss=balance.miss,
     )
 
 

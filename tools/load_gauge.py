@@ -16,7 +16,7 @@ class LoadGauge:
 
     Attributes:
         joints: The robot's joints.
-        peak: The highest share seen; NaN where no joint measures its torque.
+        peak: The highest share seen; NaN where no joint has both a limit and a measure.
         joint: Name of the joint that had it, or "".
         high_time: The longest time without a break that one joint was above half, s.
     """
@@ -38,7 +38,7 @@ class LoadGauge:
         share = np.nan_to_num(np.abs(observation.joints.torque) / self.joints.torque)
         self._high = np.where(share > HIGH, self._high + dt, 0.0)
         self.high_time = max(self.high_time, float(self._high.max()))
-        if np.isnan(observation.joints.torque).all():
+        if not (np.isfinite(observation.joints.torque) & np.isfinite(self.joints.torque)).any():
             return
         top = int(share.argmax())
         if not share[top] <= self.peak:

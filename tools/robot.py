@@ -187,7 +187,8 @@ class Robot(Session):
             load.look(observation)
             return "done" if player.finished else player.failed
 
-        return self.run(player, seconds, until=until, down=gait.file.lying is not None)
+        down = gait.file.down or gait.file.lying is not None
+        return self.run(player, seconds, until=until, down=down)
 
     def walk(
         self,

@@ -11,6 +11,7 @@ from hal.observation import Observation
 from robots import RobotDescription
 from sim_twin.backend import TwinBackend
 from sim_twin.rollouts import RolloutPredictor
+from sim_twin.terrain import Ground
 from sim_twin.twin import Twin
 
 BEFORE = 20  # ticks that the twin has moved when the prediction begins
@@ -256,3 +257,19 @@ def test_a_prediction_never_touches_the_live_twin(op3: RobotDescription) -> None
         twin.time,
     ) == before
     assert predictor.stopwatch.count == 1
+
+
+def test_ground_that_was_felt_is_as_good_as_known_ground(human: RobotDescription) -> None:
+    start = scene(human)
+    rise = np.tan(np.radians(4.0))
+    base = start.start.observation.base
+    assert base is not None
+    base = replace(base, position=base.position + np.array([0.0, 0.0, 2.0 * rise]))
+    observation = replace(start.start.observation, base=base)
+    known = replace(start.start, observation=observation)
+    felt = replace(known, ground=(2.0 * rise, rise, 0.0))
+    slope = RolloutPredictor(human, ground=Ground(slope=4.0, start=-2.0))
+    truth = slope.predict(known, start.script, 1.0)
+    outcome = RolloutPredictor(human).predict(felt, start.script, 1.0)
+    np.testing.assert_allclose(outcome.feet, truth.feet, atol=1e-6)
+    np.testing.assert_allclose(outcome.base_position, truth.base_position, atol=1e-6)

@@ -17,6 +17,13 @@ def test_an_op3_that_is_pushed_crouches_and_stands_up_all_the_same(windup: Windu
     assert ran.json["high_load_s"] < 1.0
 
 
+def test_the_human_balances_on_its_soft_ankles_while_it_crouches(windup: Windup) -> None:
+    line = "play human crouch --noise 0.2 --push 10 --push-at 1 --push-direction 180 --json -"
+    ran = windup(*line.split())
+    assert ran.status == 0
+    assert ran.json["peak_load"] is None, "what has no limit has no load"
+
+
 @pytest.mark.parametrize("robot", ["op3", "duck"])
 def test_a_robot_crouches_and_stands_up_over_its_wire(windup: Windup, robot: str) -> None:
     ran = windup("play", robot, "crouch", "--port", f"twin://{robot}?clock=virtual", "--json", "-")

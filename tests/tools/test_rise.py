@@ -1,10 +1,13 @@
 """An op3 that lies, on the twin and through its servo bus."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from tests.tools.conftest import Windup
+from tools.rise import rise
+from tools.robot import Robot
 
 
 @pytest.mark.parametrize("side", ["front", "back"])
@@ -18,6 +21,22 @@ def test_an_op3_gets_up_and_stands(windup: Windup, side: str) -> None:
 def test_it_does_so_over_the_wire_on_its_estimated_attitude(windup: Windup) -> None:
     ran = windup("rise", "op3", "--lying", "back", "--port", "twin://op3", "--json", "-")
     assert (ran.status, ran.json["up"]) == (0, True)
+
+
+def test_an_op3_sits_down_and_gets_up_again() -> None:
+    with Robot.open("op3", seed=1, noise=0.2) as robot:
+        assert robot.play("sit").reason == "done"
+        names = {robot.twin.model.geom(g).name for g in robot.twin.data.contact.geom.ravel()}
+        assert {"l_hip", "r_hip"} <= names
+        assert not {"l_hand", "r_hand", "head"} & names
+        report: dict[str, Any] = {"sides": [], "peak_load": 0.0}
+        rise(robot, 2, report)
+        assert (report["up"], report["sides"]) == (True, ["back"])
+
+
+def test_sitting_is_no_fall(windup: Windup) -> None:
+    ran = windup("play", "op3", "sit", "--json", "-")
+    assert (ran.status, ran.json["done"], ran.json["fell"]) == (0, True, False)
 
 
 def test_one_that_stands_stands(windup: Windup) -> None:
