@@ -26,7 +26,8 @@ def guide_of(
 
     Args:
         robot: The robot; its height is the measure of how far it looks ahead.
-        gait: The gait; it has to be able to turn.
+        gait: The gait; it has to be able to turn, and looks ahead at least as far as its radius,
+            else it overshoots every corner.
         path: A CSV file of x,y waypoints, "circle:RADIUS" or "square:SIDE".
         to: x, y of a point, m.
         speed: m/s.
@@ -43,7 +44,7 @@ def guide_of(
     if to is not None:
         return PointFollower(np.array(to), agility, near=0.3 * tall)
     points, closed = read_path(str(path))
-    return PathFollower(points, agility, look_ahead=tall, closed=closed)
+    return PathFollower(points, agility, look_ahead=max(tall, agility.radius), closed=closed)
 
 
 def agility_of(gait: Gait, speed: float | None) -> Agility:
