@@ -224,7 +224,8 @@ class Upright(Record, frozen=True):
 class GaitFile(Record, frozen=True):
     """One file of `gaits/`: a pose graph and, for a walk, how it is balanced.
 
-    `tries` is how often a state with a `reach` is tried before the graph is given up.
+    `tries` is how often a state with a `reach` is tried before the graph is given up. A graph that
+    gets the robot up says on which side it is `lying` before; one that ends on the floor is `down`.
     """
 
     title: str
@@ -236,6 +237,8 @@ class GaitFile(Record, frozen=True):
     mirror: bool = False
     loop: bool = True
     tries: int = 3
+    lying: Literal["front", "back"] | None = None
+    down: bool = False
     upright: Upright | None = None
     perturbation: list[Perturbation] = []
     balance: Balance | None = None

@@ -43,6 +43,11 @@ class StagedPlayer:
         self._upright = None if table is None else UprightFeedback(table, joints, names)
         self.finished, self.retries = False, 0
 
+    @property
+    def ends_down(self) -> bool:
+        """Whether the robot is on the floor at the end, as it should be."""
+        return self.gait.file.down
+
     def reset(self, observation: Observation) -> None:
         """Begin at the first state, from the present pose.
 

@@ -95,6 +95,29 @@ class Twin:
         self.set_goals(pose)
         self._jumped()
 
+    def lay(self, front: bool, pose: Array, *, noise: float = 0.0, seed: int = 0) -> None:
+        """Put the robot on the floor, on its front or its back, in any direction.
+
+        Args:
+            front: On its front.
+            pose: (n,) rad.
+            noise: Standard deviation of noise on every joint position, degrees.
+            seed: Seed of that noise and of the direction.
+        """
+        self.reset(pose, noise=noise, seed=seed)
+        turn = np.random.default_rng([1, seed]).uniform(-np.pi, np.pi)
+        level, around = np.empty(4), np.empty(4)
+        mujoco.mju_axisAngle2Quat(
+            level, np.array([0.0, 1.0, 0.0]), np.pi / 2 * (1 if front else -1)
+        )
+        mujoco.mju_axisAngle2Quat(around, np.array([0.0, 0.0, 1.0]), turn)
+        mujoco.mju_mulQuat(self.data.qpos[3:7], around, level)
+        mujoco.mj_forward(self.model, self.data)
+        solid = np.flatnonzero((self.model.geom_conaffinity > 0) & (self.model.geom_bodyid > 0))
+        lowest = self.data.geom_xpos[solid, 2] - self.model.geom_rbound[solid]
+        self.data.qpos[2] -= lowest.min()
+        self._jumped()
+
     def set_goals(self, pose: Array) -> None:
         """Make `pose` (n,) rad the target now and in everything still in flight."""
         width = self.model.nu // len(pose)

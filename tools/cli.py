@@ -19,6 +19,7 @@ from tools.options import Common
 from tools.output import check_writable, console, error_record, write_json
 from tools.play import Play
 from tools.reproduce import Reproduce
+from tools.rise import Rise
 from tools.robots_list import Robots
 from tools.scan import Scan
 from tools.stand import Stand
@@ -31,6 +32,7 @@ Command = (
     Annotated[Walk, tyro.conf.subcommand("walk")]
     | Annotated[Play, tyro.conf.subcommand("play")]
     | Annotated[Stand, tyro.conf.subcommand("stand")]
+    | Annotated[Rise, tyro.conf.subcommand("rise")]
     | Annotated[Stop, tyro.conf.subcommand("stop")]
     | Annotated[Scan, tyro.conf.subcommand("scan")]
     | Annotated[Emulate, tyro.conf.subcommand("emulate")]

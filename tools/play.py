@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import tyro
 
+from control.staged import StagedPlayer
 from hal.errors import UsageError
 from robots import load_robot
 from tools.options import Common
@@ -71,12 +72,13 @@ class Play(TwinOptions, Common):
                 robot.play(self.graph, self.seconds, disturb=self.disturb())
             report, player, load = robot.loop, robot.player, robot.load
             assert player is not None
+            fell = robot.fallen and not (isinstance(player, StagedPlayer) and player.ends_down)
             return {
                 "robot": robot.description.name,
                 "graph": self.graph,
                 "seed": seed,
-                "done": report.reason == "done" and not robot.fallen,
-                "fell": robot.fallen,
+                "done": report.reason == "done" and not fell,
+                "fell": fell,
                 "reason": report.reason,
                 "retries": player.retries,
                 "peak_load": None if load is None else load.peak,

@@ -18,9 +18,7 @@ from hal.errors import UnknownNameError, UsageError
 from hal.observation import Observation
 from robots import load_robot
 from sim_twin.clearance import FootClearance
-from sim_twin.push import Push
 from sim_twin.rollouts import RolloutPredictor
-from sim_twin.twin import Twin
 from sim_twin.world import World
 from tools.build import build_walk
 from tools.gaits import find_gait
@@ -147,36 +145,6 @@ class Robot(Session):
         finally:
             self.close()
 
-    @property
-    def twin(self) -> Twin:
-        """The twin behind the backend.
-
-        Raises:
-            UsageError: This is a robot, not a twin.
-        """
-        if self.stack.twin is None:
-            raise UsageError("only a twin can do that; leave --port away")
-        return self.stack.twin
-
-    def push(
-        self, impulse: float, direction: float = 0.0, *, duration: float = 0.1, delay: float = 0.0
-    ) -> None:
-        """Push the torso of a twin.
-
-        Args:
-            impulse: N s.
-            direction: rad; 0 pushes forward, positive to the left.
-            duration: s.
-            delay: s from now.
-        """
-        start = self.twin.time + delay
-        self.twin.push(Push.impulse(self.description.torso, impulse, direction, start, duration))
-
-    def shove(self, speed: float, direction: float = 0.0, *, delay: float = 0.0) -> None:
-        """Give a whole twin `speed` m/s toward `direction` rad, `delay` s from now."""
-        mass = float(self.twin.model.body_mass.sum())
-        self.twin.push(Push.velocity_step(speed, mass, direction, self.twin.time + delay))
-
     def rest(self) -> None:
         """Crouch, if the robot has a pose for it, and switch the torque off."""
         crouch = self.description.crouch
@@ -209,7 +177,8 @@ class Robot(Session):
             seconds = PLAY_SECONDS
         kind = StagedPlayer if gait.file.staged else GraphPlayer
         player = self.player = kind(gait, self.description.joints, self.description.contacts)
-        self.start_at(gait.file.start)
+        if gait.file.lying is None:
+            self.start_at(gait.file.start)
         if disturb is not None:
             disturb(self)
         load = self.load = LoadGauge(self.description.joints)
@@ -218,7 +187,8 @@ class Robot(Session):
             load.look(observation)
             return "done" if player.finished else player.failed
 
-        return self.run(player, seconds, until=until)
+        down = gait.file.down or gait.file.lying is not None
+        return self.run(player, seconds, until=until, down=down)
 
     def walk(
         self,

@@ -24,6 +24,8 @@ from hal.observation import BaseState, Observation
 from hal.telemetry import TelemetryWriter
 from robots import RobotDescription
 from sim_twin.backend import TwinClock
+from sim_twin.push import Push
+from sim_twin.twin import Twin
 from tools.interrupts import asked_to_end
 from tools.stack import Stack
 
@@ -75,6 +77,36 @@ class Session:
         _, x, y, _ = self.base.orientation
         tilted = 1.0 - 2.0 * (x * x + y * y) < np.cos(fall.tilt)
         return bool(self.base.position[2] < fall.height or tilted)
+
+    @property
+    def twin(self) -> Twin:
+        """The twin behind the backend.
+
+        Raises:
+            UsageError: This is a robot, not a twin.
+        """
+        if self.stack.twin is None:
+            raise UsageError("only a twin can do that; leave --port away")
+        return self.stack.twin
+
+    def push(
+        self, impulse: float, direction: float = 0.0, *, duration: float = 0.1, delay: float = 0.0
+    ) -> None:
+        """Push the torso of a twin.
+
+        Args:
+            impulse: N s.
+            direction: rad; 0 pushes forward, positive to the left.
+            duration: s.
+            delay: s from now.
+        """
+        start = self.twin.time + delay
+        self.twin.push(Push.impulse(self.description.torso, impulse, direction, start, duration))
+
+    def shove(self, speed: float, direction: float = 0.0, *, delay: float = 0.0) -> None:
+        """Give a whole twin `speed` m/s toward `direction` rad, `delay` s from now."""
+        mass = float(self.twin.model.body_mass.sum())
+        self.twin.push(Push.velocity_step(speed, mass, direction, self.twin.time + delay))
 
     def arm(self) -> None:
         """Switch the torque on at the present pose, where there are servos to switch.
@@ -129,6 +161,7 @@ class Session:
         *,
         until: Until | None = None,
         rollouts: Stopwatch | None = None,
+        down: bool = False,
     ) -> LoopReport:
         """Run a controller until the time is over, `until` gives a reason, or the robot falls.
 
@@ -137,6 +170,7 @@ class Session:
             seconds: How long, s of the backend's clock; for ever if None.
             until: Called with each observation; a reason ends the run.
             rollouts: Time to leave out of the ticks.
+            down: The robot may lie: a fall does not end the run.
 
         Raises:
             WindupError: From the guard, the backend or the controller; the stop policy has run.
@@ -151,7 +185,7 @@ class Session:
                     self.watch(observation)
                 if asked():
                     return INTERRUPTED
-                if self.fallen:
+                if self.fallen and not down:
                     return "fell"
                 if until is not None and (reason := until(observation)) is not None:
                     return reason

@@ -16,6 +16,7 @@ from robots import load_robot
 from sim_twin.backend import TwinBackend
 from sim_twin.twin import Twin
 from tests.contract.bench_robots import ROBOTS
+from tests.contract.probing import COUNT, free, resolution
 from tools.stack import servo_backend
 
 Opener = Callable[[], Backend]
@@ -36,7 +37,7 @@ def wired(name: str) -> Backend:
 
 
 TICK = 0.008
-COUNT = 2.0 * np.pi / 4096
+RAMP = 0.6  # rad/s
 
 
 @pytest.fixture(params=BACKENDS)
@@ -92,7 +93,7 @@ def test_imu_and_base_have_their_shapes_where_they_are(backend: Backend) -> None
 
 def test_joints_are_in_order_each_moves_the_one_it_names(backend: Backend) -> None:
     start = backend.read().joints.position
-    for name in [name for name in backend.joints.names if "sho" in name or "elbow" in name]:
+    for name in free(backend):
         j = backend.joints.index(name)
         goal = start.copy()
         goal[j] += 0.2
@@ -116,6 +117,38 @@ def test_a_read_after_a_write_is_nearer_to_the_goal(backend: Backend) -> None:
     assert np.abs(now.velocity).max() > 0.0
 
 
+def test_velocity_is_how_fast_the_position_changes(backend: Backend) -> None:
+    joints, start, began = backend.joints, backend.read().joints.position, backend.clock.now()
+    middle, seen = 0.5 * (joints.lower + joints.upper), []
+    ramp = np.where(start < middle, RAMP, -RAMP)
+    for tick in range(1, 51):
+        backend.write(JointCommand.hold(joints, start + ramp * tick * TICK))
+        backend.clock.wait_until(began + tick * TICK)
+        seen.append((backend.clock.now(), backend.read().joints))
+    late = seen[20:]
+    passed = late[-1][0] - late[0][0]
+    travel = late[-1][1].position - late[0][1].position
+    mean = np.trapezoid([s.velocity for _, s in late], [t for t, _ in late], axis=0) / passed
+    assert np.abs(travel).max() > 0.1
+    speed = np.abs(travel) / passed
+    slack = 2.0 * resolution(backend) / passed + 0.15 * speed + 0.02
+    assert (np.abs(mean - travel / passed) <= slack).all()
+
+
+def test_torque_that_is_measured_pushes_towards_the_goal(backend: Backend) -> None:
+    for name in free(backend):
+        j, before = backend.joints.index(name), backend.read().joints
+        goal = before.position.copy()
+        goal[j] += 0.2
+        backend.write(JointCommand.hold(backend.joints, goal))
+        wait(backend, 3 * TICK)
+        torque = backend.read().joints.torque
+        assert np.isfinite(torque[j]) == np.isfinite(before.torque[j]), name
+        assert not torque[j] - before.torque[j] <= 0.0, name
+        backend.write(JointCommand.hold(backend.joints, before.position))
+        wait(backend, 0.24)
+
+
 def test_a_write_returns_what_the_joints_really_got(backend: Backend) -> None:
     joints, seen = backend.joints, backend.read().joints
     asked = JointCommand.hold(joints, seen.position + 0.03)
@@ -131,7 +164,7 @@ def test_a_write_returns_what_the_joints_really_got(backend: Backend) -> None:
     free, still = np.full(len(joints), np.inf), np.zeros(len(joints))
     wanted = joint_torque(asked, seen.position, still, free)
     got = joint_torque(real, seen.position, still, free)
-    rounding = real.stiffness * COUNT + 0.01 * np.abs(wanted)
+    rounding = real.stiffness * resolution(backend) + 0.01 * np.abs(wanted)
     assert (np.abs(got - wanted) <= rounding).all()
     assert (real.damping >= 0.0).all()
 

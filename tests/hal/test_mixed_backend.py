@@ -81,6 +81,21 @@ def test_sts_torque_comes_from_current_where_the_data_sheet_has_a_constant() -> 
     assert backend.read().joints.torque[0] == pytest.approx(-0.65 * constant)
 
 
+def test_a_linkage_slows_the_joint_and_strengthens_it_by_its_ratio() -> None:
+    wires = wire({1: STS12, 2: STS12})
+    mounts = [mount(STS12, "body", 1), mount(STS12, "body", 2, sign=-1, ratio=2.0)]
+    backend = robot(wires, mounts, supply=12.0)
+    backend.connect()
+    backend.configure()
+    for id in (1, 2):
+        wires["body"].set(id, "present_velocity", 40)
+        wires["body"].set(id, "present_current", 100)
+    state = backend.read().joints
+    assert state.velocity[0] > 0.0 and state.torque[0] > 0.0
+    assert state.velocity[1] == pytest.approx(-state.velocity[0] / 2.0)
+    assert state.torque[1] == pytest.approx(-2.0 * state.torque[0])
+
+
 def test_an_ax_has_its_stiffness_in_slopes_of_powers_of_two() -> None:
     wires = wire({1: AX, 2: MX})
     backend = robot(wires, [mount(AX, "body", 1), mount(MX, "body", 2)], supply=12.0)

@@ -1,0 +1,28 @@
+"""What the contract has to know of a backend to ask it fair questions."""
+
+import re
+from typing import Final
+
+import numpy as np
+
+from hal.backend import Backend
+from hal.joints import Array
+from hal.servo_backend import ServoBackend
+
+COUNT: Final = 2.0 * np.pi / 4096
+FREE: Final = re.compile("sho|elbow|head|neck|^ankle")  # they bear no weight, in all robots
+
+
+def resolution(backend: Backend) -> Array:
+    """Return the count (n,) of each joint's encoder, rad; a twin is as fine as a 4096th."""
+    if not isinstance(backend, ServoBackend):
+        return np.full(len(backend.joints), COUNT)
+    turns = [mount.ratio * mount.model.counts_per_rev for mount in backend.mounts]
+    return 2.0 * np.pi / np.array(turns)
+
+
+def free(backend: Backend) -> list[str]:
+    """Return the names of the joints that bear no weight; every robot has some."""
+    names = [name for name in backend.joints.names if FREE.search(name)]
+    assert names
+    return names
