@@ -1,4 +1,4 @@
-"""Reports from tiny data; no walk is run here."""
+"""Reports from tiny data; of walks only their first steps are run here."""
 
 import json
 from functools import partial
@@ -12,8 +12,10 @@ from tools import cli
 from tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results, Study
 from tools.reproduce.laszlo import LASZLO
 from tools.reproduce.laszlo.cycles import pitch_range, scatter
+from tools.reproduce.laszlo.jobs import walk
 from tools.reproduce.laszlo.recorder import NAMES
-from tools.reproduce.laszlo.work import VECTORS
+from tools.reproduce.laszlo.tours import tour
+from tools.reproduce.laszlo.work import VECTORS, work
 from tools.reproduce.report import collect, reproduce
 from tools.reproduce.store import Store
 
@@ -148,6 +150,24 @@ def test_every_figure_of_laszlo_draws_and_judges(figure: Figure, quick: bool, st
         assert claim.agrees in (True, False, None)
         assert claim.ours and claim.criterion
     assert all(len(row) == len(t.header) for t in figure.table(results) for row in t.rows)
+
+
+@pytest.mark.parametrize(
+    "job",
+    [
+        Job("response", {"vary": 0, "step": 2, "scalings": [-4.0, 0.0, 4.0], "seed": 0}),
+        walk(steps=2),
+        tour(steps=2),
+    ],
+    ids=lambda job: job.kind,
+)
+def test_every_kind_of_run_runs(job: Job) -> None:
+    result = work(job)
+    if job.kind == "response":
+        pitch = [row[result["names"].index("up.forward")] for row in result["q"]]
+        assert pitch[0] != pitch[1] != pitch[2]
+    else:
+        assert (result["steps"], result["fell"], len(result["records"])) == (2, False, 2)
 
 
 def test_a_circle_walked_again_and_again_is_a_limit_cycle() -> None:

@@ -136,7 +136,14 @@ class Probe:
         """Begin again."""
         self._step = 0
 
-    def control(self, sample: Sample, target: Array, side: int) -> Array:
+    def control(
+        self,
+        sample: Sample,
+        target: Array,
+        side: int,
+        start: Array | None = None,
+        at: int | None = None,
+    ) -> Array:
         """Return scalings of nothing; on the way, sample the step that was asked for."""
         self._step += 1
         if self._step == self.step:
