@@ -24,8 +24,8 @@ class When(TypedDict, total=False):
 
     Attributes:
         rate: Share of the answers that it hits; 0.01 by default.
-        at: Instead of a rate the time, s, or several. An answer is hit if it is the first one from
-            then on; servos, supply and adapter are hit at that very moment.
+        at: Instead of a rate the time, s, or several: the first answer from then on is hit, or
+            servos, supply and adapter at that very moment.
         bus: The bus it is confined to.
     """
 
@@ -89,8 +89,6 @@ class Faults:
             faults.add(rule)
         return faults
 
-    # What happens to answers
-
     def drop(self, **who: Unpack[Who]) -> Self:
         """Lose answers."""
         return self.add(make_rule("drop", **who))
@@ -108,7 +106,7 @@ class Faults:
         return self.add(make_rule("noise", **who))
 
     def late(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
-        """Let servos answer late; those behind them in a sync read wait for it."""
+        """Let servos answer late; those behind them in a sync read wait."""
         return self.add(make_rule("late", seconds=seconds, **who))
 
     def delay(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
@@ -126,8 +124,6 @@ class Faults:
     def glue(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
         """Hold answers back until the next one is there, for some seconds at most."""
         return self.add(make_rule("glue", seconds=seconds, **who))
-
-    # What happens to servos, supply and adapter
 
     def dead(self, **who: Unpack[Who]) -> Self:
         """Let servos die: no answer and no torque, for ever."""
@@ -257,7 +253,7 @@ class Faults:
     def happen(self, rule: Rule) -> None:
         """Let an event happen now, to all whom it concerns; before `attach`, to nobody."""
         for bus in self._world.buses.values() if self._world is not None else ():
-            if rule.bus is not None and rule.bus != bus.name:
+            if rule.bus not in (None, bus.name):
                 continue
             if rule.kind in ("unplug", "brown_out"):
                 self._happen(rule, bus, EVERYBODY)
