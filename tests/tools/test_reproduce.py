@@ -126,6 +126,7 @@ def fake_result(job: Job, steps: int = 24) -> Result:
         "arrived": steps >= job.options["steps"],
         "flights": steps,
         "flight_time": 0.1 * steps,
+        "bend": [0.1] * len(np.arange(0.0, 0.4 * steps, 0.02)),
         "steps": steps,
         "fell": steps < job.options["steps"],
         "time": 0.4 * steps,

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from tools.reproduce.figure import Claim, Figure, Job, Results
+from tools.reproduce.figure import Claim, Figure, Job, Result, Results
 from tools.reproduce.laszlo.jobs import walked
 from tools.reproduce.laszlo.recorder import column
 from tools.reproduce.laszlo.tours import tour
@@ -19,24 +19,29 @@ PLAIN = tour(steps=STEPS)
 
 
 def draw(job: Job, canvas: Any, results: Results) -> None:
-    """Draw pelvis height and lean of the torso over time."""
-    height, lean = canvas.subplots(2, 1, sharex=True)
+    """Draw the height of the pelvis and the bend of the spine over time."""
+    height, bend = canvas.subplots(2, 1, sharex=True)
     for run, label in ((results[job], "in and out"), (results[PLAIN], "plain walk")):
         height.plot(column(run, "time"), column(run, "z"), label=label)
-        lean.plot(column(run, "time"), np.degrees(np.arcsin(column(run, "up.f"))))
+        bend.plot(column(run, "time"), np.degrees(_values(run, "bend")))
     height.set(ylabel="pelvis height [m]")
     height.legend(fontsize="small")
-    lean.set(xlabel="time [s]", ylabel="torso lean [deg]")
+    bend.set(xlabel="time [s]", ylabel="spine bent by [deg]")
 
 
 def _change(job: Job, results: Results, name: str) -> tuple[float, float]:
     """Return the mean of a column during the style, and after it, over that of the plain walk."""
-    run, plain = results[job], column(results[PLAIN], name).mean()
-    time, values = column(run, "time"), column(run, name)
+    run, plain = results[job], _values(results[PLAIN], name).mean()
+    time, values = column(run, "time"), _values(run, name)
     during = values[(time > BEGIN + 6.0) & (time < END)]
     after = values[time > END + 6.0]
     first, last = (float(p.mean() - plain) if len(p) else np.nan for p in (during, after))
     return first, last
+
+
+def _values(run: Result, name: str) -> Any:
+    """Return a column of the trace, or "bend": the spine's angle, rad."""
+    return np.array(run["bend"]) if name == "bend" else column(run, name)
 
 
 def claims(job: Job, name: str, least: float, what: str, results: Results) -> list[Claim]:
@@ -90,8 +95,8 @@ FIGURES = (
         "Bent-over walking",
         "A bend at waist and torso; the arms hang.",
         OVER,
-        "up.f",
-        0.2,
+        "bend",
+        0.5,
         "walks bent over, smoothly in and out",
     ),
     _figure(
@@ -99,8 +104,8 @@ FIGURES = (
         "Ducking",
         "Bent knees, bent over and a bent neck compose to ducking under an obstacle, in and out.",
         DUCK,
-        "z",
-        -0.01,
+        "bend",
+        0.5,
         "ducks and comes up again in one walk",
     ),
 )

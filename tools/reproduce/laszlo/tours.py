@@ -3,6 +3,8 @@
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from hal.errors import DivergedError
 from hal.observation import Observation
 from tools.build import body_of, build_walk
@@ -14,6 +16,7 @@ from tools.walk_end import WalkEnd
 from tools.walk_options import WalkOptions
 
 NOISE = 0.2  # degrees
+BEND = "spine"  # the joint that bends a human over; of the others the first one
 KEPT = ("gait", "speed", "torso_servo", "path")
 
 
@@ -50,10 +53,14 @@ def run_tour(
         walker = build_walk(machine.description, asked, machine.predictor)
         recorder = Recorder(body_of(machine.description), walker, traced=True)
         gauges = Gauges(machine.description.contacts)
+        names, bend = machine.description.joints.names, list[float]()
+        bending = names.index(BEND) if BEND in names else 0
 
         def watch(observation: Observation) -> None:
             recorder.add(observation)
             gauges.look(observation)
+            if len(recorder.trace) > len(bend):  # as often as it keeps a sample
+                bend.append(float(observation.joints.position[bending]))
 
         machine.watch = watch
         machine.start_at(walker.gait.file.start)
@@ -70,5 +77,6 @@ def run_tour(
             "time": machine.loop.sim_time,
             "flights": gauges.flights,
             "flight_time": gauges.flight_time,
+            "bend": np.round(bend, 4).tolist(),
             **recorder.result(),
         }
