@@ -3,12 +3,13 @@
 from dataclasses import dataclass
 from math import inf
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import tyro
 
 from hal.errors import UsageError
 from tools.faults import with_faults
+from tools.robot import Robot
 from tools.stack import State
 
 
@@ -69,3 +70,21 @@ class Common:
     def all_seeds(self) -> list[int]:
         """The seeds to run."""
         return [self.seed] if self.seeds is None else list(range(self.seeds))
+
+    def open_robot(self, seed: int, **more: Any) -> Robot:
+        """Return the robot as these options say; see `Robot.open`, also for `more` of its options.
+
+        Raises:
+            WindupError: The robot's files, the options, or the bus cannot be.
+        """
+        return Robot.open(
+            self.robot,
+            port=self.url,
+            arm=self.arm,
+            state=self.state,
+            rate=self.rate,
+            realtime=self.realtime,
+            seed=seed,
+            noise=self.noise,
+            **more,
+        )

@@ -12,7 +12,6 @@ from hal.errors import UsageError
 from robots import load_robot
 from tools.options import Common
 from tools.output import console, write_json
-from tools.robot import Robot
 from tools.twin_options import TwinOptions
 
 
@@ -57,15 +56,8 @@ class Play(TwinOptions, Common):
         )
 
     def _one(self, seed: int) -> dict[str, Any]:
-        with Robot.open(
-            self.robot,
-            port=self.url,
-            arm=self.arm,
-            state=self.state,
-            rate=self.rate,
-            realtime=self.realtime,
-            seed=seed,
-            noise=self.noise,
+        with self.open_robot(
+            seed,
             world=self.world(load_robot(self.robot), seed),
         ) as robot:
             with suppress(KeyboardInterrupt):  # the robot has stopped

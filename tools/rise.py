@@ -22,7 +22,6 @@ Side = Literal["front", "back"]
 LOOK = 0.5  # s that it takes to know on which side one lies
 SETTLE = 1.0  # s until a twin that was put down lies still
 STAND = 1.5  # s to stand in the end
-STILL = 0.3  # rad/s, of the base
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,19 +55,14 @@ class Rise(TwinOptions, Common):
         return 0 if all(row["up"] for row in rows) else 1
 
     def _one(self, seed: int) -> dict[str, Any]:
-        with Robot.open(
-            self.robot,
-            port=self.url,
-            arm=self.arm,
-            state=self.state,
-            rate=self.rate,
-            realtime=self.realtime,
-            seed=seed,
-            noise=self.noise,
+        with self.open_robot(
+            seed,
             world=self.world(load_robot(self.robot), seed),
         ) as robot:
             if self.lying is not None:
                 lay(robot, self.lying)
+            if (disturb := self.disturb()) is not None:
+                disturb(robot)
             began = robot.backend.clock.now()
             report: dict[str, Any] = {"robot": robot.description.name, "seed": seed}
             report |= {"up": False, "sides": [], "reason": "interrupted", "peak_load": 0.0}

@@ -9,7 +9,6 @@ import numpy as np
 from hal.errors import UsageError
 from tools.options import Common
 from tools.output import console, write_json
-from tools.robot import Robot
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,16 +22,7 @@ class Stand(Common):
         """Stand; returns the exit status."""
         if not 0.0 < self.seconds < inf:
             raise UsageError(f"--seconds {self.seconds:g}: give more than 0")
-        with Robot.open(
-            self.robot,
-            port=self.url,
-            arm=self.arm,
-            state=self.state,
-            rate=self.rate,
-            realtime=self.realtime,
-            seed=self.seed,
-            noise=self.noise,
-        ) as robot:
+        with self.open_robot(self.seed) as robot:
             with suppress(KeyboardInterrupt):  # the robot has stopped
                 robot.stand(self.seconds)
             report = robot.loop

@@ -94,15 +94,8 @@ class Walk(TwinOptions, Common):
 
     def _one(self, seed: int, *, show: bool) -> dict[str, Any]:
         """Walk one seed and return its result."""
-        with Robot.open(
-            self.robot,
-            port=self.url,
-            arm=self.arm,
-            state=self.state,
-            rate=self.rate,
-            realtime=self.realtime,
-            seed=seed,
-            noise=self.noise,
+        with self.open_robot(
+            seed,
             delay=self.delay,
             world=self.world(load_robot(self.robot), seed),
             known_ground=self.known_ground,

@@ -30,12 +30,12 @@ def test_nothing_wrong_is_reported_fresh_while_everything_goes_wrong(family: str
     assert tally.waited <= 1
 
 
-def test_readings_that_are_not_the_truth_are_found() -> None:
+def test_readings_that_are_not_the_truth_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     with SoakRig("sts", servos=4) as rig:
         soak = Soak(rig, 0.0, seed=0)
         rig.backend.read()
         soak.rig.turn()
-        soak.rig.turn = lambda: None  # type: ignore[method-assign]
+        monkeypatch.setattr(rig, "turn", lambda: None)
         before = rig.truth.copy()
         rig.truth = before + np.array([0.0, 500.0, 0.0, 0.0])
         tally = soak.run(4)

@@ -45,6 +45,11 @@ def test_one_that_stands_stands(windup: Windup) -> None:
     assert "stood already" in ran.err
 
 
+def test_one_that_stands_is_pushed_over_as_asked(windup: Windup) -> None:
+    ran = windup("rise", "op3", "--push", "4", "--push-at", "0.7", "--json", "-")
+    assert (ran.status, ran.json["up"], ran.json["reason"]) == (1, False, "fell")
+
+
 def test_what_does_not_get_up_ends_with_status_1_and_why(windup: Windup, my_op3: Path) -> None:
     path = my_op3 / "gaits" / "get_up_back.toml"
     text = path.read_text()
