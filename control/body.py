@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
+from control.momenta import Momenta
 from hal.controller import Outcomes
 from hal.errors import StateMissingError
 from hal.joints import Array
@@ -63,6 +64,16 @@ class Body:
             torso=data.xmat[None, self._torso, 2::3].copy(),
             contacts=observation.contacts[None],
             fell=np.zeros(1, dtype=bool),
+        )
+
+    def momenta(self) -> Momenta:
+        """Return the momenta of the whole body as it was last measured."""
+        data, base = self.data, self._base
+        return Momenta(
+            self.mass,
+            data.subtree_com[base].copy(),
+            data.subtree_linvel[base].copy(),
+            data.subtree_angmom[base].copy(),
         )
 
 

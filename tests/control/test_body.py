@@ -91,3 +91,15 @@ def test_without_a_base_nothing_can_be_said(model: mujoco.MjModel, body: Body) -
     with pytest.raises(StateMissingError) as error:
         body.measure(replace(observed(moving(model, 0)), base=None))
     assert str(error.value) == "the base state is missing; run with `--state estimated`"
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_momenta_are_mujocos(model: mujoco.MjModel, body: Body, seed: int) -> None:
+    data = moving(model, seed)
+    body.measure(observed(data))
+    momenta = body.momenta()
+    matrix = np.zeros((3, model.nv))
+    mujoco.mj_angmomMat(model, data, matrix, 1)
+    np.testing.assert_allclose(momenta.angular, matrix @ data.qvel, atol=1e-9)
+    np.testing.assert_allclose(momenta.com, data.subtree_com[1], atol=1e-12)
+    assert momenta.linear == pytest.approx(momenta.mass * momenta.velocity)

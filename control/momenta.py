@@ -1,0 +1,88 @@
+"""Momenta of the whole body, and the points on the ground that they ask for.
+
+Equations are those of Wu & Zordan 2010, "Goal-Directed Stepping with Momentum Control". World
+frame, z up; points are (2,) m on the ground.
+"""
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from hal.joints import Array
+
+GRAVITY = 9.81
+LEAST_LOAD = 0.3
+"""Part of the weight that is taken for the ground's force at least, in free fall as well."""
+
+
+@dataclass(frozen=True, slots=True)
+class Momenta:
+    """What the whole body does at one instant.
+
+    Attributes:
+        mass: kg.
+        com: (3,) centre of mass, m above the ground.
+        velocity: (3,) of it, m/s.
+        angular: (3,) angular momentum about it, kg m2/s.
+    """
+
+    mass: float
+    com: Array
+    velocity: Array
+    angular: Array
+
+    @property
+    def linear(self) -> Array:
+        """(3,) linear momentum, kg m/s."""
+        return self.mass * self.velocity
+
+    @property
+    def omega(self) -> float:
+        """Rate of the inverted pendulum of this height, sqrt(g / c_z), 1/s."""
+        return sqrt(GRAVITY / max(float(self.com[2]), 1e-3))
+
+
+def centre_of_pressure(body: Momenta, linear_rate: Array, angular_rate: Array) -> Array:
+    """Return where the ground pushes, from the rates of both momenta (Eq. 1, 2).
+
+    Args:
+        body: The momenta.
+        linear_rate: (3,) rate of the linear momentum, N.
+        angular_rate: (3,) rate of the angular momentum, N m.
+    """
+    load = _load(body, float(linear_rate[2]))
+    return _point(body, linear_rate / load, angular_rate / load)
+
+
+def desired_cp(body: Momenta, linear_damping: float, angular_damping: float) -> Array:
+    """Return the centre of pressure that would damp both momenta (Eq. 3 to 6).
+
+    Args:
+        body: The momenta.
+        linear_damping: d_l, 1/s; `Momenta.omega` makes it the capture point (section 4.3).
+        angular_damping: d_h, 1/s; 0 is the inverted pendulum.
+    """
+    linear_rate = -linear_damping * body.linear
+    return centre_of_pressure(body, linear_rate, -angular_damping * body.angular)
+
+
+def capture_point(body: Momenta) -> Array:
+    """Return the point over which the inverted pendulum comes to rest (Eq. 7)."""
+    return body.com[:2] + body.velocity[:2] / body.omega
+
+
+def _load(body: Momenta, rate: float) -> float:
+    """Return f_z, the vertical force of the ground, N; a body in the air has some all the same."""
+    weight = body.mass * GRAVITY
+    return max(rate + weight, LEAST_LOAD * weight)
+
+
+def _point(body: Momenta, linear: Array, angular: Array) -> Array:
+    height = body.com[2]
+    return np.array(
+        [
+            body.com[0] - linear[0] * height - angular[1],
+            body.com[1] - linear[1] * height + angular[0],
+        ]
+    )

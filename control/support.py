@@ -1,0 +1,52 @@
+"""The ground that a robot stands on: a polygon of contact points, or Kenwright's capsule."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from shapely import MultiPoint, Point
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import nearest_points
+
+from hal.joints import Array
+
+
+@dataclass(frozen=True)
+class SupportRegion:
+    """A convex region of the ground that the centre of pressure can be in.
+
+    Attributes:
+        shape: It, in the world's x and y, m; empty where nothing supports.
+    """
+
+    shape: BaseGeometry
+
+    @classmethod
+    def hull(cls, points: Array) -> "SupportRegion":
+        """Return the convex hull of contact points (p, 2) or (p, 3) m."""
+        return cls(MultiPoint(points[:, :2]).convex_hull)
+
+    @classmethod
+    def capsule(cls, feet: Array, radius: float) -> "SupportRegion":
+        """Return circles of `radius` m around feet (k, 2), and what is between two of them.
+
+        Kenwright 2012, section IV-A.2: a circle for one foot, a capsule for two.
+        """
+        return cls(MultiPoint(feet[:, :2]).convex_hull.buffer(radius))
+
+    def margin(self, point: Array) -> float:
+        """Return how far inside `point` (2,) is, m; negative outside, -inf without support."""
+        if self.shape.is_empty:
+            return -np.inf
+        place = Point(point[0], point[1])
+        away = self.shape.distance(place)
+        return -away if away > 0.0 else self.shape.boundary.distance(place)
+
+    def nearest(self, point: Array) -> Array:
+        """Return the point (2,) of the region that is nearest to `point` (2,)."""
+        return nearest_point(self.shape, point)
+
+
+def nearest_point(shape: BaseGeometry, point: Array) -> Array:
+    """Return the point (2,) of `shape` that is nearest to `point` (2,), itself where it is in."""
+    near, _ = nearest_points(shape, Point(point[0], point[1]))
+    return np.array([near.x, near.y])
