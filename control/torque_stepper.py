@@ -42,6 +42,8 @@ SPIN_DAMPING = 5.0
 """d_z of Eq. 11, 1/s."""
 STILL_DAMPING = 20.0
 """Damping of a standing foot, 1/s."""
+FOLLOW_DAMPING = 2.0
+"""Damping of every joint about the speed that was planned, N m s/rad."""
 TOUCH = 0.003
 """A foot has landed when its lowest corner is that near to the ground, m."""
 SHIFT = 0.6
@@ -138,9 +140,13 @@ class TorqueStepper:
             self._due = max(self._due + PERIOD, now)
             self._decide(now)
             self._plan = self._body.plan(self._objectives(now))
+            self._planned, self._speed = now, self.dynamics.velocity[6:].copy()
         command = JointCommand(np.zeros((5, len(self._joints))))
         command.position[:] = self._stance
         command.torque[:] = self._body.torque(self._plan)
+        # A light foot runs away between two plans where it meets ground that was not expected.
+        command.damping[:] = FOLLOW_DAMPING
+        command.velocity[:] = self._speed + (now - self._planned) * self._plan.acceleration[6:]
         return command
 
     def _decide(self, now: float) -> None:

@@ -19,6 +19,8 @@ from hal.joints import Array
 EDGES: Final = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 EQUAL: Final = 5
 """daqp's mark of a constraint that always holds with equality."""
+SOFT: Final = 8
+"""Its mark of one that may be broken at a cost: limits of torque, at speeds that no answer stops."""
 REGULAR: Final = 1e-4
 """Weight of every variable, so that the answer is the only one."""
 REACH: Final = 10.0
@@ -109,6 +111,7 @@ class WholeBody:
         high[-len(self._limit) :] += self._limit
         sense = np.zeros(len(low), dtype=np.int32)
         sense[len(hessian) : len(hessian) + 6] = EQUAL
+        sense[len(hessian) + 6 :] = SOFT
         answer, _, flag, _ = daqp.solve(hessian, -rows.T @ goals, matrix, high, low, sense)
         if flag < 1:
             raise WindupError(f"whole-body control found no accelerations (daqp: {flag})")
