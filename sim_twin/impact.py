@@ -1,5 +1,6 @@
 """How hard a twin's trunk hits the floor, and how hard its servos work, at every physics step."""
 
+from collections import deque
 from dataclasses import dataclass, field
 
 import mujoco
@@ -10,6 +11,8 @@ from sim_twin.twin import Twin
 
 HEADS = ("head", "neck")
 """In the names of the bodies that are no torso, and break as it does."""
+KNOCK = 0.01
+"""In so short a time a knock takes speed away, s."""
 
 
 @dataclass
@@ -21,6 +24,8 @@ class ImpactGauge:
         torso: Greatest speed into the floor of a point of the torso as it touched it, m/s; 0 when
             the torso never did.
         head: The same of the head and the neck.
+        knock: Greatest change of the torso's velocity within 10 ms, m/s: also what limbs that hit
+            the floor pass on to it.
         load: (n,) greatest torque of each joint's actuator, as a share of its largest (of a servo:
             at stall); 0 for joints without a limit.
         overload: The longest time without a break that one joint was above its largest torque, s.
@@ -29,6 +34,7 @@ class ImpactGauge:
     twin: Twin
     torso: float = field(default=0.0, init=False)
     head: float = field(default=0.0, init=False)
+    knock: float = field(default=0.0, init=False)
     overload: float = field(default=0.0, init=False)
 
     def __post_init__(self) -> None:
@@ -41,6 +47,8 @@ class ImpactGauge:
         pairs = list(zip(solid.tolist(), names, strict=True))
         self._torso = {geom for geom, name in pairs if name == twin.robot.torso}
         self._head = {geom for geom, name in pairs if any(part in name for part in HEADS)}
+        self._body = twin.model.body(twin.robot.torso).id
+        self._past: deque[Array] = deque(maxlen=1 + round(KNOCK / twin.timestep))
         self._before: dict[int, tuple[Array, Array]] = {}
         self._also, twin.on_step = twin.on_step, self._look
 
@@ -64,6 +72,8 @@ class ImpactGauge:
             if geom in self._before:
                 self._touched(geom, contact.pos)
         self._before = {geom: self._motion(geom) for geom in self._torso | self._head}
+        self._past.append(self._velocity(mujoco.mjtObj.mjOBJ_BODY, self._body)[3:])
+        self.knock = max(self.knock, float(np.linalg.norm(self._past[-1] - self._past[0])))
         self._work()
 
     def _touched(self, geom: int, point: Array) -> None:
@@ -76,11 +86,15 @@ class ImpactGauge:
             self.head = max(self.head, speed)
 
     def _motion(self, geom: int) -> tuple[Array, Array]:
-        """Return a geom's velocity (6,), rad/s before m/s, and its centre (3,), in the world."""
-        twin, velocity = self.twin, np.empty(6)
-        kind = mujoco.mjtObj.mjOBJ_GEOM
-        mujoco.mj_objectVelocity(twin.model, twin.data, kind, geom, velocity, 0)
-        return velocity, twin.data.geom_xpos[geom].copy()
+        """Return a geom's velocity (6,) and its centre (3,), in the world."""
+        velocity = self._velocity(mujoco.mjtObj.mjOBJ_GEOM, geom)
+        return velocity, self.twin.data.geom_xpos[geom].copy()
+
+    def _velocity(self, kind: mujoco.mjtObj, index: int) -> Array:
+        """Return the velocity (6,) of an object at its centre in the world, rad/s before m/s."""
+        velocity = np.empty(6)
+        mujoco.mj_objectVelocity(self.twin.model, self.twin.data, kind, index, velocity, 0)
+        return velocity
 
     def _work(self) -> None:
         share = np.abs(self.twin.data.actuator_force) / self._limit

@@ -10,6 +10,7 @@ def fall_result(gauge: ImpactGauge) -> dict[str, Any]:
     return {
         "torso_impact_m_s": gauge.torso,
         "head_impact_m_s": gauge.head,
+        "torso_knock_m_s": gauge.knock,
         "peak_load": float(gauge.load.max()),
         "peak_joint": gauge.busiest,
         "overload_s": gauge.overload,
@@ -20,5 +21,6 @@ def fall_said(gauge: ImpactGauge) -> str:
     """Return the same for people."""
     return (
         f"torso hits the floor at {gauge.torso:.2f} m/s, head at {gauge.head:.2f} m/s; "
+        f"the torso loses {gauge.knock:.2f} m/s in 10 ms at most; "
         f"peak load {100.0 * gauge.load.max():.0f} % of stall at {gauge.busiest}"
     )
