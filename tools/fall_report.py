@@ -17,10 +17,11 @@ def fall_result(gauge: ImpactGauge) -> dict[str, Any]:
     }
 
 
-def fall_said(gauge: ImpactGauge) -> str:
-    """Return the same for people."""
+def fall_said(result: dict[str, Any]) -> str:
+    """Return the same for people, from a result with it."""
     return (
-        f"torso hits the floor at {gauge.torso:.2f} m/s, head at {gauge.head:.2f} m/s; "
-        f"the torso loses {gauge.knock:.2f} m/s in 10 ms at most; "
-        f"peak load {100.0 * gauge.load.max():.0f} % of stall at {gauge.busiest}"
+        f"torso hits the floor at {result['torso_impact_m_s']:.2f} m/s, "
+        f"head at {result['head_impact_m_s']:.2f} m/s; "
+        f"the torso's speed changes by {result['torso_knock_m_s']:.2f} m/s in 10 ms at most; "
+        f"peak load {100.0 * result['peak_load']:.0f} % of stall at {result['peak_joint']}"
     )

@@ -53,7 +53,7 @@ class Stand(TwinOptions, Common):
             f"{result['largest_error_joint']} by {error.max():.1f} degrees"
         )
         if gauge is not None and result["fell"]:
-            console.print(fall_said(gauge))
+            console.print(fall_said(result))
         write_json(self.json, "stand", result)
         if report.reason == "interrupted":
             return 130

@@ -45,6 +45,11 @@ def test_a_head_is_told_from_a_torso(op3: RobotDescription) -> None:
     assert gauge.torso < gauge.head
 
 
+def test_a_knock_is_what_the_torso_loses_whatever_hit_the_floor(op3: RobotDescription) -> None:
+    gauge, _ = dropped(op3, 0.1)
+    assert gauge.knock > 0.7 * gauge.torso
+
+
 def test_a_robot_that_stands_hits_nothing(op3: RobotDescription) -> None:
     twin = Twin(op3)
     gauge = ImpactGauge(twin)

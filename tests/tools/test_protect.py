@@ -57,3 +57,14 @@ def test_a_way_to_fall_needs_a_pose_and_a_reach(windup: Windup, my_op3: Path) ->
     assert "unknown pose 'fall_bakc'; did you mean 'fall_back'?" in windup("stand", my_op3).err
     file.write_text("\n".join(line for line in text.splitlines() if not line.startswith("reach")))
     assert "fall.way: needs fall.reach" in windup("stand", my_op3).err
+
+
+def test_windup_push_says_how_hard_it_fell(windup: Windup) -> None:
+    line = "push op3 --impulse 4 --way hold --stance stand --at 0.3 --json -".split()
+    soft, stiff = windup(*line), windup(*line, "--no-protect")
+    assert (soft.status, stiff.status) == (1, 1)
+    assert (soft.json["survived"], soft.json["reason"]) == (False, "fell")
+    assert trunk(soft.json) < 0.7 * trunk(stiff.json)
+    assert soft.json["torso_knock_m_s"] < stiff.json["torso_knock_m_s"]
+    assert soft.json["overload_s"] == 0.0
+    assert "torso hits the floor at" in soft.err
