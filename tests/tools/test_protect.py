@@ -60,7 +60,20 @@ def test_a_way_to_fall_needs_a_pose_and_a_reach(windup: Windup, my_op3: Path) ->
 
 
 def test_windup_push_says_how_hard_it_fell(windup: Windup) -> None:
-    line = "push op3 --impulse 4 --way hold --stance stand --at 0.3 --json -".split()
+    line = [
+        "push",
+        "op3",
+        "--impulse",
+        "4",
+        "--way",
+        "hold",
+        "--stance",
+        "stand",
+        "--at",
+        "0.3",
+        "--json",
+        "-",
+    ]
     soft, stiff = windup(*line), windup(*line, "--no-protect")
     assert (soft.status, stiff.status) == (1, 1)
     assert (soft.json["survived"], soft.json["reason"]) == (False, "fell")
