@@ -201,9 +201,9 @@ class DirectedSteps:
         self._com = begin[0] + s * (end[0] - begin[0])
         pace = 30.0 * (part * (1.0 - part)) ** 2 / self._seconds()
         self._com_speed = pace * (end[0] - begin[0])
-        self._height, self._yaw, self._share = (
-            begin[k] + s * (end[k] - begin[k]) for k in (1, 2, 3)
-        )
+        self._height = begin[1] + s * (end[1] - begin[1])
+        self._yaw = begin[2] + s * (end[2] - begin[2])
+        self._share = begin[3] + s * (end[3] - begin[3])
 
     def _base(self, dt: float) -> Pose:
         """Return where the base should be for that, with what is lasting made up for."""

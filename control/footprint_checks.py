@@ -19,7 +19,9 @@ CLEAR = 0.004
 CLOSE, FLAT = 0.002, 0.01
 """How far from its place a foot within reach may be, m and rad."""
 SEARCH = 60
+"""Most iterations of the inverse kinematics."""
 STEP = 0.001
+"""How finely a place beside the other foot is looked for, m."""
 
 
 @dataclass(frozen=True)
@@ -84,8 +86,8 @@ class FootprintChecks:
             while not self.clear(foot, beside):
                 beside[1] += self.side(foot) * STEP
             raise UsageError(
-                f"{name} to {_said(target)} crosses {other} or steps on it; there "
-                f"{beside[1]:.3f} m to the side, or farther, is beside it"
+                f"{name} to {_said(target)} crosses {other} or steps on it; "
+                f"{_said(beside)} is beside it"
             )
         way = _at(self.soles[foot], start).union(_at(self.soles[foot], target)).convex_hull
         if way.distance(self.soles[1 - foot]) <= 0.0:
@@ -97,8 +99,8 @@ class FootprintChecks:
         if self.within_reach(foot, target):
             return
         part = 0.0
-        for _ in range(8):
-            farther = part + 2.0 ** -(_ + 1)
+        for k in range(1, 9):
+            farther = part + 2.0**-k
             if self.within_reach(foot, start + farther * (target - start)):
                 part = farther
         nearest = start + part * (target - start)

@@ -17,7 +17,7 @@ from hal.joints import Array
 Frame = Literal["stance", "start"]
 
 
-class StepRecord(Record, kw_only=True):
+class StepRecord(Record, frozen=True, kw_only=True):
     """One `[[step]]` of a footprint file; metres, degrees and seconds."""
 
     foot: str
@@ -27,7 +27,7 @@ class StepRecord(Record, kw_only=True):
     duration: float | None = None
 
 
-class FootprintFile(Record, kw_only=True):
+class FootprintFile(Record, frozen=True, kw_only=True):
     """A footprint file.
 
     Attributes:
