@@ -175,17 +175,24 @@ class DirectedWalk:
 
 
 def walk_prints(robot: Robot, controller: DirectedSteps) -> DirectedWalk:
-    """Walk footprints, and look where the feet come down."""
+    """Walk footprints, and look where the feet come down.
+
+    A foot is looked at once it bears the weight, so that its slip counts; and seen from where the
+    other one stood when it came down, for that one moves as soon as it bears nothing.
+    """
     walk = DirectedWalk(feet_of(robot.description), controller.prints)
     origin: list[Array] = []
+    stances: list[Array] = []
 
     def until(observation: Observation) -> str | None:
+        places = _places(robot, controller)
         if not origin:
-            origin.append(between(*_places(robot, controller)))
+            origin.append(between(*places))
+        while controller.landed > len(stances):
+            stances.append(places[1 - controller.prints[len(stances)].foot])
         while controller.stood > len(walk.falls):
             wanted = controller.prints[len(walk.falls)]
-            places = _places(robot, controller)
-            seen = origin[0] if wanted.frame == "start" else places[1 - wanted.foot]
+            seen = origin[0] if wanted.frame == "start" else stances[len(walk.falls)]
             walk.falls.append(Footfall(wanted, seen_from(seen, places[wanted.foot])))
         return "done" if controller.finished else None
 
