@@ -85,7 +85,7 @@ def test_a_crossing_later_in_a_file_is_found_before_anything_moves(op3: RobotDes
         Footprint(0, np.array([0.05, 0.12, 0.0]), "start"),
         Footprint(1, np.array([0.05, 0.08, 0.0]), "start"),
     ]
-    with pytest.raises(UsageError, match="step 2: right_foot .* crosses left_foot"):
+    with pytest.raises(UsageError, match=r"step 2: right_foot .* crosses left_foot"):
         build_checks(op3).check(prints)
 
 
