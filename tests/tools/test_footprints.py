@@ -5,11 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.footprints import Footprint
+from control.footprints import Footprint, read_footprints
 from hal.errors import UsageError
 from robots import RobotDescription
 from tests.tools.conftest import Windup
-from tools.directed import build_checks
+from tools.directed import build_checks, feet_of
 
 
 @pytest.mark.parametrize("more", [(), ("--state", "estimated"), ("--port", "twin://op3")])
@@ -96,3 +96,10 @@ def test_what_is_said_to_be_in_reach_is(op3: RobotDescription) -> None:
     x, y = (float(part) for part in str(caught.value).split("(")[2].split(")")[0].split(","))
     checks.check([Footprint(0, np.array([x - 1e-3, y, 0.0]))])
     assert x > 0.05
+
+
+def test_the_example_turns_round_within_reach(op3: RobotDescription) -> None:
+    path = Path(__file__).parents[2] / "docs" / "turn_left.toml"
+    prints = read_footprints(path, feet_of(op3))
+    build_checks(op3).check(prints)
+    assert sum(np.degrees(one.place[2]) for one in prints) == pytest.approx(90.0)
