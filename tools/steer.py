@@ -8,6 +8,7 @@ from control.guide import Steady, WalkCommand
 from control.incline import InclineControl
 from control.regulation import RegulationVariable
 from control.side import SideControl
+from control.slip import SlipControl
 from control.speed import SpeedControl
 from control.steering import Steering
 from control.style import Styling
@@ -42,6 +43,7 @@ def steering_of(
         style=Styling(gait, spells=styles_of_walk(options)),
         course=None if heading is None else Course(heading, turn),
         incline=None if options.open_loop else _incline(gait, variables),
+        slip=None if options.open_loop else _slip(gait),
     )
 
 
@@ -51,3 +53,12 @@ def _incline(gait: Gait, variables: list[RegulationVariable]) -> InclineControl 
     if law is None or law.variable not in names:
         return None
     return InclineControl(law, names.index(law.variable))
+
+
+def _slip(gait: Gait) -> SlipControl | None:
+    """Return what feels slippery ground, where the gait wants it."""
+    law = gait.file.slip
+    if law is None:
+        return None
+    names = [state.name for state in gait.file.state]
+    return SlipControl(law, frozenset(names.index(name) for name in law.states))
