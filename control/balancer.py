@@ -71,11 +71,17 @@ class Balancer:
     replans: int = field(default=0, init=False)
     records: list[StepRecord] = field(default_factory=list, init=False)
     late: int = field(default=0, init=False)
+    _start: StepStart | None = field(default=None, init=False)
 
     @property
     def steps(self) -> int:
         """Number of finished steps."""
         return len(self.records)
+
+    @property
+    def begun(self) -> int:
+        """Number of steps that were planned: the finished ones, and the one it is at."""
+        return len(self.records) + (self._start is not None)
 
     def reset(self, observation: Observation) -> None:
         """Begin at the graph's first state.
@@ -94,7 +100,7 @@ class Balancer:
         self._hold = JointCommand.hold(self.joints, observation.joints.position)
         scale = np.zeros((1, len(self.gait.perturbations)))
         self._tracker = PoseTracker(self.gait, self.contacts, scale, None, self.torso_servo)
-        self._start: StepStart | None = None
+        self._start = None
         self._asked = False
         self._kept: dict[int, Array] = {}
         self._turned = 0.0

@@ -165,10 +165,19 @@ class Twin:
         Raises:
             UnknownNameError: The robot has no such body.
         """
-        names = [self.model.body(i).name for i in range(1, self.model.nbody)]
-        if push.body and push.body not in names:
-            raise UnknownNameError("body", push.body, names)
+        if push.body:
+            self.check_body(push.body)
         self._pushes.append(push)
+
+    def check_body(self, name: str) -> None:
+        """Raise when the robot has no body of this name.
+
+        Raises:
+            UnknownNameError: It has none.
+        """
+        names = [self.model.body(i).name for i in range(1, self.model.nbody)]
+        if name not in names:
+            raise UnknownNameError("body", name, names)
 
     def step(self, steps: int) -> None:
         """Advance the physics by `steps` of its time steps.

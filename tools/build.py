@@ -31,9 +31,6 @@ from tools.steer import steering_of
 from tools.step_models import memory_for
 from tools.walk_options import WalkOptions
 
-RARELY = 2.0
-"""How much more it takes to plan again where a step should need one rollout."""
-
 
 def body_of(robot: RobotDescription) -> Body:
     """Return the kinematics of a robot."""
@@ -152,10 +149,10 @@ def _footfalls(
 
 
 def _shaken(balance: Balance, options: WalkOptions, one_rollout: bool) -> Shaken | None:
-    """Return who says when to plan again; where one rollout a step is the rule, less often."""
-    if balance.replan is None or options.rv:
+    """Return who says when to plan again in mid-step; nobody where a step may take one rollout."""
+    if balance.replan is None or options.rv or one_rollout:
         return None
-    return Shaken(balance.replan * (RARELY if one_rollout else 1.0))
+    return Shaken(balance.replan)
 
 
 def _resampled(balance: Balance, sampling: Sampling) -> Balance:

@@ -18,6 +18,7 @@ from tools.health import Health
 from tools.options import Common
 from tools.output import check_writable, console, error_record, write_json
 from tools.play import Play
+from tools.push import Push
 from tools.reproduce import Reproduce
 from tools.rise import Rise
 from tools.robots_list import Robots
@@ -33,6 +34,7 @@ Command = (
     | Annotated[Play, tyro.conf.subcommand("play")]
     | Annotated[Stand, tyro.conf.subcommand("stand")]
     | Annotated[Rise, tyro.conf.subcommand("rise")]
+    | Annotated[Push, tyro.conf.subcommand("push")]
     | Annotated[Stop, tyro.conf.subcommand("stop")]
     | Annotated[Scan, tyro.conf.subcommand("scan")]
     | Annotated[Emulate, tyro.conf.subcommand("emulate")]

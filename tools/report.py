@@ -147,7 +147,7 @@ class WalkReport:
             "wall_time_s": loop.wall_time,
             "rollouts": watch.count,
             "rollout_time_s": watch.seconds,
-            "rollouts_a_step": watch.count / max(walker.steps, 1),
+            "rollouts_a_step": watch.count / max(walker.begun, 1),
             "replans": walker.replans,
             "step_model": self.counters,
             "tick_ms": loop.tick_ms(),

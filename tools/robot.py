@@ -15,6 +15,7 @@ from control.play import GraphPlayer, PoseHolder
 from control.staged import StagedPlayer
 from hal.controller import Stopwatch
 from hal.errors import UnknownNameError, UsageError
+from hal.joints import Array
 from hal.observation import Observation
 from robots import load_robot
 from sim_twin.clearance import FootClearance
@@ -271,7 +272,10 @@ class Robot(Session):
         poses = self.description.poses
         if name is not None and name not in poses:
             raise UnknownNameError(f"pose of {self.description.name}", name, poses)
-        pose = self.description.stance if name is None else poses[name]
+        self.start_in(self.description.stance if name is None else poses[name])
+
+    def start_in(self, pose: Array) -> None:
+        """Put a fresh twin into a pose (n,) rad, with noise; let anything else move there."""
         if not self.stack.wired and self.twin.time == 0.0:
             self.twin.reset(pose, noise=self.noise, seed=self.seed)
         else:

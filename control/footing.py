@@ -1,0 +1,168 @@
+"""The feet of an observed robot: where they stand, and joint angles that put them elsewhere."""
+
+from collections.abc import Sequence
+from math import atan2, cos, sin
+
+import mujoco
+import numpy as np
+
+from control.body import Body, heading
+from control.limb_ik import LimbIk, Pose
+from control.momenta import Momenta
+from control.soles import Soles
+from control.support import SupportRegion
+from hal.errors import StateMissingError
+from hal.joints import Array
+from hal.observation import BaseState, Observation
+
+DOWN = 0.004
+"""A foot is down when its lowest point is not higher than this above the lowest of all, m."""
+ITERATIONS = 2
+"""Of the inverse kinematics in a tick; each one begins where the last tick ended."""
+
+
+class Footing:
+    """Where a robot's feet are, and how to put them and the base where they should be.
+
+    Args:
+        body: Kinematics of the robot.
+        base: Name of the body with the free joint.
+        sites: Names of the sites at the soles' centres, one a foot.
+        soles: Where the soles can touch the ground.
+        stance: (n,) rad, joint positions of the pose to stand in, with both soles flat.
+
+    Attributes:
+        momenta: Momenta of the whole body.
+        base: Pose of the base.
+        yaw: Heading of the base, rad.
+        feet: Poses of the soles' centres.
+        places: (k, 2) where these are on the ground, m.
+        down: Which feet are on the ground.
+        height: Of the base above the soles in the stance, m.
+    """
+
+    momenta: Momenta
+    base: Pose
+    yaw: float
+    feet: list[Pose]
+    places: Array
+    down: list[bool]
+
+    def __init__(
+        self, body: Body, base: str, sites: Sequence[str], soles: Soles, stance: Array
+    ) -> None:
+        self._body, self._soles = body, soles
+        self._limbs = [LimbIk(body.model, base, site) for site in sites]
+        self._last = [stance.copy() for _ in sites]
+        homes = [limb.forward(stance) for limb in self._limbs]
+        front = homes[0].rotation
+        self._level = turn_about_y(atan2(front[0, 2], front[2, 2])).T
+        self.homes = [self._level @ home.position for home in homes]
+        self.height = -float(np.mean([home[2] for home in self.homes]))
+        self._offset = -np.mean([home[:2] for home in self.homes], axis=0)
+
+    def look(self, observation: Observation) -> None:
+        """Measure everything anew.
+
+        Raises:
+            StateMissingError: The observation has no base.
+        """
+        self._body.measure(observation)
+        state = observation.base
+        if state is None:
+            raise StateMissingError("the base state is missing; run with `--state estimated`")
+        data = self._body.data
+        self.momenta = self._body.momenta()
+        self.base = Pose(state.position, quaternion_matrix(state.orientation))
+        self._state = state
+        self.yaw = float(heading(state.orientation))
+        sites = self._body.soles
+        self.feet = [
+            Pose(data.site_xpos[site].copy(), data.site_xmat[site].reshape(3, 3).copy())
+            for site in sites
+        ]
+        self.places = data.site_xpos[sites, :2].copy()
+        up = self.base.rotation[2]
+        self._soles.update(observation.joints.position, observation.joints.velocity, up)
+        self._ground = self.base.position + self._soles.position @ self.base.rotation.T
+        heights = [self._ground[self._soles.foot == k, 2].min() for k in range(len(sites))]
+        self.down = [height < min(heights) + DOWN for height in heights]
+
+    def support(self, feet: Sequence[int]) -> SupportRegion:
+        """Return the hull of all points of these feet's soles, whether or not they bear load."""
+        return SupportRegion.hull(self._ground[np.isin(self._soles.foot, feet)])
+
+    def home(self) -> Array:
+        """Return where (2,) m the base is in the stance, over the feet of now."""
+        return self.places.mean(axis=0) + turn(self.yaw)[:2, :2] @ self._offset
+
+    def upright(self, place: Array, pitch: float = 0.0) -> Pose:
+        """Return the stance's pose of the base over a place, in the heading of now.
+
+        Args:
+            place: (2,) m.
+            pitch: How far it leans forward from there, rad.
+        """
+        position = np.array([place[0], place[1], self.height])
+        return Pose(position, turn(self.yaw) @ turn_about_y(pitch) @ self._level)
+
+    def ahead(self, time: float) -> Pose:
+        """Return where the base will be in `time` s if it goes on as it does."""
+        return ahead(self._state, time)
+
+    def stand(self, goals: Array, foot: int, base: Pose) -> None:
+        """Set the joints of a leg in `goals` (n,) so that `base` is over its sole, flat as it is.
+
+        Args:
+            goals: rad, changed in place.
+            foot: Which foot.
+            base: Where the base should be, as far above the sole as above the ground.
+        """
+        sole = self.feet[foot]
+        level = turn(atan2(sole.rotation[1, 0], sole.rotation[0, 0]))
+        place = np.array([sole.position[0], sole.position[1], 0.0])
+        self._solve(goals, foot, Pose(place, level).seen_from(base))
+
+    def put(self, goals: Array, foot: int, at: Array, base: Pose) -> None:
+        """Set the joints of a leg in `goals` (n,) so that its sole is flat at `at` (3,) m.
+
+        Args:
+            goals: rad, changed in place.
+            foot: Which foot.
+            at: Where its sole's centre should be, in the heading of now.
+            base: Where the base will be by then.
+        """
+        self._solve(goals, foot, Pose(at, turn(self.yaw)).seen_from(base))
+
+    def _solve(self, goals: Array, foot: int, target: Pose) -> None:
+        limb = self._limbs[foot]
+        angles = limb.solve(target, self._last[foot], ITERATIONS)
+        self._last[foot][limb.joints] = angles
+        goals[limb.joints] = angles
+
+
+def quaternion_matrix(orientation: Array) -> Array:
+    """Return the rotation matrix (3, 3) of a quaternion (4,) wxyz."""
+    matrix = np.empty(9)
+    mujoco.mju_quat2Mat(matrix, orientation)
+    return matrix.reshape(3, 3)
+
+
+def ahead(state: BaseState, time: float) -> Pose:
+    """Return where a base will be in `time` s if it goes on as it does."""
+    orientation = state.orientation.copy()
+    mujoco.mju_quatIntegrate(orientation, state.angular_velocity, time)
+    position = state.position + time * state.linear_velocity
+    return Pose(position, quaternion_matrix(orientation))
+
+
+def turn(yaw: float) -> Array:
+    """Return the rotation matrix (3, 3) of a turn about the vertical, rad."""
+    c, s = cos(yaw), sin(yaw)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def turn_about_y(pitch: float) -> Array:
+    """Return the rotation matrix (3, 3) of a turn about the y axis, rad; positive leans forward."""
+    c, s = cos(pitch), sin(pitch)
+    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])

@@ -1,0 +1,89 @@
+"""`stepping.toml` of a robot: how it steps when a push asks for it. SI units."""
+
+from typing import Annotated
+
+from msgspec import Meta
+
+from control.step_decision import Damping, Reach, StepRule, find_rule
+from hal.config import Record
+
+Part = Annotated[float, Meta(ge=0.0, le=1.0)]
+Seconds = Annotated[float, Meta(ge=0.0)]
+Metres = Annotated[float, Meta(ge=0.0)]
+
+
+class ReachTable(Record, frozen=True):
+    """Where a foot may be put, seen from the other one, m; see `control.step_decision.Reach`."""
+
+    back: Annotated[float, Meta(le=0.0)]
+    front: Metres
+    near: Metres
+    far: Metres
+
+    def reach(self) -> Reach:
+        """Return what the decision works with."""
+        return Reach(self.back, self.front, self.near, self.far)
+
+
+class RuleTable(Record, frozen=True):
+    """A rule's dampings, omega; without `where` the foot goes where the capture point will be."""
+
+    when: Damping
+    where: Damping | None = None
+
+
+class Stepping(Record, frozen=True):
+    """How a robot with position servos steps.
+
+    Attributes:
+        stance: Name of the pose that it stands in, soles flat.
+        reach: Where a foot may be put.
+        duration: Of a step, s.
+        lift: How high the foot is lifted, m.
+        up: The part of the step after which the foot comes down again.
+        early: The part of the step after which a foot that touches has landed.
+        update: The part of the step in which the target is still decided anew.
+        dwell: Time on both feet between two steps, s.
+        settle: Time in which the base comes back over the feet, s.
+        lead: Goals are for so much later, because servos lag, s.
+        slack: How far the trigger point may be outside the support, m; negative is inside.
+        gain: How far the foot goes beyond or short of what the rule says, from the pivot.
+        balance: How far the base is moved against the capture point, in parts of the way of that
+            point from the middle of the feet; both feet press on their edges.
+        trunk: How much the trunk turns backward as the capture point runs away forward, while
+            one foot is in the air, rad/m: it keeps room for the hip that swings.
+        way: How pushes are met where nobody says it: the name of a rule.
+        rule: Other dampings of the rules, by their names; see `control.step_decision.StepRule`.
+        patience: How long a robot stands still before it takes a comfort step, s.
+        comfort: How far a foot may stand from its nominal place, m.
+    """
+
+    stance: str
+    reach: ReachTable
+    duration: Annotated[float, Meta(gt=0.0)]
+    lift: Metres
+    up: Part = 0.5
+    early: Part = 0.6
+    update: Part = 0.5
+    dwell: Seconds = 0.05
+    settle: Seconds = 0.4
+    lead: Seconds = 0.0
+    slack: float = 0.0
+    gain: Annotated[float, Meta(gt=0.0)] = 1.0
+    balance: float = 0.0
+    trunk: float = 0.0
+    way: str = "momentum"
+    rule: dict[str, RuleTable] = {}
+    patience: Seconds = 0.6
+    comfort: Metres = 0.015
+
+    def find_rule(self, name: str) -> StepRule:
+        """Return a rule by its name, with the dampings of this robot where it has its own.
+
+        Raises:
+            UnknownNameError: There is no such rule.
+        """
+        rule = find_rule(name)
+        if (own := self.rule.get(name)) is None:
+            return rule
+        return StepRule(name, own.when, own.where)

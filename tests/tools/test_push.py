@@ -1,0 +1,83 @@
+import json
+from pathlib import Path
+
+import pytest
+
+from tools.cli import run
+from tools.push import Push
+from tools.push_envelope import Search, find_edge
+
+
+def pushed(capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, str]:
+    status = run(["push", "op3", *more])
+    return status, " ".join(capsys.readouterr().err.split())
+
+
+def test_a_light_push_is_stood_without_a_step(tmp_path: Path) -> None:
+    out = tmp_path / "push.json"
+    assert run(["push", "op3", "--impulse", "0.7", "--json", str(out)]) == 0
+    row = json.loads(out.read_text())
+    assert row["survived"]
+    assert row["steps"] == 0
+    assert row["settling_s"] < 2.0
+    assert row["astray_m"] < 0.015
+
+
+def test_steps_survive_what_a_stiff_pose_does_not(tmp_path: Path) -> None:
+    out = tmp_path / "push.json"
+    line = ["push", "op3", "--impulse", "1.8", "--state", "estimated", "--json", str(out)]
+    assert run([*line, "--way", "hold"]) == 1
+    assert not json.loads(out.read_text())["survived"]
+    assert run(line) == 0
+    assert json.loads(out.read_text())["steps"] > 0
+
+
+def test_random_directions_are_those_of_the_seed() -> None:
+    push = Push(robot="op3", impulse=1.0, direction="random", times=3)
+    first, again, other = (push.plan(seed).directions for seed in (3, 3, 4))
+    assert first == again != other
+    assert len(set(first)) == 3
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ([], "--envelope"),
+        (["--impulse", "-1"], "0 N s or more"),
+        (["--impulse", "1", "--body", "tail"], "unknown body 'tail'"),
+        (["--impulse", "1", "--height", "3"], "above the floor"),
+        (["--impulse", "1", "--way", "magic"], "predictive"),
+        (["--impulse", "1", "--stance", "lotus"], "lotus"),
+        (["--impulse", "1", "--duration", "0"], "more than 0 s"),
+        (["--impulse", "1", "--gains", "0"], "above 0"),
+    ],
+)
+def test_what_cannot_be_is_said_in_one_line(
+    capsys: pytest.CaptureFixture[str], more: list[str], said: str
+) -> None:
+    status, words = pushed(capsys, *more)
+    assert status == 2
+    assert said in words
+
+
+def test_a_robot_that_cannot_step_is_told_who_can(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["push", "human12", "--impulse", "1"]) == 2
+    assert "op3" in capsys.readouterr().err
+
+
+def test_the_edge_is_the_last_before_the_first_fall(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Search, "survives", lambda self, impulse: {"survived": impulse < 0.93})
+    edge = find_edge(Search(Push(robot="op3"), "hold", 0.0, 1.0))
+    assert edge.impulse == pytest.approx(0.9)
+
+
+def test_the_envelope_is_a_table_a_picture_and_json(tmp_path: Path) -> None:
+    out, picture = tmp_path / "envelope.json", tmp_path / "envelope.png"
+    ways = ["--ways", "hold", "--directions", "1", "--stance", "stand", "--jobs", "1"]
+    assert (
+        run(["push", "op3", "--envelope", *ways, "--json", str(out), "--plot", str(picture)]) == 0
+    )
+    hold = json.loads(out.read_text())["ways"]["hold"]
+    assert 0.6 < hold["worst"] < 1.4
+    assert [row["survived"] for row in hold["trials"]].count(False) >= 1
+    assert picture.stat().st_size > 1000

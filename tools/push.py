@@ -1,0 +1,138 @@
+"""`windup push`: push a standing twin, and see whether it stays up."""
+
+from contextlib import suppress
+from dataclasses import dataclass
+from math import inf
+from typing import Any, Literal
+
+import numpy as np
+
+from hal.errors import UsageError
+from robots import load_robot
+from tools.options import Common
+from tools.output import console, write_json
+from tools.push_envelope import Envelope
+from tools.push_trial import PushPlan, push_robot
+from tools.stepping import WAYS, check_way, find_stepping, stepping_stance
+from tools.twin_options import WorldOptions
+
+
+@dataclass(frozen=True, kw_only=True)
+class Push(WorldOptions, Common):
+    """Push a standing robot; it survives when only feet touch the ground and it comes to rest."""
+
+    impulse: float | None = None
+    """Impulse, N s."""
+    direction: float | Literal["random"] = 0.0
+    """Where to, degrees: 0 forward, 90 to the left; random draws one for each push."""
+    duration: float = 0.1
+    """How long a push lasts, s."""
+    height: float | None = None
+    """Where it meets the body, m above the ground; its centre of mass by default."""
+    body: str | None = None
+    """Which body is pushed; the torso by default."""
+    at: float = 1.0
+    """When the first push begins, s."""
+    times: int = 1
+    """How many pushes."""
+    every: float = 1.0
+    """From one push to the next, s."""
+    way: str | None = None
+    """How the robot meets it: hold, feet, capture, ip, momentum or predictive; that of its stepping
+    by default."""
+    stance: str | None = None
+    """Pose to stand in; that of the robot's stepping by default."""
+    delay: float | None = None
+    """Delay of the servos, s."""
+    envelope: bool = False
+    """Find the largest impulse that it survives in each direction, for each of --ways."""
+    directions: int = 16
+    """Directions of the envelope."""
+    ways: tuple[str, ...] = WAYS
+    """Ways of the envelope."""
+    jobs: int | None = None
+    """Processes of the envelope; one a core by default."""
+
+    def run(self) -> int:
+        """Push; returns the exit status."""
+        self._check()
+        if self.envelope:
+            return Envelope(self).run()
+        rows = []
+        for seed in self.all_seeds:
+            rows.append(self.one(seed, self.plan(seed)))
+            console.print(said(rows[-1]), markup=False, soft_wrap=True)
+            if rows[-1]["reason"] == "interrupted":
+                break
+        good = sum(row["survived"] for row in rows)
+        if self.seeds is not None:
+            console.print(f"{good} of {len(rows)} seeds stayed up")
+        result = rows[0] if self.seeds is None else {"robot": self.robot, "rows": rows}
+        write_json(self.json, "push", result)
+        if rows[-1]["reason"] == "interrupted":
+            return 130
+        return 0 if good == len(rows) else 1
+
+    def one(self, seed: int, plan: PushPlan) -> dict[str, Any]:
+        """Return the result of one trial."""
+        world = self.world(load_robot(self.robot), seed)
+        with self.open_robot(seed, delay=self.delay, world=world) as robot:
+            result: dict[str, Any] = {"reason": "interrupted", "survived": False, "seed": seed}
+            with suppress(KeyboardInterrupt):
+                result = push_robot(robot, plan)
+        return result
+
+    def plan(self, seed: int) -> PushPlan:
+        """Return what is done with a seed."""
+        impulse = self.impulse or 0.0
+        directions: list[float] = [0.0 if self.direction == "random" else self.direction]
+        directions *= self.times
+        if self.direction == "random":
+            draw = np.random.default_rng([11, seed])
+            directions = draw.uniform(-180.0, 180.0, self.times).round(1).tolist()
+        return PushPlan(
+            self.way or find_stepping(load_robot(self.robot)).way,
+            impulse,
+            tuple(directions),
+            self.duration,
+            self.height,
+            self.at,
+            self.every,
+            self.body,
+            self.stance,
+        )
+
+    def _check(self) -> None:
+        """Raise what cannot be, before anything is opened."""
+        if self.envelope == (self.impulse is not None):
+            raise UsageError("give --impulse N_S, or --envelope to find the largest ones")
+        if self.impulse is not None and not 0.0 <= self.impulse < inf:
+            raise UsageError(f"--impulse {self.impulse:g}: give 0 N s or more")
+        for name, value in (("duration", self.duration), ("every", self.every)):
+            if not 0.0 < value < inf:
+                raise UsageError(f"--{name} {value:g}: give more than 0 s")
+        if not 0.0 <= self.at < inf:
+            raise UsageError(f"--at {self.at:g}: give 0 s or more")
+        if self.times < 1:
+            raise UsageError(f"--times {self.times}: give 1 or more")
+        if self.directions < 1:
+            raise UsageError(f"--directions {self.directions}: give 1 or more")
+        for way in self.ways if self.way is None else (self.way, *self.ways):
+            check_way(way)
+        stepping_stance(load_robot(self.robot), self.stance)
+
+
+def said(row: dict[str, Any]) -> str:
+    """Return the sentence of one trial."""
+    if "robot" not in row:
+        return "interrupted"
+    toward = ", ".join(f"{direction:g}" for direction in row["directions"])
+    push = f"{row['impulse']:g} N s toward {toward} degrees"
+    steps = f"{row['steps']} steps" if row["steps"] != 1 else "1 step"
+    if not row["survived"]:
+        how = f"fell onto {row['touched'][0]}" if row["touched"] else row["reason"]
+        return f"{row['robot']} {how} after {push} ({row['way']}, {steps})"
+    return (
+        f"{row['robot']} stays up after {push} ({row['way']}): {steps}, still after "
+        f"{row['settling_s']:.2f} s, feet {1000 * row['astray_m']:.0f} mm from the stance"
+    )

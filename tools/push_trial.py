@@ -1,0 +1,157 @@
+"""One push on a twin, and whether the robot still stands afterwards."""
+
+from dataclasses import dataclass, field
+from math import nan, radians
+from typing import Any
+
+import numpy as np
+
+from control.footing import turn
+from control.stepper import Stepper
+from hal.controller import Controller
+from hal.errors import UsageError
+from hal.joints import Array
+from hal.observation import Observation
+from sim_twin.push import Push
+from sim_twin.touch import TouchWatch
+from tools.robot import Robot
+from tools.stepping import build_stepper, footing_of, stepping_stance
+
+STILL = 0.05
+"""Speed of the base of a robot that stands still, m/s."""
+AFTER = 3.0
+"""How long after the last push it has to, s."""
+LONGEST = 3.0
+"""How much longer a comfort step that it is at may take, s."""
+
+
+@dataclass(frozen=True)
+class PushPlan:
+    """What is done to a robot that stands.
+
+    Attributes:
+        way: How it meets the push; one of `tools.stepping.WAYS`.
+        impulse: N s.
+        directions: Of one push after the other, degrees.
+        duration: Of a push, s.
+        height: Above the ground, m; None is the torso's centre of mass.
+        at: When the first push begins, s.
+        every: From one push to the next, s.
+        body: Which body is pushed; the torso by default.
+        stance: Name of the pose that it stands in; that of its stepping by default.
+    """
+
+    way: str
+    impulse: float
+    directions: tuple[float, ...] = (0.0,)
+    duration: float = 0.1
+    height: float | None = None
+    at: float = 1.0
+    every: float = 1.0
+    body: str | None = None
+    stance: str | None = None
+
+    @property
+    def end(self) -> float:
+        """When the last push is over, s."""
+        return self.at + self.every * (len(self.directions) - 1) + self.duration
+
+
+@dataclass
+class PushWatch:
+    """Looks at a robot under pushes, at every tick.
+
+    Attributes:
+        plan: The pushes.
+        touch: What touches the ground.
+        controller: Who controls.
+        still: Since when the base is still, s; nan while it moves.
+        seen: The last observation.
+    """
+
+    plan: PushPlan
+    touch: TouchWatch
+    controller: Controller
+    still: float = nan
+    seen: list[Observation] = field(default_factory=list)
+
+    def __call__(self, observation: Observation) -> str | None:
+        """Return why the run is over, or None."""
+        self.seen = [observation]
+        self.touch.look()
+        if self.touch.touched:
+            return "fell"
+        base = observation.base
+        moving = base is None or float(np.linalg.norm(base.linear_velocity)) > STILL
+        if moving:
+            self.still = nan
+        elif np.isnan(self.still):
+            self.still = observation.time
+        over = observation.time - self.plan.end
+        busy = isinstance(self.controller, Stepper) and self.controller.phase != "stand"
+        if over >= AFTER and (not (busy or moving) or over >= AFTER + LONGEST):
+            return "done" if not moving else "does not come to rest"
+        return None
+
+
+def push_robot(robot: Robot, plan: PushPlan) -> dict[str, Any]:
+    """Let a fresh twin stand, push it, and return how it went.
+
+    Raises:
+        UsageError: A body or a height that the robot does not have, or it cannot step.
+        WindupError: From the loop.
+    """
+    description = robot.description
+    stance = stepping_stance(description, plan.stance)
+    controller = build_stepper(description, plan.way, stance)
+    robot.start_in(stance)
+    arrange(robot, plan)
+    watch = PushWatch(plan, TouchWatch(description, robot.twin.model, robot.twin.data), controller)
+    report = robot.run(controller, until=watch)
+    stepper = controller if isinstance(controller, Stepper) else None
+    survived = report.reason == "done" and not robot.fallen
+    return {
+        "robot": description.name,
+        "way": plan.way,
+        "impulse": plan.impulse,
+        "directions": list(plan.directions),
+        "seed": robot.seed,
+        "survived": survived,
+        "reason": report.reason,
+        "touched": watch.touch.touched,
+        "steps": stepper.steps if stepper else 0,
+        "comfort_steps": stepper.comforts if stepper else 0,
+        "settling_s": max(watch.still - plan.end, 0.0) if survived else None,
+        "astray_m": astray(robot, stance, watch.seen[-1]) if survived else None,
+        "tick_ms": report.tick_ms(),
+    }
+
+
+def arrange(robot: Robot, plan: PushPlan) -> None:
+    """Let the pushes of `plan` come, counted from now.
+
+    Raises:
+        UnknownNameError: The robot has no such body.
+        UsageError: The height is not on the robot.
+    """
+    twin, body = robot.twin, plan.body or robot.description.torso
+    twin.check_body(body)
+    height = None
+    if plan.height is not None:
+        tallest = float((twin.data.geom_xpos[:, 2] + twin.model.geom_rbound).max())
+        if not 0.0 < plan.height < tallest:
+            raise UsageError(f"--height {plan.height:g}: give 0 .. {tallest:.2f} m above the floor")
+        height = plan.height - float(twin.data.body(body).xpos[2])
+    for number, direction in enumerate(plan.directions):
+        start = twin.time + plan.at + number * plan.every
+        push = Push.impulse(body, plan.impulse, radians(direction), start, plan.duration, height)
+        twin.push(push)
+
+
+def astray(robot: Robot, stance: Array, seen: Observation) -> float:
+    """Return how far the feet stand from where the stance has them beside each other, m."""
+    footing = footing_of(robot.description, stance)
+    footing.look(seen)
+    home = footing.homes[0][:2] - footing.homes[1][:2]
+    way = turn(footing.yaw)[:2, :2].T @ (footing.places[0] - footing.places[1])
+    return float(np.linalg.norm(way - home))

@@ -1,0 +1,82 @@
+"""Putting together what stands and steps under pushes, from a robot and the name of a rule."""
+
+from typing import Final
+
+from control.footing import Footing
+from control.play import PoseHolder
+from control.soles import Soles
+from control.step_decision import RULES
+from control.stepper import Stepper
+from control.stepping_file import Stepping
+from hal.config import load_toml
+from hal.controller import Controller
+from hal.errors import UnknownNameError, UsageError
+from hal.joints import Array
+from robots import RobotDescription, load_robot, robot_names
+from tools.build import body_of
+
+STEPPING: Final = "stepping.toml"
+HOLD, FEET = "hold", "feet"
+WAYS: Final = (HOLD, FEET, *RULES)
+"""Ways to meet a push: a stiff pose, balance with the feet alone, or steps by one of the rules."""
+
+
+def find_stepping(robot: RobotDescription) -> Stepping:
+    """Return how `robot` steps.
+
+    Raises:
+        UsageError: It has no stepping.toml.
+        ConfigError: That file says something that cannot be.
+    """
+    path = robot.folder / STEPPING
+    if not path.is_file():
+        able = [name for name in robot_names() if (load_robot(name).folder / STEPPING).is_file()]
+        raise UsageError(f"{robot.name} has no {STEPPING}; robots that step: {', '.join(able)}")
+    return load_toml(path, Stepping)
+
+
+def stepping_stance(robot: RobotDescription, name: str | None = None) -> Array:
+    """Return a pose (n,) rad of `robot` by name; by default the one that it stands in to step.
+
+    Raises:
+        UnknownNameError: There is no such pose.
+        UsageError: The robot has no stepping.toml.
+    """
+    name = name or find_stepping(robot).stance
+    if name not in robot.poses:
+        raise UnknownNameError(f"pose of {robot.name}", name, robot.poses)
+    return robot.poses[name]
+
+
+def footing_of(robot: RobotDescription, stance: Array) -> Footing:
+    """Return the feet of `robot`, for a pose (n,) rad to stand in."""
+    body = body_of(robot)
+    soles = Soles(body.model, [foot.body for foot in robot.feet], robot.contacts)
+    return Footing(body, robot.base, [foot.site for foot in robot.feet], soles, stance)
+
+
+def build_stepper(robot: RobotDescription, way: str, stance: Array) -> Controller:
+    """Return the controller that meets pushes in one of the `WAYS`, standing in a pose (n,) rad.
+
+    Raises:
+        UnknownNameError: There is no such way.
+        UsageError: The robot has no stepping.toml, or not two feet.
+    """
+    check_way(way)
+    if way == HOLD:
+        return PoseHolder(robot.joints, stance, ramp=0.0)
+    if len(robot.feet) != 2:
+        raise UsageError(f"{robot.name} has {len(robot.feet)} feet; stepping takes two")
+    stepping = find_stepping(robot)
+    rule = None if way == FEET else stepping.find_rule(way)
+    return Stepper(robot.joints, footing_of(robot, stance), stance, rule, stepping)
+
+
+def check_way(way: str) -> None:
+    """Raise when there is no such way to meet a push.
+
+    Raises:
+        UnknownNameError: There is none.
+    """
+    if way not in WAYS:
+        raise UnknownNameError("way to meet a push", way, WAYS)
