@@ -43,7 +43,7 @@ def steering_of(
         style=Styling(gait, spells=styles_of_walk(options)),
         course=None if heading is None else Course(heading, turn),
         incline=None if options.open_loop else _incline(gait, variables),
-        slip=None if options.open_loop else _slip(gait),
+        slip=_slip(gait, options),
     )
 
 
@@ -55,10 +55,13 @@ def _incline(gait: Gait, variables: list[RegulationVariable]) -> InclineControl 
     return InclineControl(law, names.index(law.variable))
 
 
-def _slip(gait: Gait) -> SlipControl | None:
-    """Return what feels slippery ground, where the gait wants it."""
+def _slip(gait: Gait, options: WalkOptions) -> SlipControl | None:
+    """Return what feels slippery ground, where the gait walks by itself and wants it.
+
+    Another gait that is blended in lands sliding; other regulation has no such targets.
+    """
     law = gait.file.slip
-    if law is None:
+    if law is None or options.open_loop or options.rv is not None or options.blend:
         return None
-    names = [state.name for state in gait.file.state]
-    return SlipControl(law, frozenset(names.index(name) for name in law.states))
+    names = [name.removesuffix("'") for name in gait.graph.names]  # on either foot
+    return SlipControl(law, frozenset(i for i, name in enumerate(names) if name in law.states))
