@@ -164,6 +164,8 @@ class Balancer:
         here = self.body.measure(observation)
         if self.footfalls is not None:
             self.footfalls.see(observation)
+        if self.steering.slip is not None:
+            self.steering.slip.entered(state, here.feet[0, start.stance])
         if shaken.by(state, here.com_velocity[0], start.heading) and self.planner is not None:
             self.replans += 1
             self._ask(observation, start, self._tracker.scale[0], dt)

@@ -90,7 +90,8 @@ class Footing:
 
     def support(self, feet: Sequence[int]) -> SupportRegion:
         """Return the hull of all points of these feet's soles, whether or not they bear load."""
-        return SupportRegion.hull(self._ground[np.isin(self._soles.foot, feet)])
+        of_these = self._soles.members[list(feet)].any(axis=0)
+        return SupportRegion.hull(self._ground[of_these])
 
     def home(self) -> Array:
         """Return where (2,) m the base is in the stance, over the feet of now."""

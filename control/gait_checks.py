@@ -40,6 +40,10 @@ def check_gait(path: Path, file: GaitFile, joints: Joints) -> None:
         _known(path, "turn.spread", file.turn.spread, names)
     if file.incline is not None:
         _known(path, "incline.perturbation", [file.incline.perturbation], names)
+    if file.slip is not None:
+        named = [style.name for style in file.style]
+        _known(path, "slip.style", [file.slip.style], [*named, *names], "style")
+        _known(path, "slip.states", file.slip.states, [s.name for s in file.state], "state")
     for style in file.style:
         _known(path, f"style.{style.name}.scale", style.scale, names)
     if file.torso_servo is not None:

@@ -183,6 +183,18 @@ class Incline(Record, frozen=True):
     rate: float = 0.1
 
 
+class Slip(Record, frozen=True):
+    """Walking with care on slippery ground.
+
+    From when the stance foot has slid more than `least` m in one of the `states`, in two steps
+    running, the walk takes on a style.
+    """
+
+    states: list[str]
+    style: str
+    least: float
+
+
 class Style(Record, frozen=True):
     """A way of walking that can be had by any amount: scalings and targets for an amount of one.
 
@@ -247,6 +259,7 @@ class GaitFile(Record, frozen=True):
     turn: Turn | None = None
     heading: Heading | None = None
     incline: Incline | None = None
+    slip: Slip | None = None
     style: list[Style] = []
     torso_servo: TorsoServo | None = None
 

@@ -9,6 +9,7 @@ from control.gait import Gait
 from control.guide import Guide, Place, WalkCommand
 from control.incline import InclineControl
 from control.side import SideControl
+from control.slip import SlipControl
 from control.speed import SpeedControl
 from control.step_record import StepRecord, StepStart
 from control.style import Styling
@@ -30,6 +31,7 @@ class Steering:
         style: Styles.
         course: Heading, or None where the gait cannot turn.
         incline: Slope of the ground, or None where the gait does not feel it.
+        slip: Slippery ground, or None where the gait does not feel it.
         command: What the guide has said last.
     """
 
@@ -40,6 +42,7 @@ class Steering:
     style: Styling
     course: Course | None = None
     incline: InclineControl | None = None
+    slip: SlipControl | None = None
     command: WalkCommand = field(default_factory=WalkCommand, init=False)
     _quiet: int = field(default=0, init=False)
     _duration: float = field(default=STEP_SECONDS, init=False)
@@ -65,6 +68,8 @@ class Steering:
             self.course.reset()
         if self.incline is not None:
             self.incline.reset()
+        if self.slip is not None:
+            self.slip.reset()
 
     def begin_step(self, start: StepStart) -> None:
         """Ask the guide, and go one step toward what it says."""
@@ -73,7 +78,7 @@ class Steering:
         self.speed.command(0.0 if command.stop else command.speed)
         self.speed.begin_step()
         self.side.begin_step(0.0 if command.stop else command.side)
-        self.style.begin_step(start.time)
+        self.style.begin_step(start.time, {} if self.slip is None else self.slip.styles())
         if self.course is not None:
             self.course.begin_step(command, start.heading, self._duration)
         still = command.stop and abs(self.speed.present) + abs(self.side.present) < 1e-6

@@ -78,19 +78,21 @@ class Styling:
         self.present.clear()
         self._began = None
 
-    def begin_step(self, time: float) -> None:
-        """Go one step toward the amounts wanted at `time` s."""
+    def begin_step(self, time: float, also: dict[str, float] | None = None) -> None:
+        """Go one step toward the amounts wanted at `time` s, and `also` these."""
         if self._began is None:
             self._began = time
-        wanted = self._wanted(time - self._began)
+        wanted = self._wanted(time - self._began, also or {})
         for name in sorted({*wanted, *self.present}):
             style, now = self._known[name], self.present.get(name, 0.0)
             most = max(abs(style.least), abs(style.most), 1e-9) / max(style.steps, 1e-9)
             self.present[name] = now + float(np.clip(wanted.get(name, 0.0) - now, -most, most))
 
-    def _wanted(self, time: float) -> dict[str, float]:
+    def _wanted(self, time: float, also: dict[str, float]) -> dict[str, float]:
         """Return the amounts wanted at `time` s from the first step, within their ranges."""
         wanted = dict(self.wanted)
+        for name, amount in also.items():
+            wanted[name] = wanted.get(name, 0.0) + amount
         for spell in self.spells:
             if spell.begin <= time < spell.end:
                 wanted[spell.name] = wanted.get(spell.name, 0.0) + spell.amount

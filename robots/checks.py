@@ -168,6 +168,10 @@ class Checks:
             self._known("crouch", "pose", self.robot.crouch, self.robot.poses)
         elif self.robot.stop == "crouch":
             self._fail("stop", '"crouch" needs the key crouch: the name of a pose')
+        if self.robot.fall.way and self.robot.fall.reach is None:
+            self._fail("fall.way", "needs fall.reach: how far outside its soles it can step, m")
+        for way in self.robot.fall.way:
+            self._known("fall.way.pose", "pose", way.pose, self.robot.poses)
 
     def _sensor(self, key: str, name: str, kind: mujoco.mjtSensor) -> None:
         """Fail unless the MJCF has a sensor `name` of the right kind."""

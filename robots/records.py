@@ -10,6 +10,7 @@ from hal.guard import StopPolicy
 
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
+Share = Annotated[float, Meta(ge=0.05, le=1.0)]
 
 
 class Drive(Record, frozen=True):
@@ -92,11 +93,46 @@ class Imu(Record, frozen=True):
     orientation: str | None = None
 
 
+class Shares(Record, frozen=True):
+    """Shares of the joints' stiffness: of those between base and feet, and of all others.
+
+    None is small enough to leave a joint limp.
+    """
+
+    legs: Share
+    others: Share
+
+
+class FallWay(Record, frozen=True):
+    """How to fall toward one side.
+
+    Attributes:
+        toward: Which side, rad from straight ahead, positive to the left.
+        pose: Name of the pose to take.
+        soften: Tilt of the base from which the impact is near, rad.
+        falling: Stiffness until then.
+        impact: Stiffness from then on.
+    """
+
+    toward: Annotated[float, Meta(ge=-4.0, le=4.0)]
+    pose: str
+    soften: Positive
+    falling: Shares
+    impact: Shares
+
+
 class Fall(Record, frozen=True):
-    """When the robot counts as fallen: base lower than `height` m or torso past `tilt` rad."""
+    """When the robot counts as fallen: base lower than `height` m or torso past `tilt` rad.
+
+    Attributes:
+        reach: How far outside the hull of its soles it can put a foot, m; ways need it.
+        way: How it falls when it must; without any it falls as it is.
+    """
 
     height: Positive
     tilt: Positive
+    reach: Positive | None = None
+    way: tuple[FallWay, ...] = ()
 
 
 INHERITED = ("servo", "bus", "stiffness", "damping")

@@ -14,6 +14,7 @@ from hal.errors import UsageError, WindupError
 from tools.bench import Bench
 from tools.emulate import Emulate
 from tools.estimate import Estimate
+from tools.footprints import Footprints
 from tools.health import Health
 from tools.options import Common
 from tools.output import check_writable, console, error_record, write_json
@@ -24,6 +25,7 @@ from tools.rise import Rise
 from tools.robots_list import Robots
 from tools.scan import Scan
 from tools.stand import Stand
+from tools.step import Step
 from tools.stop import Stop
 from tools.sweep import Sweep, separate
 from tools.synthesis import Synthesise
@@ -35,6 +37,8 @@ Command = (
     | Annotated[Stand, tyro.conf.subcommand("stand")]
     | Annotated[Rise, tyro.conf.subcommand("rise")]
     | Annotated[Push, tyro.conf.subcommand("push")]
+    | Annotated[Step, tyro.conf.subcommand("step")]
+    | Annotated[Footprints, tyro.conf.subcommand("footprints")]
     | Annotated[Stop, tyro.conf.subcommand("stop")]
     | Annotated[Scan, tyro.conf.subcommand("scan")]
     | Annotated[Emulate, tyro.conf.subcommand("emulate")]

@@ -44,6 +44,8 @@ class Common:
 
     noise: float = 0.0
     """Standard deviation of noise on the start pose, degrees."""
+    protect: bool = True
+    """Soften a fall that cannot be prevented, where robot.toml says how."""
 
     def check(self) -> None:
         """Raise what cannot be, before anything is opened.
@@ -86,5 +88,6 @@ class Common:
             realtime=self.realtime,
             seed=seed,
             noise=self.noise,
+            protect=self.protect,
             **more,
         )

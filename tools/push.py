@@ -9,6 +9,8 @@ import numpy as np
 
 from hal.errors import UsageError
 from robots import load_robot
+from sim_twin.impact import ImpactGauge
+from tools.fall_report import fall_result, fall_said
 from tools.options import Common
 from tools.output import console, write_json
 from tools.push_envelope import Envelope
@@ -60,7 +62,7 @@ class Push(WorldOptions, Common):
             return Envelope(self).run()
         rows = []
         for seed in self.all_seeds:
-            rows.append(self.one(seed, self.plan(seed)))
+            rows.append(self.one(seed, self.plan(seed), fall=True))
             console.print(said(rows[-1]), markup=False, soft_wrap=True)
             if rows[-1]["reason"] == "interrupted":
                 break
@@ -73,13 +75,17 @@ class Push(WorldOptions, Common):
             return 130
         return 0 if good == len(rows) else 1
 
-    def one(self, seed: int, plan: PushPlan) -> dict[str, Any]:
-        """Return the result of one trial."""
+    def one(self, seed: int, plan: PushPlan, *, fall: bool = False) -> dict[str, Any]:
+        """Return the result of one trial; with `fall` a robot that falls does so to the end."""
         world = self.world(load_robot(self.robot), seed)
         with self.open_robot(seed, delay=self.delay, world=world) as robot:
             result: dict[str, Any] = {"reason": "interrupted", "survived": False, "seed": seed}
+            robot.protect = self.protect and fall
+            gauge = ImpactGauge(robot.twin) if fall else None
             with suppress(KeyboardInterrupt):
-                result = push_robot(robot, plan)
+                result = push_robot(robot, plan, to_the_end=fall)
+            if gauge is not None:
+                result |= fall_result(gauge)
         return result
 
     def plan(self, seed: int) -> PushPlan:
@@ -131,7 +137,7 @@ def said(row: dict[str, Any]) -> str:
     steps = f"{row['steps']} steps" if row["steps"] != 1 else "1 step"
     if not row["survived"]:
         how = f"fell onto {row['touched'][0]}" if row["touched"] else row["reason"]
-        return f"{row['robot']} {how} after {push} ({row['way']}, {steps})"
+        return f"{row['robot']} {how} after {push} ({row['way']}, {steps}); {fall_said(row)}"
     return (
         f"{row['robot']} stays up after {push} ({row['way']}): {steps}, still after "
         f"{row['settling_s']:.2f} s, feet {1000 * row['astray_m']:.0f} mm from the stance"

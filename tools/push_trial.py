@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from control.footing import turn
+from control.play import PoseHolder
 from control.stepper import Stepper
 from hal.controller import Controller
 from hal.errors import UsageError
@@ -23,6 +24,8 @@ AFTER = 3.0
 """How long after the last push it has to, s."""
 LONGEST = 3.0
 """How much longer a comfort step that it is at may take, s."""
+LANDING = 1.5
+"""From a stiff fall being seen to lying, s."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +68,7 @@ class PushWatch:
         plan: The pushes.
         touch: What touches the ground.
         controller: Who controls.
+        to_the_end: Does a touch of anything but a foot leave the run going?
         still: Since when the base is still, s; nan while it moves.
         seen: The last observation.
     """
@@ -72,6 +76,7 @@ class PushWatch:
     plan: PushPlan
     touch: TouchWatch
     controller: Controller
+    to_the_end: bool = False
     still: float = nan
     seen: list[Observation] = field(default_factory=list)
 
@@ -79,7 +84,7 @@ class PushWatch:
         """Return why the run is over, or None."""
         self.seen = [observation]
         self.touch.look()
-        if self.touch.touched:
+        if self.touch.touched and not self.to_the_end:
             return "fell"
         base = observation.base
         moving = base is None or float(np.linalg.norm(base.linear_velocity)) > STILL
@@ -94,8 +99,13 @@ class PushWatch:
         return None
 
 
-def push_robot(robot: Robot, plan: PushPlan) -> dict[str, Any]:
+def push_robot(robot: Robot, plan: PushPlan, *, to_the_end: bool = False) -> dict[str, Any]:
     """Let a fresh twin stand, push it, and return how it went.
+
+    Args:
+        robot: The robot.
+        plan: What is done to it.
+        to_the_end: Do not stop at the first touch of anything but a foot: fall until it lies.
 
     Raises:
         UsageError: A body or a height that the robot does not have, or it cannot step.
@@ -106,10 +116,13 @@ def push_robot(robot: Robot, plan: PushPlan) -> dict[str, Any]:
     controller = build_stepper(description, plan.way, stance)
     robot.start_in(stance)
     arrange(robot, plan)
-    watch = PushWatch(plan, TouchWatch(description, robot.twin.model, robot.twin.data), controller)
+    touch = TouchWatch(description, robot.twin.model, robot.twin.data)
+    watch = PushWatch(plan, touch, controller, to_the_end)
     report = robot.run(controller, until=watch)
     stepper = controller if isinstance(controller, Stepper) else None
-    survived = report.reason == "done" and not robot.fallen
+    survived = report.reason == "done" and not (robot.fallen or touch.touched)
+    if to_the_end and robot.fallen and not robot.protect:
+        robot.run(PoseHolder(robot.description.joints, stance, ramp=0.0), LANDING, down=True)
     return {
         "robot": description.name,
         "way": plan.way,
@@ -117,7 +130,7 @@ def push_robot(robot: Robot, plan: PushPlan) -> dict[str, Any]:
         "directions": list(plan.directions),
         "seed": robot.seed,
         "survived": survived,
-        "reason": report.reason,
+        "reason": "fell" if touch.touched else report.reason,
         "touched": watch.touch.touched,
         "steps": stepper.steps if stepper else 0,
         "comfort_steps": stepper.comforts if stepper else 0,

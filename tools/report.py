@@ -125,6 +125,7 @@ class WalkReport:
         end = self._position() - self._origin
         records = walker.records
         watch = robot.predictor.stopwatch
+        slip = walker.steering.slip
         return {
             "robot": robot.description.name,
             "gait": walker.gait.name,
@@ -149,6 +150,7 @@ class WalkReport:
             "rollout_time_s": watch.seconds,
             "rollouts_a_step": watch.count / max(walker.begun, 1),
             "replans": walker.replans,
+            "slipped": slip is not None and slip.felt,
             "step_model": self.counters,
             "tick_ms": loop.tick_ms(),
             "missed": loop.missed if robot.paced else None,

@@ -74,6 +74,7 @@ class Robot(Session):
         delay: float | None = None,
         world: World | None = None,
         known_ground: bool = False,
+        protect: bool = True,
     ) -> Self:
         """Return a robot, connected and configured. Nothing moves.
 
@@ -89,6 +90,7 @@ class Robot(Session):
             delay: Delay of the servos, s; the robot's own by default.
             world: The twin's ground and how its plant differs; the controller does not know.
             known_ground: The rollouts know the ground.
+            protect: Soften falls that cannot be prevented, where the robot's file says how.
 
         Raises:
             WindupError: The robot's files, these options, or the bus cannot be.
@@ -127,6 +129,7 @@ class Robot(Session):
             noise=noise,
             seed=seed,
             paced=realtime or stack.twin is None,
+            protect=protect,
         )
 
     def __enter__(self) -> Self:

@@ -27,6 +27,7 @@ from sim_twin.backend import TwinClock
 from sim_twin.push import Push
 from sim_twin.twin import Twin
 from tools.interrupts import asked_to_end
+from tools.protect import Protection
 from tools.stack import Stack
 
 INTERRUPTED = "interrupted"
@@ -43,6 +44,7 @@ class Session:
         stack: Its backend and what belongs to it.
         period: Period of the control loop, s.
         paced: Its time is real time.
+        protect: A fall that cannot be prevented is softened, where the robot's file says how.
         loop: Report of the last run.
         watch: Called with every observation, for whoever draws or logs.
         base: Base state last seen: the truth on a twin, an estimate on a robot.
@@ -54,12 +56,16 @@ class Session:
     stack: Stack
     period: float
     paced: bool = False
+    protect: bool = True
     loop: LoopReport = field(default_factory=LoopReport, init=False)
     watch: Watch | None = field(default=None, init=False)
     base: BaseState | None = field(default=None, init=False)
     telemetry: TelemetryWriter | None = field(default=None, init=False)
     armed: bool = field(default=False, init=False)
     guardian: Guardian | None = field(default=None, init=False)
+
+    def __post_init__(self) -> None:
+        self._protection = Protection(self.description)
 
     @property
     def backend(self) -> GuardedBackend:
@@ -165,6 +171,8 @@ class Session:
     ) -> LoopReport:
         """Run a controller until the time is over, `until` gives a reason, or the robot falls.
 
+        Where the robot falls `protect`ed, until it lies still.
+
         Args:
             controller: The controller.
             seconds: How long, s of the backend's clock; for ever if None.
@@ -175,6 +183,9 @@ class Session:
         Raises:
             WindupError: From the guard, the backend or the controller; the stop policy has run.
         """
+        protected = None
+        if self.protect and self._protection.possible and not down:
+            controller = protected = self._protection.around(controller)
         with asked_to_end() as asked:
             self.arm()
             begin = self.backend.clock.now()
@@ -185,6 +196,8 @@ class Session:
                     self.watch(observation)
                 if asked():
                     return INTERRUPTED
+                if protected is not None and protected.active:
+                    return self._landed() if protected.finished else None
                 if self.fallen and not down:
                     return "fell"
                 if until is not None and (reason := until(observation)) is not None:
@@ -196,6 +209,10 @@ class Session:
         if self.loop.reason == INTERRUPTED:
             raise KeyboardInterrupt
         return self.loop
+
+    def _landed(self) -> str:
+        """Return why a run ends whose fall is over."""
+        return "fell" if self.fallen else "braced for a fall that did not come"
 
     def _run(self, controller: Controller, end: Until, rollouts: Stopwatch | None) -> None:
         """Run the loop; stop the robot if it ends by an error or a wish."""

@@ -6,14 +6,20 @@ from math import inf
 
 import numpy as np
 
+from control.play import PoseHolder
 from hal.errors import UsageError
+from robots import load_robot
+from sim_twin.impact import ImpactGauge
+from tools.fall_report import fall_result, fall_said
 from tools.options import Common
 from tools.output import console, write_json
+from tools.robot import Robot
+from tools.twin_options import TwinOptions
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stand(Common):
-    """Stand for some seconds."""
+class Stand(TwinOptions, Common):
+    """Stand for some seconds; a twin that is pushed over says how hard it fell."""
 
     seconds: float = 5.0
     """How long to stand, with the second that it takes to get there."""
@@ -22,9 +28,11 @@ class Stand(Common):
         """Stand; returns the exit status."""
         if not 0.0 < self.seconds < inf:
             raise UsageError(f"--seconds {self.seconds:g}: give more than 0")
-        with self.open_robot(self.seed) as robot:
+        world = self.world(load_robot(self.robot), self.seed)
+        with self.open_robot(self.seed, world=world) as robot:
+            gauge = self._pushed(robot)
             with suppress(KeyboardInterrupt):  # the robot has stopped
-                robot.stand(self.seconds)
+                self._stand(robot)
             report = robot.loop
             joints = robot.backend.read().joints
             error = np.degrees(np.abs(joints.position - robot.description.stance))
@@ -38,13 +46,29 @@ class Stand(Common):
                 "missed": report.missed if robot.paced else None,
                 "largest_error_deg": float(error.max()),
                 "largest_error_joint": robot.description.joints.names[int(error.argmax())],
-            }
+            } | (fall_result(gauge) if gauge is not None else {})
         verb = "fell" if result["fell"] else "stood"
         console.print(
             f"{self.robot} {verb} for {report.sim_time:.1f} s; farthest from its pose is "
             f"{result['largest_error_joint']} by {error.max():.1f} degrees"
         )
+        if gauge is not None and result["fell"]:
+            console.print(fall_said(result))
         write_json(self.json, "stand", result)
         if report.reason == "interrupted":
             return 130
-        return 1 if result["fell"] else 0
+        return 0 if report.reason == "done" and not result["fell"] else 1
+
+    def _pushed(self, robot: Robot) -> ImpactGauge | None:
+        """Arrange the pushes, if any; return what looks at how a twin falls under them."""
+        disturb = self.disturb()
+        if disturb is None:
+            return None
+        disturb(robot)
+        return ImpactGauge(robot.twin)
+
+    def _stand(self, robot: Robot) -> None:
+        """Stand; what falls stiffly under a push falls until it lies, so that this can be seen."""
+        stiff = self.disturb() is not None and not self.protect
+        description = robot.description
+        robot.run(PoseHolder(description.joints, description.stance), self.seconds, down=stiff)

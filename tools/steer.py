@@ -8,6 +8,7 @@ from control.guide import Steady, WalkCommand
 from control.incline import InclineControl
 from control.regulation import RegulationVariable
 from control.side import SideControl
+from control.slip import SlipControl
 from control.speed import SpeedControl
 from control.steering import Steering
 from control.style import Styling
@@ -42,6 +43,7 @@ def steering_of(
         style=Styling(gait, spells=styles_of_walk(options)),
         course=None if heading is None else Course(heading, turn),
         incline=None if options.open_loop else _incline(gait, variables),
+        slip=_slip(gait, options),
     )
 
 
@@ -51,3 +53,15 @@ def _incline(gait: Gait, variables: list[RegulationVariable]) -> InclineControl 
     if law is None or law.variable not in names:
         return None
     return InclineControl(law, names.index(law.variable))
+
+
+def _slip(gait: Gait, options: WalkOptions) -> SlipControl | None:
+    """Return what feels slippery ground, where the gait walks by itself and wants it.
+
+    Another gait that is blended in lands sliding; other regulation has no such targets.
+    """
+    law = gait.file.slip
+    if law is None or options.open_loop or options.rv is not None or options.blend:
+        return None
+    names = [name.removesuffix("'") for name in gait.graph.names]  # on either foot
+    return SlipControl(law, frozenset(i for i, name in enumerate(names) if name in law.states))

@@ -211,7 +211,7 @@ def _line(report: WalkReport) -> str:
     return (
         f"{result['robot']} {end}{pace}: {result['distance_m']:.2f} m forward, "
         f"{result['lateral_m']:+.2f} m to the left, heading {result['heading_deg']:+.1f} degrees, "
-        f"{ratio:.1f} x real time{_flying(result)}{_crossing(report)}"
+        f"{ratio:.1f} x real time{_flying(result)}{_sliding(result)}{_crossing(report)}"
     )
 
 
@@ -220,6 +220,11 @@ def _flying(result: dict[str, Any]) -> str:
     flights = result.get("flights", 0)
     share = result.get("flight_time_s", 0.0) / max(result["sim_time_s"], 1e-9)
     return f", {flights} flights ({share:.0%} of the time)" if flights else ""
+
+
+def _sliding(result: dict[str, Any]) -> str:
+    """Return whether the ground was felt to be slippery."""
+    return ", with care since it slid" if result["slipped"] else ""
 
 
 def _crossing(report: WalkReport) -> str:

@@ -198,6 +198,16 @@ BAD = {
         "state.swing: this name stands twice; give each its own",
     ),
     "perturbation twice": ('name = "turn"', 'name = "hip"', "hip: this name stands twice"),
+    "state that slides": (
+        "[[state]]",
+        '[slip]\nstates = ["lnad"]\nstyle = "slow"\nleast = 0.02\n\n[[state]]',
+        "slip.states: unknown state 'lnad'; did you mean 'land'?",
+    ),
+    "style for slippery ground": (
+        "[[state]]",
+        '[slip]\nstates = ["land"]\nstyle = "slwo"\nleast = 0.02\n\n[[state]]',
+        "slip.style: unknown style 'slwo'; did you mean 'slow'?",
+    ),
     "state of a perturbation": (
         'states = ["land"]',
         'states = ["lnad"]',

@@ -136,3 +136,12 @@ def test_a_spell_that_cannot_be_is_refused(text: str, message: str) -> None:
     with pytest.raises(UsageError) as error:
         spell(text, "--style")
     assert str(error.value) == message
+
+
+def test_what_the_ground_calls_for_comes_on_top_of_the_style_that_was_asked_for(
+    gait: Gait,
+) -> None:
+    styling = Styling(gait, {"lift": -2.0})
+    for _ in range(20):
+        styling.begin_step(0.0, {"lift": 0.5, "crouch": 3.0})
+    assert styling.present == {"lift": pytest.approx(-1.5), "crouch": pytest.approx(3.0)}

@@ -177,9 +177,9 @@ def test_a_duck_on_a_terminal_has_one_while_it_is_armed(tmp_path: Path) -> None:
     path = tmp_path / "bus"
     with emulated("duck", "--pty", str(path)):
         port = f"body={path}-body,imu={path}-imu"
-        with Robot.open("duck", port=port, arm=True) as duck:
+        with patiently(lambda: Robot.open("duck", port=port, arm=True)) as duck:
             assert duck.guardian is None
-            duck.arm()
+            patiently(duck.arm)
             assert duck.guardian is not None and duck.guardian.alive
             watching = duck.guardian
             duck.stop(limp=True)

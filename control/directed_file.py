@@ -1,0 +1,48 @@
+"""`footprints.toml` of a robot: how it walks footprints. SI units."""
+
+from typing import Annotated
+
+from msgspec import Meta
+
+from hal.config import Record
+
+Positive = Annotated[float, Meta(gt=0.0)]
+Gain = Annotated[float, Meta(ge=0.0)]
+
+
+class Directed(Record, frozen=True, kw_only=True):
+    """How a robot with position servos walks footprints.
+
+    Attributes:
+        stance: Name of the pose that it starts from, soles flat.
+        shift: Time in which the weight goes onto the foot that stays, s.
+        swing: Time of the other one in the air, where its footprint gives none, s.
+        land: Time until that one bears, s.
+        lift: How high it is lifted, m.
+        height: Of the base above the soles, m.
+        near: The weight is over a foot when the centre of mass is so near to its middle, m,
+        quiet: and no faster than this, m/s.
+        patience: After so many times `shift` the step begins all the same.
+        hold: Part of the error of the centre of mass that the goals go too far.
+        brake: Time by which its speed moves the goals against it, s.
+        level: Part of the tilt of the base that the goals lean against it.
+        steady: Time by which the rate of that tilt does so, s.
+        follow: Rate at which what lasts of either is made up for, 1/s.
+        slow: Time constant of the torques that hold the weight, s.
+    """
+
+    stance: str
+    shift: Positive
+    swing: Positive
+    land: Positive
+    lift: Positive
+    height: Positive
+    near: Positive
+    quiet: Positive
+    patience: Positive = 3.0
+    hold: Gain
+    brake: Gain
+    level: Gain
+    steady: Gain
+    follow: Gain
+    slow: Positive

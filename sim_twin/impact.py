@@ -1,0 +1,103 @@
+"""How hard a twin's trunk hits the floor, and how hard its servos work, at every physics step."""
+
+from collections import deque
+from dataclasses import dataclass, field
+
+import mujoco
+import numpy as np
+
+from hal.joints import Array
+from sim_twin.twin import Twin
+
+HEADS = ("head", "neck")
+"""In the names of the bodies that are no torso, and break as it does."""
+KNOCK = 0.01
+"""In so short a time a knock takes speed away, s."""
+
+
+@dataclass
+class ImpactGauge:
+    """Watches a twin from now on.
+
+    Attributes:
+        twin: The twin.
+        torso: Greatest speed into the floor of a point of the torso as it touched it, m/s; 0 when
+            the torso never did.
+        head: The same of the head and the neck.
+        knock: Greatest change of the torso's velocity within 10 ms, m/s: also what limbs that hit
+            the floor pass on to it.
+        load: (n,) greatest torque of each joint's actuator, as a share of its largest (of a servo:
+            at stall); 0 for joints without a limit.
+        overload: The longest time without a break that one joint was above its largest torque, s.
+    """
+
+    twin: Twin
+    torso: float = field(default=0.0, init=False)
+    head: float = field(default=0.0, init=False)
+    knock: float = field(default=0.0, init=False)
+    overload: float = field(default=0.0, init=False)
+
+    def __post_init__(self) -> None:
+        twin, joints = self.twin, self.twin.robot.joints
+        self.load = np.zeros(len(joints))
+        self._over = np.zeros(len(joints))
+        self._limit = joints.torque
+        solid = np.flatnonzero(twin.model.geom_conaffinity > 0)
+        names = [twin.model.body(int(twin.model.geom_bodyid[geom])).name for geom in solid]
+        pairs = list(zip(solid.tolist(), names, strict=True))
+        self._torso = {geom for geom, name in pairs if name == twin.robot.torso}
+        self._head = {geom for geom, name in pairs if any(part in name for part in HEADS)}
+        self._body = twin.model.body(twin.robot.torso).id
+        self._past: deque[Array] = deque(maxlen=1 + round(KNOCK / twin.timestep))
+        self._before: dict[int, tuple[Array, Array]] = {}
+        self._also, twin.on_step = twin.on_step, self._look
+
+    @property
+    def trunk(self) -> float:
+        """The greater of both speeds, m/s."""
+        return max(self.torso, self.head)
+
+    @property
+    def busiest(self) -> str:
+        """Name of the joint with the greatest load."""
+        return self.twin.robot.joints.names[int(self.load.argmax())]
+
+    def _look(self) -> None:
+        if self._also is not None:
+            self._also()
+        data = self.twin.data
+        touching = (contact for contact in data.contact if contact.dist <= 0.0)
+        for contact in touching:
+            geom = int(contact.geom.max())  # the floor is the first geom
+            if geom in self._before:
+                self._touched(geom, contact.pos)
+        self._before = {geom: self._motion(geom) for geom in self._torso | self._head}
+        self._past.append(self._velocity(mujoco.mjtObj.mjOBJ_BODY, self._body)[3:])
+        self.knock = max(self.knock, float(np.linalg.norm(self._past[-1] - self._past[0])))
+        self._work()
+
+    def _touched(self, geom: int, point: Array) -> None:
+        """Take the speed that a geom's point had a step ago, before the floor stopped it."""
+        velocity, centre = self._before[geom]
+        speed = -float((velocity[3:] + np.cross(velocity[:3], point - centre))[2])
+        if geom in self._torso:
+            self.torso = max(self.torso, speed)
+        else:
+            self.head = max(self.head, speed)
+
+    def _motion(self, geom: int) -> tuple[Array, Array]:
+        """Return a geom's velocity (6,) and its centre (3,), in the world."""
+        velocity = self._velocity(mujoco.mjtObj.mjOBJ_GEOM, geom)
+        return velocity, self.twin.data.geom_xpos[geom].copy()
+
+    def _velocity(self, kind: mujoco.mjtObj, index: int) -> Array:
+        """Return the velocity (6,) of an object at its centre in the world, rad/s before m/s."""
+        velocity = np.empty(6)
+        mujoco.mj_objectVelocity(self.twin.model, self.twin.data, kind, index, velocity, 0)
+        return velocity
+
+    def _work(self) -> None:
+        share = np.abs(self.twin.data.actuator_force) / self._limit
+        self.load = np.maximum(self.load, share)
+        self._over = np.where(share > 1.0, self._over + self.twin.timestep, 0.0)
+        self.overload = max(self.overload, float(self._over.max()))

@@ -1,0 +1,216 @@
+"""Putting together what walks footprints, walking them, and how well each foot came down."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+
+from control.body import Body
+from control.directed_file import Directed
+from control.directed_steps import DirectedSteps
+from control.footprint_checks import FootprintChecks, outline
+from control.footprints import Footprint, between, ground_places, seen_from
+from control.limb_ik import LimbIk
+from control.soles import Soles
+from hal.config import load_toml
+from hal.errors import UnknownNameError, UsageError
+from hal.joints import Array
+from hal.observation import Observation
+from robots import RobotDescription, load_robot, robot_names
+from tools.build import body_of
+from tools.robot import Robot
+
+FILE: Final = "footprints.toml"
+CLOSE, TURNED = 0.01, 5.0
+"""How far from its place a foot may come down, m, and how far turned, degrees."""
+
+
+def find_directed(robot: RobotDescription) -> Directed:
+    """Return how `robot` walks footprints.
+
+    Raises:
+        UsageError: It has no footprints.toml.
+        ConfigError: That file says something that cannot be.
+    """
+    path = robot.folder / FILE
+    if not path.is_file():
+        able = [name for name in robot_names() if (load_robot(name).folder / FILE).is_file()]
+        raise UsageError(f"{robot.name} has no {FILE}; robots that have: {', '.join(able)}")
+    how = load_toml(path, Directed)
+    if how.stance not in robot.poses:
+        raise UnknownNameError(f"pose of {robot.name}", how.stance, robot.poses)
+    return how
+
+
+def feet_of(robot: RobotDescription) -> tuple[str, ...]:
+    """Return the names of the feet of a robot that has two.
+
+    Raises:
+        UsageError: It has not.
+    """
+    if len(robot.feet) != 2:
+        raise UsageError(f"{robot.name} has {len(robot.feet)} feet; footprints take two")
+    return tuple(foot.name for foot in robot.feet)
+
+
+def limbs_of(robot: RobotDescription, body: Body) -> list[LimbIk]:
+    """Return the inverse kinematics of its legs."""
+    return [LimbIk(body.model, robot.base, foot.site) for foot in robot.feet]
+
+
+def build_checks(robot: RobotDescription) -> FootprintChecks:
+    """Return what `robot` can step to.
+
+    Raises:
+        UsageError: It has not two feet, or no footprints.toml.
+    """
+    names, how, body = feet_of(robot), find_directed(robot), body_of(robot)
+    stance, limbs = robot.poses[how.stance], limbs_of(robot, body)
+    soles = Soles(body.model, [foot.body for foot in robot.feet], robot.contacts)
+    soles.update(stance, np.zeros_like(stance), np.array([0.0, 0.0, 1.0]))
+    poses = [limb.forward(stance) for limb in limbs]
+    seen = [
+        (soles.position[soles.foot == k] - pose.position) @ pose.rotation
+        for k, pose in enumerate(poses)
+    ]
+    middle = np.mean([pose.position for pose in poses], axis=0)
+    homes = [np.array([*(pose.position - middle)[:2], 0.0]) for pose in poses]
+    body.data.qpos[:7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
+    body.data.qpos[7:] = stance
+    mujoco.mj_kinematics(body.model, body.data)
+    mujoco.mj_comPos(body.model, body.data)
+    com = body.data.subtree_com[body.model.body(robot.base).id, :2].copy()
+    outlines = [outline(points[:, :2]) for points in seen]
+    return FootprintChecks(names, limbs, outlines, homes, stance, -com, how.height)
+
+
+def build_directed(robot: RobotDescription, prints: Sequence[Footprint]) -> DirectedSteps:
+    """Return the controller that walks footprints.
+
+    Raises:
+        UsageError: They cannot be walked by this robot.
+    """
+    build_checks(robot).check(prints)
+    how, body = find_directed(robot), body_of(robot)
+    stance, limbs = robot.poses[how.stance], limbs_of(robot, body)
+    return DirectedSteps(robot.joints, body, robot.base, limbs, stance, prints, how)
+
+
+@dataclass
+class Footfall:
+    """Where a foot came down, once the weight had gone on.
+
+    Attributes:
+        wanted: Its footprint.
+        place: (3,) where it stands, seen from what its footprint is seen from.
+    """
+
+    wanted: Footprint
+    place: Array
+
+    @property
+    def away(self) -> float:
+        """How far from its place, m."""
+        return float(np.hypot(*(self.place - self.wanted.place)[:2]))
+
+    @property
+    def turned(self) -> float:
+        """How far turned, degrees."""
+        return float(np.degrees(seen_from(self.wanted.place, self.place)[2]))
+
+    @property
+    def good(self) -> bool:
+        """It is where it should be."""
+        return self.away <= CLOSE and abs(self.turned) <= TURNED
+
+    def record(self, names: tuple[str, ...]) -> dict[str, Any]:
+        """Return it as programs read it."""
+        return {
+            "foot": names[self.wanted.foot],
+            "wanted": _named(self.wanted.place),
+            "place": _named(self.place),
+            "away_m": self.away,
+            "turned_deg": self.turned,
+        }
+
+
+@dataclass
+class DirectedWalk:
+    """How footprints were walked.
+
+    Attributes:
+        names: Names of the feet.
+        prints: What should be walked.
+        falls: Where the feet came down: the twin's truth, or what a robot believes.
+        reason: Why it ended.
+        seconds: How long it took, s.
+    """
+
+    names: tuple[str, ...]
+    prints: Sequence[Footprint]
+    falls: list[Footfall] = field(default_factory=list)
+    reason: str = "interrupted"
+    seconds: float = 0.0
+
+    @property
+    def good(self) -> bool:
+        """Every foot came down where it should."""
+        return len(self.falls) == len(self.prints) and all(fall.good for fall in self.falls)
+
+    def record(self) -> dict[str, Any]:
+        """Return it as programs read it."""
+        return {
+            "steps": len(self.prints),
+            "stepped": len(self.falls),
+            "good": self.good,
+            "largest_away_m": max((fall.away for fall in self.falls), default=None),
+            "largest_turned_deg": max((abs(fall.turned) for fall in self.falls), default=None),
+            "reason": self.reason,
+            "seconds": self.seconds,
+            "falls": [fall.record(self.names) for fall in self.falls],
+        }
+
+
+def walk_prints(robot: Robot, controller: DirectedSteps) -> DirectedWalk:
+    """Walk footprints, and look where the feet come down.
+
+    A foot is looked at once it bears the weight, so that its slip counts; and seen from where the
+    other one stood when it came down, for that one moves as soon as it bears nothing.
+    """
+    walk = DirectedWalk(feet_of(robot.description), controller.prints)
+    origin: list[Array] = []
+    stances: list[Array] = []
+
+    def until(observation: Observation) -> str | None:
+        places = _places(robot, controller)
+        if not origin:
+            origin.append(between(*places))
+        while controller.landed > len(stances):
+            stances.append(places[1 - controller.prints[len(stances)].foot])
+        while controller.stood > len(walk.falls):
+            wanted = controller.prints[len(walk.falls)]
+            seen = origin[0] if wanted.frame == "start" else stances[len(walk.falls)]
+            walk.falls.append(Footfall(wanted, seen_from(seen, places[wanted.foot])))
+        return "done" if controller.finished else None
+
+    with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far it came
+        walk.reason = robot.run(controller, until=until).reason
+    walk.seconds = robot.loop.sim_time
+    return walk
+
+
+def _places(robot: Robot, controller: DirectedSteps) -> Array:
+    """Return the (2, 3) places of the feet: the truth of a twin, or what a robot believes."""
+    twin, feet = robot.stack.twin, robot.description.feet
+    if twin is None:
+        return controller.places
+    sites = [twin.model.site(foot.site).id for foot in feet]
+    return ground_places(twin.data.site_xpos[sites], twin.data.site_xmat[sites])
+
+
+def _named(place: Array) -> dict[str, float]:
+    x, y, yaw = place.tolist()
+    return {"x": x, "y": y, "yaw_deg": float(np.degrees(yaw))}

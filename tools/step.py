@@ -1,0 +1,39 @@
+"""`windup step`: one directed step."""
+
+from dataclasses import dataclass
+
+from control.footprints import Footprint, Frame, StepRecord, footprint
+from robots import load_robot
+from tools.directed import feet_of
+from tools.directed_options import DirectedOptions
+
+
+@dataclass(frozen=True, kw_only=True)
+class Step(DirectedOptions):
+    """Put one foot where it is told: the weight goes over the other one first."""
+
+    foot: str
+    """Which foot: left or right."""
+    to: tuple[float, float]
+    """Where its sole's middle should come down: X forward and Y to the left, m, seen from the
+    middle of the sole that stays; OP3 stands at 0 0.117 (left) or 0 -0.117 (right)."""
+    yaw: float = 0.0
+    """How far it should be turned to the left, degrees, against the foot that stays."""
+    duration: float | None = None
+    """How long it is in the air, s; the robot's own by default."""
+    frame: Frame = "stance"
+    """What --to and --yaw are seen from: the foot that stays, or the middle between both feet."""
+
+    def run(self) -> int:
+        """Step; returns the exit status."""
+        return self.walk("step")
+
+    def prints(self, seed: int) -> list[Footprint]:
+        """Return the one footprint.
+
+        Raises:
+            UsageError: The robot has no such foot, or a number cannot be.
+        """
+        x, y = self.to
+        row = StepRecord(foot=self.foot, x=x, y=y, yaw=self.yaw, duration=self.duration)
+        return [footprint(row, self.frame, feet_of(load_robot(self.robot)))]
