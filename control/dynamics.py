@@ -90,9 +90,7 @@ class Dynamics:
     def jacobian(self, end: int) -> Array:
         """Return the Jacobian (6, v) of an end: linear, then angular, in the world."""
         jacobian = np.zeros((6, self.model.nv))
-        mujoco.mj_jacSite(
-            self.model, self._data, jacobian[:3], jacobian[3:], self._sites[end]
-        )
+        mujoco.mj_jacSite(self.model, self._data, jacobian[:3], jacobian[3:], self._sites[end])
         return jacobian
 
     def drift(self, end: int) -> Array:

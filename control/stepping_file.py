@@ -56,6 +56,8 @@ class Stepping(Record, frozen=True):
         rule: Other dampings of the rules, by their names; see `control.step_decision.StepRule`.
         patience: How long a robot stands still before it takes a comfort step, s.
         comfort: How far a foot may stand from its nominal place, m.
+        rate: Of the loop, Hz; the robot's own by default.
+        torque: Largest torque that whole-body control asks of a joint, N m.
     """
 
     stance: str
@@ -76,6 +78,8 @@ class Stepping(Record, frozen=True):
     rule: dict[str, RuleTable] = {}
     patience: Seconds = 0.6
     comfort: Metres = 0.015
+    rate: Annotated[float, Meta(gt=0.0)] | None = None
+    torque: Annotated[float, Meta(gt=0.0)] = 1e3
 
     def find_rule(self, name: str) -> StepRule:
         """Return a rule by its name, with the dampings of this robot where it has its own.

@@ -1,4 +1,4 @@
-"""Stands, and steps where a push or an order asks for it, with torques from whole-body control.
+"""Stands, and steps where a push asks for it, with torques from whole-body control.
 
 Wu & Zordan 2010: the supervisor (section 4) decides when and where, two curves (section 5) say
 where the centre of mass and the swing foot should be, and the whole-body optimisation makes
@@ -10,8 +10,9 @@ from typing import Literal
 
 import numpy as np
 
-from control.dynamics import Dynamics
+from control.footing import turn
 from control.momenta import capture_point
+from control.rotation import rotation_vector, yaw_of
 from control.step_decision import (
     Placement,
     StepRule,
@@ -29,7 +30,7 @@ from hal.command import JointCommand
 from hal.joints import Array, Joints
 from hal.observation import Observation
 
-Phase = Literal["stand", "shift", "swing", "land"]
+Phase = Literal["stand", "swing", "land"]
 PERIOD = 0.01
 """Of the optimisation, s."""
 COM_GAIN, COM_DAMPING = 40.0, 12.0
@@ -46,18 +47,6 @@ FOLLOW_DAMPING = 2.0
 """Damping of every joint about the speed that was planned, N m s/rad."""
 TOUCH = 0.003
 """A foot has landed when its lowest corner is that near to the ground, m."""
-SHIFT = 0.6
-"""Time in which the weight goes onto one foot before an ordered step, s."""
-
-
-@dataclass(frozen=True)
-class StepOrder:
-    """A step that somebody wants: foot, (2,) m in the world, heading of the foot, rad, time, s."""
-
-    foot: int
-    target: Array
-    yaw: float
-    duration: float = 0.6
 
 
 @dataclass
@@ -72,7 +61,7 @@ class Swing:
         yaw: Headings of it, from and to, rad.
         target: (2,) m.
         com: (2,) where the centre of mass was, m.
-        rule: Who aims anew; None for an order.
+        rule: Who aims anew.
     """
 
     foot: int
@@ -82,7 +71,7 @@ class Swing:
     yaw: tuple[float, float]
     target: Array
     com: Array
-    rule: StepRule | None
+    rule: StepRule
 
 
 class TorqueStepper:
@@ -97,9 +86,8 @@ class TorqueStepper:
 
     Attributes:
         steps: Steps that were taken to prevent a fall.
-        comforts: Steps that were ordered.
+        comforts: Comfort steps, which it does not take.
         phase: What it is at.
-        orders: Steps to take, first comes first.
     """
 
     def __init__(
@@ -115,7 +103,6 @@ class TorqueStepper:
         self._reach = stepping.reach.reach()
         self.phase: Phase = "stand"
         self.steps = self.comforts = 0
-        self.orders: list[StepOrder] = []
         self._swing: Swing | None = None
 
     def reset(self, observation: Observation) -> None:
@@ -159,11 +146,6 @@ class TorqueStepper:
             return
         if self._rule is not None and self._falls(self._rule):
             self._begin(self._rule, now)
-        elif self.phase == "shift":
-            if gone >= SHIFT:
-                self._follow(self.orders.pop(0), now)
-        elif self.orders and (self.phase == "stand" or gone >= self._stepping.settle):
-            self._enter("shift", now)
         elif self.phase == "land" and gone >= self._stepping.settle:
             self._enter("stand", now)
 
@@ -188,17 +170,12 @@ class TorqueStepper:
         self.steps += 1
         self._lift(chosen.foot, chosen.target, self._heading, duration, rule, now)
 
-    def _follow(self, order: StepOrder, now: float) -> None:
-        """Take a step that was ordered."""
-        self.comforts += 1
-        self._lift(order.foot, order.target, order.yaw, order.duration, None, now)
-
     def _lift(
-        self, foot: int, target: Array, yaw: float, time: float, rule: StepRule | None, now: float
+        self, foot: int, target: Array, yaw: float, time: float, rule: StepRule, now: float
     ) -> None:
         pose = self.dynamics.ends[foot]
         com = self.dynamics.momenta.com[:2].copy()
-        yaws = (_yaw(pose.rotation), yaw)
+        yaws = (yaw_of(pose.rotation), yaw)
         self._swing = Swing(foot, now, time, pose.position, yaws, target, com, rule)
         self._enter("swing", now)
 
@@ -206,7 +183,7 @@ class TorqueStepper:
         """Aim anew, or land."""
         swing, stepping = self._flying, self._stepping
         part = (now - swing.began) / swing.duration
-        if swing.rule is not None and part < stepping.update:
+        if part < stepping.update:
             better = self._placement(swing.rule, swing.foot, swing.duration * (1.0 - part))
             if better is not None:
                 swing.target = better.target
@@ -231,13 +208,13 @@ class TorqueStepper:
         middle = self._middle(foot) - self.dynamics.ends[foot].position[:2]
         self._wanted = pivot + self._stepping.gain * (wanted - pivot) - middle
         stance = self.dynamics.ends[other]
-        region = self._reach.region(stance.position[:2], _yaw(stance.rotation), 1 - 2 * foot)
+        region = self._reach.region(stance.position[:2], yaw_of(stance.rotation), 1 - 2 * foot)
         return place(foot, self._wanted, region)
 
     @property
     def _heading(self) -> float:
         """Heading of the base, rad."""
-        return _yaw(self.dynamics.base.rotation)
+        return yaw_of(self.dynamics.base.rotation)
 
     def _middle(self, foot: int) -> Array:
         """Return (2,) m, the middle of a sole on the ground."""
@@ -274,18 +251,12 @@ class TorqueStepper:
         centre = 0.5 * (self._middle(0) + self._middle(1))
         if self._swing is not None:
             return self._com_swing(self._swing, now)
-        if self.phase == "shift":
-            part = min((now - self._since) / (0.8 * SHIFT), 1.0)
-            pivot = self._middle(1 - self.orders[0].foot)
-            return np.asarray(self._began + gaussian_progress(part) * (pivot - self._began))
         part = min((now - self._since) / max(self._stepping.settle, PERIOD), 1.0)
         return np.asarray(self._began + gaussian_progress(part) * (centre - self._began))
 
     def _com_swing(self, swing: Swing, now: float) -> Array:
-        """Return the point of the Bezier curve of section 5.2; an ordered step stays balanced."""
+        """Return the point of the Bezier curve of section 5.2."""
         pivot = self._middle(1 - swing.foot)
-        if swing.rule is None:
-            return pivot
         offset = self._middle(swing.foot) - self.dynamics.ends[swing.foot].position[:2]
         end = 0.5 * (pivot + swing.target + offset)
         return bezier(swing.com, pivot, end, (now - swing.began) / swing.duration)
@@ -300,7 +271,7 @@ class TorqueStepper:
         speed = (after - before) / (2.0 * PERIOD)
         force = (after - 2.0 * at + before) / PERIOD**2
         linear = force + SWING_GAIN * (at - pose.position) + SWING_DAMPING * (speed - twist[:3])
-        turned = _rotation(_turn(yaw) @ pose.rotation.T)
+        turned = rotation_vector(turn(yaw) @ pose.rotation.T)
         return np.concatenate((linear, SWING_GAIN * turned - SWING_DAMPING * twist[3:]))
 
     def _swing_aim(self, swing: Swing, now: float) -> tuple[Array, float]:
@@ -311,35 +282,12 @@ class TorqueStepper:
         at[:2] += way * (swing.target - swing.start[:2])
         at[2] = (1.0 - way) * swing.start[2] + lift(part, self._stepping.lift)
         at[2] -= max(part - 1.0, 0.0) * self._stepping.lift  # and on, until it meets the ground
-        turn = (swing.yaw[1] - swing.yaw[0] + np.pi) % (2.0 * np.pi) - np.pi
-        return at, swing.yaw[0] + way * turn
+        left = (swing.yaw[1] - swing.yaw[0] + np.pi) % (2.0 * np.pi) - np.pi
+        return at, swing.yaw[0] + way * left
 
     def _trunk_rate(self) -> Array:
         """Return the angular acceleration (3,) that turns the base upright, as the feet stand."""
-        yaws = [_yaw(end.rotation) for end in self.dynamics.ends]
+        yaws = [yaw_of(end.rotation) for end in self.dynamics.ends]
         half = 0.5 * ((yaws[1] - yaws[0] + np.pi) % (2.0 * np.pi) - np.pi)
-        error = _rotation(self.dynamics.base.rotation.T @ _turn(yaws[0] + half))
+        error = rotation_vector(self.dynamics.base.rotation.T @ turn(yaws[0] + half))
         return POSE_GAIN * error - POSE_DAMPING * self.dynamics.velocity[3:6]
-
-
-def _yaw(rotation: Array) -> float:
-    """Return the heading of a rotation matrix, rad."""
-    return float(np.arctan2(rotation[1, 0], rotation[0, 0]))
-
-
-def _turn(yaw: float) -> Array:
-    c, s = np.cos(yaw), np.sin(yaw)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def _rotation(matrix: Array) -> Array:
-    """Return the rotation vector (3,) rad of a rotation matrix that turns less than half round."""
-    axis = np.array(
-        [
-            matrix[2, 1] - matrix[1, 2],
-            matrix[0, 2] - matrix[2, 0],
-            matrix[1, 0] - matrix[0, 1],
-        ]
-    )
-    angle = np.arctan2(0.5 * np.linalg.norm(axis), 0.5 * (np.trace(matrix) - 1.0))
-    return np.asarray(0.5 * axis / max(np.sinc(angle / np.pi), 1e-3))

@@ -20,7 +20,7 @@ EDGES: Final = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 EQUAL: Final = 5
 """daqp's mark of a constraint that always holds with equality."""
 SOFT: Final = 8
-"""Its mark of one that may be broken at a cost: limits of torque, at speeds that no answer stops."""
+"""Its mark of one that may be broken at a cost: torque limits, at speeds that none can stop."""
 REGULAR: Final = 1e-4
 """Weight of every variable, so that the answer is the only one."""
 REACH: Final = 10.0
@@ -131,7 +131,9 @@ class WholeBody:
 
     def _forces(self, points: Sequence[Array]) -> Array:
         """Return the matrix that makes forces (3 p,) of the sizes of the pyramids' edges."""
-        return np.kron(np.eye(sum(len(part) for part in points)), self._edges.T)
+        return np.asarray(
+            np.kron(np.eye(sum(len(part) for part in points)), self._edges.T), dtype=np.float64
+        )
 
     def _spread(self, stance: Sequence[int], points: Sequence[Array]) -> Array:
         """Return the matrix (v, edges) that makes generalised forces of these sizes."""

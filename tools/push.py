@@ -1,7 +1,7 @@
 """`windup push`: push a standing twin, and see whether it stays up."""
 
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, Literal
 
@@ -78,7 +78,8 @@ class Push(WorldOptions, Common):
     def one(self, seed: int, plan: PushPlan, *, fall: bool = False) -> dict[str, Any]:
         """Return the result of one trial; with `fall` a robot that falls does so to the end."""
         world = self.world(load_robot(self.robot), seed)
-        with self.open_robot(seed, delay=self.delay, world=world) as robot:
+        rate = self.rate or find_stepping(load_robot(self.robot)).rate
+        with replace(self, rate=rate).open_robot(seed, delay=self.delay, world=world) as robot:
             result: dict[str, Any] = {"reason": "interrupted", "survived": False, "seed": seed}
             robot.protect = self.protect and fall
             gauge = ImpactGauge(robot.twin) if fall else None

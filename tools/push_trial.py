@@ -9,6 +9,7 @@ import numpy as np
 from control.footing import turn
 from control.play import PoseHolder
 from control.stepper import Stepper
+from control.torque_stepper import TorqueStepper
 from hal.controller import Controller
 from hal.errors import UsageError
 from hal.joints import Array
@@ -18,6 +19,7 @@ from sim_twin.touch import TouchWatch
 from tools.robot import Robot
 from tools.stepping import build_stepper, footing_of, stepping_stance
 
+STEPPERS = (Stepper, TorqueStepper)
 STILL = 0.05
 """Speed of the base of a robot that stands still, m/s."""
 AFTER = 3.0
@@ -93,7 +95,7 @@ class PushWatch:
         elif np.isnan(self.still):
             self.still = observation.time
         over = observation.time - self.plan.end
-        busy = isinstance(self.controller, Stepper) and self.controller.phase != "stand"
+        busy = isinstance(self.controller, STEPPERS) and self.controller.phase != "stand"
         if over >= AFTER and (not (busy or moving) or over >= AFTER + LONGEST):
             return "done" if not moving else "does not come to rest"
         return None
@@ -119,7 +121,7 @@ def push_robot(robot: Robot, plan: PushPlan, *, to_the_end: bool = False) -> dic
     touch = TouchWatch(description, robot.twin.model, robot.twin.data)
     watch = PushWatch(plan, touch, controller, to_the_end)
     report = robot.run(controller, until=watch)
-    stepper = controller if isinstance(controller, Stepper) else None
+    stepper = controller if isinstance(controller, STEPPERS) else None
     survived = report.reason == "done" and not (robot.fallen or touch.touched)
     if to_the_end and robot.fallen and not robot.protect:
         robot.run(PoseHolder(robot.description.joints, stance, ramp=0.0), LANDING, down=True)

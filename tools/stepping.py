@@ -2,12 +2,17 @@
 
 from typing import Final
 
+import numpy as np
+
+from control.dynamics import Dynamics
 from control.footing import Footing
 from control.play import PoseHolder
 from control.soles import Soles
 from control.step_decision import RULES
 from control.stepper import Stepper
 from control.stepping_file import Stepping
+from control.torque_stepper import TorqueStepper
+from control.whole_body import WholeBody
 from hal.config import load_toml
 from hal.controller import Controller
 from hal.errors import UnknownNameError, UsageError
@@ -16,6 +21,8 @@ from robots import RobotDescription, load_robot, robot_names
 from tools.build import body_of
 
 STEPPING: Final = "stepping.toml"
+FRICTION: Final = 0.8
+"""What whole-body control counts on; the floor has 1."""
 HOLD, FEET = "hold", "feet"
 WAYS: Final = (HOLD, FEET, *RULES)
 """Ways to meet a push: a stiff pose, balance with the feet alone, or steps by one of the rules."""
@@ -55,6 +62,13 @@ def footing_of(robot: RobotDescription, stance: Array) -> Footing:
     return Footing(body, robot.base, [foot.site for foot in robot.feet], soles, stance)
 
 
+def whole_body_of(robot: RobotDescription) -> WholeBody:
+    """Return the whole-body control of a robot with torque joints."""
+    dynamics = Dynamics(robot.spec().compile(), robot.base, [foot.site for foot in robot.feet])
+    limit = np.minimum(robot.joints.torque, find_stepping(robot).torque)
+    return WholeBody(dynamics, limit, FRICTION)
+
+
 def build_stepper(robot: RobotDescription, way: str, stance: Array) -> Controller:
     """Return the controller that meets pushes in one of the `WAYS`, standing in a pose (n,) rad.
 
@@ -69,6 +83,8 @@ def build_stepper(robot: RobotDescription, way: str, stance: Array) -> Controlle
         raise UsageError(f"{robot.name} has {len(robot.feet)} feet; stepping takes two")
     stepping = find_stepping(robot)
     rule = None if way == FEET else stepping.find_rule(way)
+    if robot.drive.kind == "torque":
+        return TorqueStepper(robot.joints, whole_body_of(robot), stance, rule, stepping)
     return Stepper(robot.joints, footing_of(robot, stance), stance, rule, stepping)
 
 

@@ -1,0 +1,19 @@
+import json
+from pathlib import Path
+
+import pytest
+
+from tools.cli import run
+
+
+@pytest.mark.parametrize(("impulse", "steps"), [("10", 0), ("40", 1)])
+def test_the_human_steps_where_a_push_asks_for_it(tmp_path: Path, impulse: str, steps: int) -> None:
+    out = tmp_path / "push.json"
+    assert run(["push", "human", "--impulse", impulse, "--at", "0.1", "--json", str(out)]) == 0
+    row = json.loads(out.read_text())
+    assert row["survived"]
+    assert row["steps"] == steps
+
+
+def test_feet_alone_do_not_survive_what_a_step_does() -> None:
+    assert run(["push", "human", "--impulse", "40", "--at", "0.1", "--way", "feet"]) == 1
