@@ -21,7 +21,7 @@ EQUAL: Final = 5
 """daqp's mark of a constraint that always holds with equality."""
 SOFT: Final = 8
 """Its mark of one that may be broken at a cost: torque limits, at speeds that none can stop."""
-REGULAR: Final = 1e-4
+REGULAR: Final = 1e-6
 """Weight of every variable, so that the answer is the only one."""
 REACH: Final = 10.0
 """Moment of inertia that makes angular momentum commensurate with the rest, kg m2."""
