@@ -68,13 +68,7 @@ class Body:
 
     def momenta(self) -> Momenta:
         """Return the momenta of the whole body as it was last measured."""
-        data, base = self.data, self._base
-        return Momenta(
-            self.mass,
-            data.subtree_com[base].copy(),
-            data.subtree_linvel[base].copy(),
-            data.subtree_angmom[base].copy(),
-        )
+        return Momenta.of(self.data, self._base, self.mass)
 
 
 def heading(orientation: Array) -> Array:

@@ -4,7 +4,8 @@ from math import cos, pi
 
 import numpy as np
 
-from control.footing import Footing, turn
+from control.footing import Footing
+from control.rotation import turn
 from control.swing import swing_foot
 from hal.joints import Array
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from control.body import Body, heading
 from control.directed_file import Directed
-from control.footing import quaternion_matrix, turn
 from control.footprints import Footprint, between, ground_places, onto, seen_from
-from control.limb_ik import LimbIk, Pose, turn_between
+from control.limb_ik import LimbIk, Pose
+from control.rotation import quaternion_matrix, turn, turn_between
 from control.swing import gaussian_progress, lift
 from control.weight import holding_torque
 from hal.command import JointCommand

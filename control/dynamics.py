@@ -70,12 +70,7 @@ class Dynamics:
         mujoco.mj_rne(model, data, 0, self.bias)
         mujoco.mj_subtreeVel(model, data)
         base = self._base
-        self.momenta = Momenta(
-            self._total,
-            data.subtree_com[base].copy(),
-            data.subtree_linvel[base].copy(),
-            data.subtree_angmom[base].copy(),
-        )
+        self.momenta = Momenta.of(data, base, self._total)
         self.base = Pose(state.position, data.xmat[base].reshape(3, 3).copy())
         self.ends = [
             Pose(data.site_xpos[site].copy(), data.site_xmat[site].reshape(3, 3).copy())

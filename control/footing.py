@@ -1,7 +1,7 @@
 """The feet of an observed robot: where they stand, and joint angles that put them elsewhere."""
 
 from collections.abc import Sequence
-from math import atan2, cos, sin
+from math import atan2
 
 import mujoco
 import numpy as np
@@ -9,11 +9,12 @@ import numpy as np
 from control.body import Body, heading
 from control.limb_ik import LimbIk, Pose
 from control.momenta import Momenta
+from control.rotation import quaternion_matrix, turn, turn_about_y, yaw_of
 from control.soles import Soles
 from control.support import SupportRegion
 from hal.errors import StateMissingError
 from hal.joints import Array
-from hal.observation import BaseState, Observation
+from hal.observation import Observation
 
 DOWN = 0.004
 """A foot is down when its lowest point is not higher than this above the lowest of all, m."""
@@ -109,7 +110,11 @@ class Footing:
 
     def ahead(self, time: float) -> Pose:
         """Return where the base will be in `time` s if it goes on as it does."""
-        return ahead(self._state, time)
+        state = self._state
+        orientation = state.orientation.copy()
+        mujoco.mju_quatIntegrate(orientation, state.angular_velocity, time)
+        position = state.position + time * state.linear_velocity
+        return Pose(position, quaternion_matrix(orientation))
 
     def stand(self, goals: Array, foot: int, base: Pose) -> None:
         """Set the joints of a leg in `goals` (n,) so that `base` is over its sole, flat as it is.
@@ -120,7 +125,7 @@ class Footing:
             base: Where the base should be, as far above the sole as above the ground.
         """
         sole = self.feet[foot]
-        level = turn(atan2(sole.rotation[1, 0], sole.rotation[0, 0]))
+        level = turn(yaw_of(sole.rotation))
         place = np.array([sole.position[0], sole.position[1], 0.0])
         self._solve(goals, foot, Pose(place, level).seen_from(base))
 
@@ -140,30 +145,3 @@ class Footing:
         angles = limb.solve(target, self._last[foot], ITERATIONS)
         self._last[foot][limb.joints] = angles
         goals[limb.joints] = angles
-
-
-def quaternion_matrix(orientation: Array) -> Array:
-    """Return the rotation matrix (3, 3) of a quaternion (4,) wxyz."""
-    matrix = np.empty(9)
-    mujoco.mju_quat2Mat(matrix, orientation)
-    return matrix.reshape(3, 3)
-
-
-def ahead(state: BaseState, time: float) -> Pose:
-    """Return where a base will be in `time` s if it goes on as it does."""
-    orientation = state.orientation.copy()
-    mujoco.mju_quatIntegrate(orientation, state.angular_velocity, time)
-    position = state.position + time * state.linear_velocity
-    return Pose(position, quaternion_matrix(orientation))
-
-
-def turn(yaw: float) -> Array:
-    """Return the rotation matrix (3, 3) of a turn about the vertical, rad."""
-    c, s = cos(yaw), sin(yaw)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def turn_about_y(pitch: float) -> Array:
-    """Return the rotation matrix (3, 3) of a turn about the y axis, rad; positive leans forward."""
-    c, s = cos(pitch), sin(pitch)
-    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])

@@ -8,9 +8,9 @@ from shapely import MultiPoint, Polygon
 from shapely.affinity import rotate, translate
 from shapely.geometry.base import BaseGeometry
 
-from control.footing import turn
 from control.footprints import Footprint, between, onto, seen_from
-from control.limb_ik import LimbIk, Pose, turn_between
+from control.limb_ik import LimbIk, Pose
+from control.rotation import turn, turn_between
 from hal.errors import UsageError
 from hal.joints import Array
 

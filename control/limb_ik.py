@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
+from control.rotation import turn_between
 from hal.errors import UsageError
 from hal.joints import Array
 
@@ -101,18 +102,6 @@ class LimbIk:
         error[:3] = target.position - now.position
         error[3:] = turn_between(now.rotation, target.rotation)
         return error
-
-
-def turn_between(one: Array, other: Array) -> Array:
-    """Return the turn (3,) rad, in the frame that both are seen from, from `one` to `other`."""
-    turn = other @ one.T
-    sine = 0.5 * np.array(
-        [turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]
-    )
-    size = float(np.sqrt(sine @ sine))
-    if size < 1e-9:
-        return sine
-    return sine * (np.arctan2(size, 0.5 * (np.trace(turn) - 1.0)) / size)
 
 
 def _chain(model: mujoco.MjModel, base: int, body: int) -> npt.NDArray[np.intp]:

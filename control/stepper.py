@@ -12,8 +12,9 @@ from typing import Literal
 import numpy as np
 
 from control.comfort import ComfortStep
-from control.footing import Footing, turn
+from control.footing import Footing
 from control.momenta import capture_point
+from control.rotation import turn
 from control.step_decision import (
     Placement,
     StepRule,

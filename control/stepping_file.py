@@ -33,7 +33,7 @@ class RuleTable(Record, frozen=True):
 
 
 class Stepping(Record, frozen=True):
-    """How a robot with position servos steps.
+    """How a robot steps; `up`, `lead`, `balance`, `trunk` and comfort steps are for servos alone.
 
     Attributes:
         stance: Name of the pose that it stands in, soles flat.
@@ -57,7 +57,7 @@ class Stepping(Record, frozen=True):
         patience: How long a robot stands still before it takes a comfort step, s.
         comfort: How far a foot may stand from its nominal place, m.
         rate: Of the loop, Hz; the robot's own by default.
-        torque: Largest torque that whole-body control asks of a joint, N m.
+        torque: Largest torque that whole-body control asks of a joint with ideal torque, N m.
     """
 
     stance: str

@@ -10,9 +10,8 @@ from typing import Literal
 
 import numpy as np
 
-from control.footing import turn
 from control.momenta import capture_point
-from control.rotation import rotation_vector, yaw_of
+from control.rotation import turn, turn_between, yaw_of
 from control.step_decision import (
     Placement,
     StepRule,
@@ -271,7 +270,7 @@ class TorqueStepper:
         speed = (after - before) / (2.0 * PERIOD)
         force = (after - 2.0 * at + before) / PERIOD**2
         linear = force + SWING_GAIN * (at - pose.position) + SWING_DAMPING * (speed - twist[:3])
-        turned = rotation_vector(turn(yaw) @ pose.rotation.T)
+        turned = turn_between(pose.rotation, turn(yaw))
         return np.concatenate((linear, SWING_GAIN * turned - SWING_DAMPING * twist[3:]))
 
     def _swing_aim(self, swing: Swing, now: float) -> tuple[Array, float]:
@@ -289,5 +288,6 @@ class TorqueStepper:
         """Return the angular acceleration (3,) that turns the base upright, as the feet stand."""
         yaws = [yaw_of(end.rotation) for end in self.dynamics.ends]
         half = 0.5 * ((yaws[1] - yaws[0] + np.pi) % (2.0 * np.pi) - np.pi)
-        error = rotation_vector(self.dynamics.base.rotation.T @ turn(yaws[0] + half))
+        base = self.dynamics.base.rotation
+        error = base.T @ turn_between(base, turn(yaws[0] + half))  # seen from the base
         return POSE_GAIN * error - POSE_DAMPING * self.dynamics.velocity[3:6]

@@ -15,13 +15,13 @@ from control.footprint_checks import FootprintChecks, outline
 from control.footprints import Footprint, between, ground_places, seen_from
 from control.limb_ik import LimbIk
 from control.soles import Soles
-from hal.config import load_toml
 from hal.errors import UnknownNameError, UsageError
 from hal.joints import Array
 from hal.observation import Observation
-from robots import RobotDescription, load_robot, robot_names
+from robots import RobotDescription
 from tools.build import body_of
 from tools.robot import Robot
+from tools.robot_file import load_beside
 
 FILE: Final = "footprints.toml"
 CLOSE, TURNED = 0.01, 5.0
@@ -35,11 +35,7 @@ def find_directed(robot: RobotDescription) -> Directed:
         UsageError: It has no footprints.toml.
         ConfigError: That file says something that cannot be.
     """
-    path = robot.folder / FILE
-    if not path.is_file():
-        able = [name for name in robot_names() if (load_robot(name).folder / FILE).is_file()]
-        raise UsageError(f"{robot.name} has no {FILE}; robots that have: {', '.join(able)}")
-    how = load_toml(path, Directed)
+    how = load_beside(robot, FILE, Directed)
     if how.stance not in robot.poses:
         raise UnknownNameError(f"pose of {robot.name}", how.stance, robot.poses)
     return how

@@ -1,5 +1,6 @@
 """What `windup step` and `windup footprints` share: walk on each seed, and say how it went."""
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,12 +22,12 @@ from tools.twin_options import TwinOptions
 
 
 @dataclass(frozen=True, kw_only=True)
-class DirectedOptions(TwinOptions, Common):
+class DirectedOptions(TwinOptions, Common, ABC):
     """Options of every command that walks footprints."""
 
+    @abstractmethod
     def prints(self, seed: int) -> list[Footprint]:
         """Return what to walk with this seed."""
-        raise NotImplementedError
 
     def walk(self, command: str) -> int:
         """Walk on every seed; returns the exit status."""

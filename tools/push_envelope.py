@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,15 +12,14 @@ from rich.table import Table
 from tools.output import console, write_json
 from tools.parallel import side_by_side
 from tools.plot_envelope import plot_envelope
-from tools.push_trial import PushPlan
 
 if TYPE_CHECKING:
     from tools.push import Push
 
 COARSE, FINE = 0.2, 0.05
-"""Steps of the impulse: up to the first fall, and between that and the last success, N s per
-kilogram of a robot of 3 kg; see `Search.scale`."""
+"""Steps of the impulse of a light robot: up to the first fall, and from the last success, N s."""
 LIGHT = 3.0
+"""Mass of a light robot, kg; heavier ones take larger steps, see `Search.scale`."""
 MOST = 30
 """Coarse steps after which nothing makes it fall."""
 
@@ -44,17 +43,8 @@ class Search:
     def survives(self, impulse: float) -> dict[str, Any]:
         """Return the result of one trial."""
         push = self.push
-        plan = PushPlan(
-            self.way,
-            impulse,
-            (self.direction,),
-            push.duration,
-            push.height,
-            push.at,
-            push.every,
-            push.body,
-            push.stance,
-        )
+        plan = push.plan(push.seed)
+        plan = replace(plan, way=self.way, impulse=impulse, directions=(self.direction,))
         return push.one(push.seed, plan)
 
 

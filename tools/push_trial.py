@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from control.footing import turn
 from control.play import PoseHolder
+from control.rotation import turn
 from control.stepper import Stepper
 from control.torque_stepper import TorqueStepper
 from hal.controller import Controller

@@ -13,12 +13,12 @@ from control.stepper import Stepper
 from control.stepping_file import Stepping
 from control.torque_stepper import TorqueStepper
 from control.whole_body import WholeBody
-from hal.config import load_toml
 from hal.controller import Controller
 from hal.errors import UnknownNameError, UsageError
 from hal.joints import Array
-from robots import RobotDescription, load_robot, robot_names
+from robots import RobotDescription
 from tools.build import body_of
+from tools.robot_file import load_beside
 
 STEPPING: Final = "stepping.toml"
 FRICTION: Final = 0.8
@@ -35,11 +35,7 @@ def find_stepping(robot: RobotDescription) -> Stepping:
         UsageError: It has no stepping.toml.
         ConfigError: That file says something that cannot be.
     """
-    path = robot.folder / STEPPING
-    if not path.is_file():
-        able = [name for name in robot_names() if (load_robot(name).folder / STEPPING).is_file()]
-        raise UsageError(f"{robot.name} has no {STEPPING}; robots that step: {', '.join(able)}")
-    return load_toml(path, Stepping)
+    return load_beside(robot, STEPPING, Stepping)
 
 
 def stepping_stance(robot: RobotDescription, name: str | None = None) -> Array:

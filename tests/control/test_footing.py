@@ -2,7 +2,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from control.footing import Footing, quaternion_matrix, turn
+from control.footing import Footing
+from control.rotation import turn
 from hal.errors import StateMissingError
 from hal.observation import BaseState, JointState, Observation
 from robots import load_robot
@@ -82,8 +83,3 @@ def test_without_a_base_nobody_knows_where_the_feet_are(footing: Footing) -> Non
     blind = seen()
     with pytest.raises(StateMissingError, match="--state estimated"):
         footing.look(Observation(0.0, blind.joints, None, blind.contacts, None))
-
-
-def test_a_quaternion_turns_as_mujocos() -> None:
-    quaternion = np.array([np.cos(0.3), 0.0, 0.0, np.sin(0.3)])
-    assert quaternion_matrix(quaternion) == pytest.approx(turn(0.6))

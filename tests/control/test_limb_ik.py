@@ -4,7 +4,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from control.limb_ik import LimbIk, Pose, turn_between
+from control.limb_ik import LimbIk, Pose
+from control.rotation import turn_between
 from hal.errors import UsageError
 from robots import load_robot
 
