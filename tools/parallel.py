@@ -79,9 +79,10 @@ class Workers:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         self._progress.stop()
-        if all(future.done() for future in self._futures):
+        # An interrupt may come while the first items are being submitted, with none of them known.
+        if kind is None and all(future.done() for future in self._futures):
             self._pool.shutdown()
             return
         self._pool.shutdown(wait=False, cancel_futures=True)
