@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 
 from control.momenta import capture_point
+from control.no_step import NoStep
 from control.rotation import turn, turn_between, yaw_of
 from control.step_decision import (
     Placement,
@@ -82,6 +83,7 @@ class TorqueStepper:
         stance: (n,) rad, the pose to stand in.
         rule: When and where to step; None balances without steps.
         stepping: How.
+        no_step: Where no foot may come down.
 
     Attributes:
         steps: Steps that were taken to prevent a fall.
@@ -96,7 +98,9 @@ class TorqueStepper:
         stance: Array,
         rule: StepRule | None,
         stepping: Stepping,
+        no_step: NoStep | None = None,
     ) -> None:
+        self.no_step = no_step or NoStep()
         self._joints, self._body, self.dynamics = joints, body, body.dynamics
         self._stance, self._rule, self._stepping = stance, rule, stepping
         self._reach = stepping.reach.reach()
@@ -112,6 +116,7 @@ class TorqueStepper:
         self._since = self._due = observation.time
         self._began = self.dynamics.momenta.com[:2].copy()
         self._plan: Plan | None = None
+        self.no_step.begin(self.dynamics.ends, [self.dynamics.ground(foot) for foot in (0, 1)])
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the torques of now.
@@ -208,7 +213,9 @@ class TorqueStepper:
         self._wanted = pivot + self._stepping.gain * (wanted - pivot) - middle
         stance = self.dynamics.ends[other]
         region = self._reach.region(stance.position[:2], yaw_of(stance.rotation), 1 - 2 * foot)
-        return place(foot, self._wanted, region)
+        start = self._swing.start if self._swing else self.dynamics.ends[foot].position
+        holes = self.no_step.holes(foot, self._heading, start[:2])
+        return place(foot, self._wanted, region, holes)
 
     @property
     def _heading(self) -> float:
