@@ -29,6 +29,8 @@ SPIN_DAMPING = 5.0
 """d_z of Eq. 11, 1/s."""
 STILL_DAMPING = 20.0
 """Damping of a standing foot, 1/s."""
+TOUCH = 0.003
+"""A foot has landed when its lowest corner is that near to the ground, m."""
 FOLLOW_DAMPING = 2.0
 """Damping of every joint about the speed that was planned, N m s/rad."""
 
@@ -145,11 +147,12 @@ class TorqueMotion(ABC):
     def _com_rate(self, now: float) -> Array:
         """Return the acceleration (3,) of the centre of mass (Eq. 10)."""
         body = self.dynamics.momenta
-        aim, speed = self._com_aim(now), np.zeros(3)
-        ahead = self._com_aim(now + PERIOD)
-        speed[:2] = (ahead - aim) / PERIOD
+        before, aim, after = (self._com_aim(now + k * PERIOD) for k in (-1, 0, 1))
+        speed, force = np.zeros(3), np.zeros(3)
+        speed[:2] = (after - before) / (2.0 * PERIOD)
+        force[:2] = (after - 2.0 * aim + before) / PERIOD**2
         error = np.array([*aim, self._height]) - body.com
-        return np.asarray(COM_GAIN * error + COM_DAMPING * (speed - body.velocity))
+        return np.asarray(force + COM_GAIN * error + COM_DAMPING * (speed - body.velocity))
 
     def _swing_rate(self, swing: Swing, now: float) -> Array:
         """Return the acceleration (6,) of the swing foot along its curve (section 5.1)."""
