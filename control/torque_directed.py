@@ -13,7 +13,7 @@ import numpy as np
 from control.directed_file import Directed
 from control.footprints import Footprint, between, ground_places, onto
 from control.swing import smooth_progress
-from control.torque_motion import TOUCH, TorqueMotion
+from control.torque_motion import PERIOD, TOUCH, TorqueMotion
 from control.whole_body import WholeBody
 from hal.joints import Array, Joints
 from hal.observation import Observation
@@ -123,6 +123,13 @@ class TorqueDirected(TorqueMotion):
             return 0.5 * (self._middle(0) + self._middle(1))
         at = self.landed - (self._phase == "land")
         return self._middle(1 - self.prints[at].foot)
+
+    def _com_rate(self, now: float) -> Array:
+        """Add the acceleration of the curve, which is smooth here (Eq. 10)."""
+        before, aim, after = (self._com_aim(now + k * PERIOD) for k in (-1, 0, 1))
+        rate = super()._com_rate(now)
+        rate[:2] += (after - 2.0 * aim + before) / PERIOD**2
+        return rate
 
     def _com_aim(self, now: float) -> Array:
         if self._phase in ("swing", "land"):

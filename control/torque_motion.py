@@ -147,12 +147,11 @@ class TorqueMotion(ABC):
     def _com_rate(self, now: float) -> Array:
         """Return the acceleration (3,) of the centre of mass (Eq. 10)."""
         body = self.dynamics.momenta
-        before, aim, after = (self._com_aim(now + k * PERIOD) for k in (-1, 0, 1))
-        speed, force = np.zeros(3), np.zeros(3)
-        speed[:2] = (after - before) / (2.0 * PERIOD)
-        force[:2] = (after - 2.0 * aim + before) / PERIOD**2
+        aim, speed = self._com_aim(now), np.zeros(3)
+        ahead = self._com_aim(now + PERIOD)
+        speed[:2] = (ahead - aim) / PERIOD
         error = np.array([*aim, self._height]) - body.com
-        return np.asarray(force + COM_GAIN * error + COM_DAMPING * (speed - body.velocity))
+        return np.asarray(COM_GAIN * error + COM_DAMPING * (speed - body.velocity))
 
     def _swing_rate(self, swing: Swing, now: float) -> Array:
         """Return the acceleration (6,) of the swing foot along its curve (section 5.1)."""
