@@ -108,6 +108,11 @@ class Stepper:
         self._pose(command.position, now)
         return command
 
+    @property
+    def stepping_foot(self) -> int:
+        """The foot of the step that it is at, or of the last one."""
+        return self._flight.foot
+
     def _decide(self, now: float) -> None:
         """Go over to the next phase where it is time."""
         stepping = self.stepping

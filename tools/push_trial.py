@@ -1,5 +1,6 @@
 """One push on a twin, and whether the robot still stands afterwards."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import nan, radians
 from typing import Any
@@ -26,6 +27,7 @@ AFTER = 3.0
 """How long after the last push it has to, s."""
 LONGEST = 3.0
 """How much longer a comfort step that it is at may take, s."""
+Look = Callable[[Observation, Controller], None]
 LANDING = 1.5
 """From a stiff fall being seen to lying, s."""
 
@@ -71,6 +73,7 @@ class PushWatch:
         touch: What touches the ground.
         controller: Who controls.
         to_the_end: Does a touch of anything but a foot leave the run going?
+        look: Called at every tick, for whoever draws.
         still: Since when the base is still, s; nan while it moves.
         seen: The last observation.
     """
@@ -79,6 +82,7 @@ class PushWatch:
     touch: TouchWatch
     controller: Controller
     to_the_end: bool = False
+    look: Look | None = None
     still: float = nan
     seen: list[Observation] = field(default_factory=list)
 
@@ -86,6 +90,8 @@ class PushWatch:
         """Return why the run is over, or None."""
         self.seen = [observation]
         self.touch.look()
+        if self.look is not None:
+            self.look(observation, self.controller)
         if self.touch.touched and not self.to_the_end:
             return "fell"
         base = observation.base
@@ -101,13 +107,16 @@ class PushWatch:
         return None
 
 
-def push_robot(robot: Robot, plan: PushPlan, *, to_the_end: bool = False) -> dict[str, Any]:
+def push_robot(
+    robot: Robot, plan: PushPlan, *, to_the_end: bool = False, look: Look | None = None
+) -> dict[str, Any]:
     """Let a fresh twin stand, push it, and return how it went.
 
     Args:
         robot: The robot.
         plan: What is done to it.
         to_the_end: Do not stop at the first touch of anything but a foot: fall until it lies.
+        look: Called at every tick until then, with the observation and the controller.
 
     Raises:
         UsageError: A body or a height that the robot does not have, or it cannot step.
@@ -119,7 +128,7 @@ def push_robot(robot: Robot, plan: PushPlan, *, to_the_end: bool = False) -> dic
     robot.start_in(stance)
     arrange(robot, plan)
     touch = TouchWatch(description, robot.twin.model, robot.twin.data)
-    watch = PushWatch(plan, touch, controller, to_the_end)
+    watch = PushWatch(plan, touch, controller, to_the_end, look)
     report = robot.run(controller, until=watch)
     stepper = controller if isinstance(controller, STEPPERS) else None
     survived = report.reason == "done" and not (robot.fallen or touch.touched)
