@@ -39,6 +39,7 @@ class Footing:
         yaw: Heading of the base, rad.
         feet: Poses of the soles' centres.
         places: (k, 2) where these are on the ground, m.
+        front: Heading between the feet, rad: where a base that stands on them should face.
         down: Which feet are on the ground.
         height: Of the base above the soles in the stance, m.
         radius: Of Kenwright's circle for each sole, m; None takes the hull of its points.
@@ -49,6 +50,7 @@ class Footing:
     yaw: float
     feet: list[Pose]
     places: Array
+    front: float
     down: list[bool]
 
     def __init__(
@@ -86,6 +88,8 @@ class Footing:
             for site in sites
         ]
         self.places = data.site_xpos[sites, :2].copy()
+        ways = np.sum([foot.rotation[:2, 0] for foot in self.feet], axis=0)
+        self.front = atan2(ways[1], ways[0])
         up = self.base.rotation[2]
         self._soles.update(observation.joints.position, observation.joints.velocity, up)
         self._ground = self.base.position + self._soles.position @ self.base.rotation.T
@@ -110,17 +114,18 @@ class Footing:
 
     def home(self) -> Array:
         """Return where (2,) m the base is in the stance, over the feet of now."""
-        return self.places.mean(axis=0) + turn(self.yaw)[:2, :2] @ self._offset
+        return self.places.mean(axis=0) + turn(self.front)[:2, :2] @ self._offset
 
-    def upright(self, place: Array, pitch: float = 0.0) -> Pose:
-        """Return the stance's pose of the base over a place, in the heading of now.
+    def upright(self, place: Array, heading: float, pitch: float = 0.0) -> Pose:
+        """Return the stance's pose of the base over a place.
 
         Args:
             place: (2,) m.
+            heading: rad.
             pitch: How far it leans forward from there, rad.
         """
         position = np.array([place[0], place[1], self.height])
-        return Pose(position, turn(self.yaw) @ turn_about_y(pitch) @ self._level)
+        return Pose(position, turn(heading) @ turn_about_y(pitch) @ self._level)
 
     def ahead(self, time: float) -> Pose:
         """Return where the base will be in `time` s if it goes on as it does."""
@@ -143,16 +148,21 @@ class Footing:
         place = np.array([sole.position[0], sole.position[1], 0.0])
         self._solve(goals, foot, Pose(place, level).seen_from(base))
 
-    def put(self, goals: Array, foot: int, at: Array, base: Pose) -> None:
+    def put(self, goals: Array, foot: int, at: Array, heading: float, base: Pose) -> None:
         """Set the joints of a leg in `goals` (n,) so that its sole is flat at `at` (3,) m.
 
         Args:
             goals: rad, changed in place.
             foot: Which foot.
-            at: Where its sole's centre should be, in the heading of now.
+            at: Where its sole's centre should be.
+            heading: Of the sole, rad.
             base: Where the base will be by then.
         """
-        self._solve(goals, foot, Pose(at, turn(self.yaw)).seen_from(base))
+        self._solve(goals, foot, Pose(at, turn(heading)).seen_from(base))
+
+    def missed(self, foot: int) -> float:
+        """Return how far out of reach the last place of a foot was, m."""
+        return self._limbs[foot].missed
 
     def _solve(self, goals: Array, foot: int, target: Pose) -> None:
         limb = self._limbs[foot]

@@ -47,7 +47,11 @@ class LimbIk:
 
     Attributes:
         joints: (k,) indices of the limb's joints, from the base outwards.
+        missed: How far the end was from where it should be before the last change, m: large where
+            a target is out of reach.
     """
+
+    missed: float = 0.0
 
     def __init__(self, model: mujoco.MjModel, base: str, end: str) -> None:
         self._model, self._data = model, mujoco.MjData(model)
@@ -80,12 +84,13 @@ class LimbIk:
             data.qpos[7 + self.joints] = angles
             mujoco.mj_kinematics(self._model, data)
             error = self._error(target)
+            self.missed = float(np.sqrt(error[:3] @ error[:3]))
             if np.abs(error).max() < CLOSE:
                 break
             mujoco.mj_comPos(self._model, data)
             mujoco.mj_jacSite(self._model, data, self._jacobian[:3], self._jacobian[3:], self._site)
             matrix = self._jacobian[:, 6 + self.joints]
-            square = matrix.T @ matrix + DAMPING**2 * np.eye(len(angles))
+            square = matrix.T @ matrix + (DAMPING**2 + 0.5 * (error @ error)) * np.eye(len(angles))
             change = np.linalg.solve(square, matrix.T @ error)
             angles += np.clip(change, -LARGEST, LARGEST)
             np.clip(angles, self._lower, self._upper, out=angles)

@@ -1,6 +1,6 @@
 """Rotation matrices (3, 3): made from headings and quaternions, and what lies between two."""
 
-from math import atan2, cos, sin
+from math import atan2, cos, remainder, sin, tau
 
 import mujoco
 import numpy as np
@@ -17,6 +17,11 @@ def turn(yaw: float) -> Array:
     """Return the rotation matrix (3, 3) of a turn about the vertical, rad."""
     c, s = cos(yaw), sin(yaw)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def heading_between(one: float, other: float, part: float) -> float:
+    """Return the heading after a `part` of the shorter way from `one` to `other`, rad."""
+    return one + part * remainder(other - one, tau)
 
 
 def turn_about_y(pitch: float) -> Array:
