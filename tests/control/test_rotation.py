@@ -1,7 +1,14 @@
 import numpy as np
 import pytest
 
-from control.rotation import quaternion_matrix, turn, turn_about_y, turn_between, yaw_of
+from control.rotation import (
+    heading_between,
+    quaternion_matrix,
+    turn,
+    turn_about_y,
+    turn_between,
+    yaw_of,
+)
 
 
 def test_a_quaternion_turns_as_mujocos() -> None:
@@ -22,3 +29,8 @@ def test_a_turn_about_y_leans_forward() -> None:
 def test_the_turn_between_two_is_what_is_missing(angle: float) -> None:
     one = turn(0.4) @ turn_about_y(0.2)
     assert turn_between(one, turn(angle) @ one) == pytest.approx([0.0, 0.0, angle], abs=1e-9)
+
+
+def test_between_two_headings_it_goes_the_shorter_way() -> None:
+    assert heading_between(0.1, 0.5, 0.25) == pytest.approx(0.2)
+    assert turn(heading_between(3.0, -3.0, 0.5)) == pytest.approx(turn(np.pi))
