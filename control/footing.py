@@ -7,10 +7,10 @@ import mujoco
 import numpy as np
 from shapely import MultiPoint
 
-from control.body import Body, heading
+from control.body import Body
 from control.limb_ik import LimbIk, Pose
 from control.momenta import Momenta
-from control.rotation import quaternion_matrix, turn, turn_about_y, yaw_of
+from control.rotation import facing, quaternion_matrix, turn, turn_about_y, yaw_of
 from control.soles import Soles
 from control.support import SupportRegion
 from hal.errors import StateMissingError
@@ -81,18 +81,16 @@ class Footing:
         self.momenta = self._body.momenta()
         self.base = Pose(state.position, quaternion_matrix(state.orientation))
         self._state = state
-        self.yaw = float(heading(state.orientation))
+        self.yaw = facing(self.base.rotation)
         sites = self._body.soles
         self.feet = [
             Pose(data.site_xpos[site].copy(), data.site_xmat[site].reshape(3, 3).copy())
             for site in sites
         ]
         self.places = data.site_xpos[sites, :2].copy()
-        ways = np.sum([foot.rotation[:2, 0] for foot in self.feet], axis=0)
-        self.front = atan2(ways[1], ways[0])
-        up = self.base.rotation[2]
-        self._soles.update(observation.joints.position, observation.joints.velocity, up)
-        self._ground = self.base.position + self._soles.position @ self.base.rotation.T
+        x, y = (sum(foot.rotation[axis, 0] for foot in self.feet) for axis in (0, 1))
+        self.front = atan2(y, x)
+        self._ground = self._soles.seen(data)
         heights = [self._ground[self._soles.foot == k, 2].min() for k in range(len(sites))]
         self.down = [height < min(heights) + DOWN for height in heights]
 
