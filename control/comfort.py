@@ -92,7 +92,11 @@ class ComfortStep:
         """Lift the foot as soon as the other one can bear the robot; put it down in time."""
         gone, footing, foot = now - self._began, self._footing, self.foot
         if self._phase == "shift":
-            inside = footing.support((1 - foot,)).margin(capture_point(footing.momenta))
+            other, momenta = footing.support((1 - foot,)), footing.momenta
+            inside = other.margin(capture_point(momenta))
+            if not self._quick:
+                # It stays on that foot for a while: the centre of mass itself has to be over it.
+                inside = min(inside, other.margin(momenta.com))
             stretched = footing.missed(foot) > STRETCHED
             if inside > (BARELY if stretched else INSIDE):
                 self._places[foot] = np.append(footing.places[foot], 0.0)
@@ -101,7 +105,8 @@ class ComfortStep:
                 self.given_up = True
                 self._begin("back", now)
         elif self._phase == "swing" and (gone > self._time or self._touches(gone)):
-            self._place = self._over
+            # From where it is: it never came all the way over the other foot.
+            self._place = footing.base.position[:2].copy()
             self._places[foot], self._yaws[foot] = self.target, self._after
             self._begin("back", now)
 
