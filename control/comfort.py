@@ -8,7 +8,7 @@ import numpy as np
 from control.footing import Footing
 from control.limb_ik import Pose
 from control.momenta import capture_point
-from control.rotation import heading_between, turn, yaw_of
+from control.rotation import heading_between, turn
 from control.stepping_file import Stepping
 from control.swing import gaussian_progress, swing_foot
 from hal.joints import Array
@@ -53,8 +53,8 @@ class ComfortStep:
 
     def __init__(self, footing: Footing, now: float, stepping: Stepping) -> None:
         self._footing, self._began, self._stepping = footing, now, stepping
-        self._yaws = [yaw_of(foot.rotation) for foot in footing.feet]
-        self._places = [np.append(place, 0.0) for place in footing.places]
+        planted = footing.planted()
+        self._yaws, self._places = planted.yaws, planted.places
         aside = [self._home(foot) - footing.places[foot] for foot in (0, 1)]
         # Both miss by about as much; the one that has to go forward leaves the other in front.
         forward = turn(footing.front)[:2, 0]
@@ -99,7 +99,7 @@ class ComfortStep:
                 inside = min(inside, other.margin(momenta.com))
             stretched = footing.missed(foot) > STRETCHED
             if inside > (BARELY if stretched else INSIDE):
-                self._places[foot] = np.append(footing.places[foot], 0.0)
+                self._places[foot, :2] = footing.places[foot]
                 self._begin("swing", now)
             elif stretched or gone > SHIFT + WAIT:
                 self.given_up = True

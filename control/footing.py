@@ -1,6 +1,7 @@
 """The feet of an observed robot: where they stand, and joint angles that put them elsewhere."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import atan2, pi, sqrt
 
 import mujoco
@@ -21,6 +22,23 @@ DOWN = 0.004
 """A foot is down when its lowest point is not higher than this above the lowest of all, m."""
 ITERATIONS = 2
 """Of the inverse kinematics in a tick; each one begins where the last tick ended."""
+
+
+@dataclass(frozen=True)
+class Planted:
+    """Where feet stood at some time.
+
+    Attributes:
+        places: (k, 3) of the soles' centres, on the ground, m.
+        yaws: (k,) rad.
+        home: Where (2,) m the base is over them in the stance.
+        front: Heading between them, rad.
+    """
+
+    places: Array
+    yaws: list[float]
+    home: Array
+    front: float
 
 
 class Footing:
@@ -113,6 +131,14 @@ class Footing:
     def home(self) -> Array:
         """Return where (2,) m the base is in the stance, over the feet of now."""
         return self.places.mean(axis=0) + turn(self.front)[:2, :2] @ self._offset
+
+    def planted(self) -> Planted:
+        """Return where the feet are, to keep them there: feet that slip are not followed."""
+        places = np.zeros((len(self.feet), 3))
+        places[:, :2] = self.places
+        return Planted(
+            places, [yaw_of(foot.rotation) for foot in self.feet], self.home(), self.front
+        )
 
     def upright(self, place: Array, heading: float, pitch: float = 0.0) -> Pose:
         """Return the stance's pose of the base over a place.

@@ -13,7 +13,7 @@ import numpy as np
 from shapely.geometry.base import BaseGeometry
 
 from control.comfort import ComfortStep
-from control.footing import Footing
+from control.footing import Footing, Planted
 from control.momenta import capture_point
 from control.no_step import NoStep
 from control.rotation import heading_between, turn
@@ -96,6 +96,7 @@ class Stepper:
         self.steps = self.comforts = 0
         self._hold = JointCommand.hold(self.joints, self.stance)
         self._landed = -np.inf
+        self._planted: Planted | None = None
         self._moved = observation.time
         self.footing.look(observation)
         if self.stepping.support == "capsule":
@@ -165,6 +166,7 @@ class Stepper:
         chosen = choose(possible, footing.places, self._wanted)
         start = footing.places[chosen.foot].copy()
         self._flight = Flight(rule, chosen.foot, now, start, chosen.target, self._centre(now))
+        self._planted = None
         self.phase, self.steps = "swing", self.steps + 1
 
     def _placement(self, rule: StepRule, foot: int, left: float) -> Placement | None:
@@ -193,7 +195,7 @@ class Stepper:
         foot, yaw = comfort.foot, footing.yaw
         free = self.no_step.allows(foot, yaw, footing.places[foot], comfort.target)
         if comfort.needed and free:
-            self._comfort = comfort
+            self._comfort, self._planted = comfort, None
             self.phase, self.comforts = "comfort", self.comforts + 1
 
     def _pose(self, goals: Array, now: float) -> None:
@@ -205,10 +207,16 @@ class Stepper:
         if self.phase == "swing":
             self._swing(goals, now)
             return
-        place = self._centre(now) - self._against(footing.places.mean(axis=0))
-        base = footing.upright(place, self._heading(now))
+        against = self._against(footing.places.mean(axis=0))
+        if self._back(now) < 1.0:
+            base = footing.upright(self._centre(now) - against, self._heading(now))
+            for foot in (0, 1):
+                footing.stand(goals, foot, base)
+            return
+        planted = self._planted = self._planted or footing.planted()
+        base = footing.upright(planted.home - against, planted.front)
         for foot in (0, 1):
-            footing.stand(goals, foot, base)
+            footing.put(goals, foot, planted.places[foot], planted.yaws[foot], base)
 
     def _swing(self, goals: Array, now: float) -> None:
         """Tip over one leg, and put the other foot where it should be `lead` s from now."""
