@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from control.momenta import capture_point
+from control.no_step import NoStep
 from control.rotation import yaw_of
 from control.step_decision import (
     Placement,
@@ -38,6 +39,7 @@ class TorqueStepper(TorqueMotion):
         stance: (n,) rad, the pose to stand in.
         rule: When and where to step; None balances without steps.
         stepping: How.
+        no_step: Where no foot may come down.
 
     Attributes:
         steps: Steps that were taken to prevent a fall.
@@ -52,7 +54,9 @@ class TorqueStepper(TorqueMotion):
         stance: Array,
         rule: StepRule | None,
         stepping: Stepping,
+        no_step: NoStep | None = None,
     ) -> None:
+        self.no_step = no_step or NoStep()
         super().__init__(joints, body, stance, stepping.lift)
         self._rule, self._stepping = rule, stepping
         self._reach = stepping.reach.reach()
@@ -63,6 +67,7 @@ class TorqueStepper(TorqueMotion):
         """Begin to stand; the robot is in its stance."""
         super().reset(observation)
         self.phase, self.steps, self.comforts = "stand", 0, 0
+        self.no_step.begin(self.dynamics.ends, [self.dynamics.ground(foot) for foot in (0, 1)])
         self._since, self._began = observation.time, self.dynamics.momenta.com[:2].copy()
 
     def _decide(self, now: float) -> None:
@@ -125,7 +130,9 @@ class TorqueStepper(TorqueMotion):
         self._wanted = pivot + self._stepping.gain * (wanted - pivot) - middle
         stance = self.dynamics.ends[other]
         region = self._reach.region(stance.position[:2], yaw_of(stance.rotation), 1 - 2 * foot)
-        return place(foot, self._wanted, region)
+        start = self._swing.start if self._swing else self.dynamics.ends[foot].position
+        holes = self.no_step.holes(foot, self._heading, start[:2])
+        return place(foot, self._wanted, region, holes)
 
     @property
     def _heading(self) -> float:
