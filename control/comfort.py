@@ -1,6 +1,6 @@
 """A comfort step: a robot that stands still puts one foot back where its stance has it."""
 
-from math import cos, pi, remainder, tau
+from math import cos, pi
 from typing import Literal
 
 import numpy as np
@@ -8,7 +8,7 @@ import numpy as np
 from control.footing import Footing
 from control.limb_ik import Pose
 from control.momenta import capture_point
-from control.rotation import heading_between, turn
+from control.rotation import heading_between, turn, way_round
 from control.stepping_file import Stepping
 from control.swing import gaussian_progress, swing_foot
 from hal.joints import Array
@@ -61,7 +61,7 @@ class ComfortStep:
         self.foot = int(np.argmax([way @ forward for way in aside]))
         self.target = np.append(self._home(self.foot), 0.0)
         far = float(np.linalg.norm(aside[self.foot]))
-        self.needed = far > stepping.comfort or abs(self._turned()) > ASKEW
+        self.needed = far > stepping.comfort or abs(way_round(*self._yaws)) > ASKEW
         self.given_up = False
         self._quick = far > WIDE
         self._phase: Phase = "shift"
@@ -143,10 +143,6 @@ class ComfortStep:
     def _keep(self, goals: Array, foot: int, base: Pose) -> None:
         """Keep a foot where it was put: one that slips is not followed."""
         self._footing.put(goals, foot, self._places[foot], self._yaws[foot], base)
-
-    def _turned(self) -> float:
-        """Return how far one foot is turned from the other, rad."""
-        return remainder(self._yaws[1] - self._yaws[0], tau)
 
     def _home(self, foot: int) -> Array:
         """Return where (2,) m a foot is in the stance, beside the other one as that stands."""

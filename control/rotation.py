@@ -1,6 +1,6 @@
 """Rotation matrices (3, 3): made from headings and quaternions, and what lies between two."""
 
-from math import atan2, cos, hypot, remainder, sin, tau
+from math import atan2, cos, hypot, sin
 
 import mujoco
 import numpy as np
@@ -26,7 +26,7 @@ def turn(yaw: float) -> Array:
 
 def heading_between(one: float, other: float, part: float) -> float:
     """Return the heading after a `part` of the shorter way from `one` to `other`, rad."""
-    return one + part * remainder(other - one, tau)
+    return one + part * way_round(one, other)
 
 
 def turn_about_y(pitch: float) -> Array:
@@ -49,3 +49,19 @@ def turn_between(one: Array, other: Array) -> Array:
     size = hypot(x, y, z)
     factor = 1.0 if size < 1e-9 else atan2(size, 0.5 * (a + e + i - 1.0)) / size
     return np.array([factor * x, factor * y, factor * z])
+
+
+def way_round(one: float, other: float) -> float:
+    """Return the shorter way from one direction to another, rad."""
+    return atan2(sin(other - one), cos(other - one))
+
+
+def lying(normal: Array, yaw: float) -> Array:
+    """Return the rotation (3, 3) of what lies on ground of a unit `normal` (3,), heading `yaw` rad.
+
+    Seen from above it has that heading.
+    """
+    c, s = cos(yaw), sin(yaw)
+    along = np.array([c, s, -(c * normal[0] + s * normal[1]) / normal[2]])
+    along /= np.linalg.norm(along)
+    return np.column_stack([along, np.cross(normal, along), normal])
