@@ -1,6 +1,7 @@
 """The `windup` command: parse, run, and turn errors into one line and an exit status."""
 
 import logging
+import os
 import signal
 import sys
 from contextlib import suppress
@@ -81,6 +82,10 @@ def run(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         console.print("windup: interrupted")
         return 130
+    except BrokenPipeError:
+        # Whoever read our words, such as `head`, has gone: what is left of them goes nowhere.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
     except SystemExit as parsed:
         status = parsed.code if isinstance(parsed.code, int) else 2
         if status != 0:

@@ -1,3 +1,5 @@
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -204,3 +206,12 @@ def test_a_sound_folder_of_ones_own_is_played(windup: Windup, my_op3: Path) -> N
     ran = windup("play", my_op3, "bow", "--json", "-")
     assert ran.status == 0
     assert ran.json["reason"] == "done"
+
+
+def test_a_reader_that_goes_away_leaves_no_traceback() -> None:
+    command = [sys.executable, "-c", "from tools.cli import main; main()", "push", "--help"]
+    run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert run.stdout is not None
+    run.stdout.close()
+    _, said = run.communicate(timeout=60)
+    assert (run.returncode, said) == (1, "")
