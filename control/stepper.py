@@ -207,14 +207,9 @@ class Stepper:
         if self.phase == "swing":
             self._swing(goals, now)
             return
-        against = self._against(footing.places.mean(axis=0))
-        if self._back(now) < 1.0:
-            base = footing.upright(self._centre(now) - against, self._heading(now))
-            for foot in (0, 1):
-                footing.stand(goals, foot, base)
-            return
         planted = self._planted = self._planted or footing.planted()
-        base = footing.upright(planted.home - against, planted.front)
+        against = self._against(footing.places.mean(axis=0))
+        base = footing.upright(self._centre(now) - against, self._heading(now))
         for foot in (0, 1):
             footing.put(goals, foot, planted.places[foot], planted.yaws[foot], base)
 
@@ -236,12 +231,14 @@ class Stepper:
 
     def _centre(self, now: float) -> Array:
         """Return where (2,) m the base should be: over the feet, some time after a step."""
-        here, home = self.footing.base.position[:2], self.footing.home()
+        here = self.footing.base.position[:2]
+        home = self._planted.home if self._planted else self.footing.home()
         return here + self._back(now) * (home - here)
 
     def _heading(self, now: float) -> float:
         """Return where the base should face, rad: as the feet do, some time after a step."""
-        return heading_between(self.footing.yaw, self.footing.front, self._back(now))
+        front = self._planted.front if self._planted else self.footing.front
+        return heading_between(self.footing.yaw, front, self._back(now))
 
     def _back(self, now: float) -> float:
         """Return how far the base has come back over the feet after a step, 0 to 1."""
