@@ -159,19 +159,6 @@ class Footing:
         position = state.position + time * state.linear_velocity
         return Pose(position, quaternion_matrix(orientation))
 
-    def stand(self, goals: Array, foot: int, base: Pose) -> None:
-        """Set the joints of a leg in `goals` (n,) so that `base` is over its sole, flat as it is.
-
-        Args:
-            goals: rad, changed in place.
-            foot: Which foot.
-            base: Where the base should be, as far above the sole as above the ground.
-        """
-        sole = self.feet[foot]
-        level = turn(yaw_of(sole.rotation))
-        place = np.array([sole.position[0], sole.position[1], 0.0])
-        self._solve(goals, foot, Pose(place, level).seen_from(base))
-
     def put(self, goals: Array, foot: int, at: Array, heading: float, base: Pose) -> None:
         """Set the joints of a leg in `goals` (n,) so that its sole is flat at `at` (3,) m.
 

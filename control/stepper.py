@@ -13,7 +13,8 @@ import numpy as np
 from shapely.geometry.base import BaseGeometry
 
 from control.comfort import ComfortStep
-from control.footing import Footing, Planted
+from control.footing import Footing
+from control.limb_ik import Pose
 from control.momenta import capture_point
 from control.no_step import NoStep
 from control.rotation import heading_between, turn
@@ -96,9 +97,9 @@ class Stepper:
         self.steps = self.comforts = 0
         self._hold = JointCommand.hold(self.joints, self.stance)
         self._landed = -np.inf
-        self._planted: Planted | None = None
         self._moved = observation.time
         self.footing.look(observation)
+        self._planted = self.footing.planted()
         if self.stepping.support == "capsule":
             self.footing.round_off()
         self.no_step.begin(self.footing.feet, [self.footing.ground(foot) for foot in (0, 1)])
@@ -135,6 +136,7 @@ class Stepper:
         elif self.phase == "land":
             self.phase = "stand"
         elif self.phase == "comfort" and self._comfort.done(now):
+            self._planted = self.footing.planted()
             # What the legs cannot do now they cannot do until something moves the robot.
             self.phase, self._moved = "stand", np.inf if self._comfort.given_up else now
         elif self.phase == "stand":
@@ -155,6 +157,7 @@ class Stepper:
                 flight.target = better.target
         if part >= 1.0 or (part > stepping.early and self.footing.down[flight.foot]):
             self.phase, self._landed, self._moved = "land", now, now
+            self._planted = self.footing.planted()
 
     def _begin(self, rule: StepRule, now: float) -> None:
         """Choose a foot and lift it, if there is a place for it."""
@@ -166,7 +169,7 @@ class Stepper:
         chosen = choose(possible, footing.places, self._wanted)
         start = footing.places[chosen.foot].copy()
         self._flight = Flight(rule, chosen.foot, now, start, chosen.target, self._centre(now))
-        self._planted = None
+        self._planted = footing.planted()
         self.phase, self.steps = "swing", self.steps + 1
 
     def _placement(self, rule: StepRule, foot: int, left: float) -> Placement | None:
@@ -195,7 +198,7 @@ class Stepper:
         foot, yaw = comfort.foot, footing.yaw
         free = self.no_step.allows(foot, yaw, footing.places[foot], comfort.target)
         if comfort.needed and free:
-            self._comfort, self._planted = comfort, None
+            self._comfort = comfort
             self.phase, self.comforts = "comfort", self.comforts + 1
 
     def _pose(self, goals: Array, now: float) -> None:
@@ -207,11 +210,10 @@ class Stepper:
         if self.phase == "swing":
             self._swing(goals, now)
             return
-        planted = self._planted = self._planted or footing.planted()
         against = self._against(footing.places.mean(axis=0))
         base = footing.upright(self._centre(now) - against, self._heading(now))
         for foot in (0, 1):
-            footing.put(goals, foot, planted.places[foot], planted.yaws[foot], base)
+            self._keep(goals, foot, base)
 
     def _swing(self, goals: Array, now: float) -> None:
         """Tip over one leg, and put the other foot where it should be `lead` s from now."""
@@ -227,18 +229,20 @@ class Stepper:
         ahead = float(turn(footing.yaw)[:2, 0] @ (capture_point(footing.momenta) - pivot))
         pitch = np.clip(-stepping.trunk * ahead, -MOST_PITCH, MOST_PITCH)
         base = footing.upright(flight.centre - self._against(pivot), footing.yaw, float(pitch))
-        footing.stand(goals, 1 - flight.foot, base)
+        self._keep(goals, 1 - flight.foot, base)
+
+    def _keep(self, goals: Array, foot: int, base: Pose) -> None:
+        """Keep a foot where it was planted: one that slips or floats is not followed."""
+        self.footing.put(goals, foot, self._planted.places[foot], self._planted.yaws[foot], base)
 
     def _centre(self, now: float) -> Array:
         """Return where (2,) m the base should be: over the feet, some time after a step."""
         here = self.footing.base.position[:2]
-        home = self._planted.home if self._planted else self.footing.home()
-        return here + self._back(now) * (home - here)
+        return here + self._back(now) * (self._planted.home - here)
 
     def _heading(self, now: float) -> float:
         """Return where the base should face, rad: as the feet do, some time after a step."""
-        front = self._planted.front if self._planted else self.footing.front
-        return heading_between(self.footing.yaw, front, self._back(now))
+        return heading_between(self.footing.yaw, self._planted.front, self._back(now))
 
     def _back(self, now: float) -> float:
         """Return how far the base has come back over the feet after a step, 0 to 1."""

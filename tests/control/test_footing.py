@@ -51,9 +51,10 @@ def test_in_its_stance_the_base_is_at_home_over_flat_soles(footing: Footing) -> 
 @pytest.mark.parametrize("yaw", [0.0, 0.8, -2.0])
 def test_standing_as_it_stands_changes_no_joint(footing: Footing, yaw: float) -> None:
     footing.look(seen(yaw))
-    goals = STANCE.copy()
+    goals, planted = STANCE.copy(), footing.planted()
     for foot in (0, 1):
-        footing.stand(goals, foot, footing.upright(footing.home(), yaw))
+        base = footing.upright(planted.home, planted.front)
+        footing.put(goals, foot, planted.places[foot], planted.yaws[foot], base)
     assert np.abs(goals - STANCE).max() < 0.02
 
 
