@@ -171,10 +171,6 @@ class Footing:
         """
         self._solve(goals, foot, Pose(at, turn(heading)).seen_from(base))
 
-    def missed(self, foot: int) -> float:
-        """Return how far out of reach the last place of a foot was, m."""
-        return self._limbs[foot].missed
-
     def _solve(self, goals: Array, foot: int, target: Pose) -> None:
         limb = self._limbs[foot]
         angles = limb.solve(target, self._last[foot], ITERATIONS)

@@ -47,11 +47,7 @@ class LimbIk:
 
     Attributes:
         joints: (k,) indices of the limb's joints, from the base outwards.
-        missed: How far the end was from where it should be before the last change, m: large where
-            a target is out of reach.
     """
-
-    missed: float = 0.0
 
     def __init__(self, model: mujoco.MjModel, base: str, end: str) -> None:
         self._model, self._data = model, mujoco.MjData(model)
@@ -86,7 +82,6 @@ class LimbIk:
             data.qpos[7 + self.joints] = angles
             mujoco.mj_kinematics(self._model, data)
             error = self._error(target)
-            self.missed = float(np.sqrt(error[:3] @ error[:3]))
             if np.abs(error).max() < CLOSE:
                 break
             mujoco.mj_comPos(self._model, data)
