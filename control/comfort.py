@@ -6,7 +6,6 @@ from typing import Literal
 import numpy as np
 
 from control.footing import Footing
-from control.limb_ik import Pose
 from control.momenta import capture_point
 from control.rotation import heading_between, turn, way_round
 from control.stepping_file import Stepping
@@ -47,21 +46,20 @@ class ComfortStep:
 
     def __init__(self, footing: Footing, now: float, stepping: Stepping) -> None:
         self._footing, self._began, self._stepping = footing, now, stepping
-        planted = footing.planted()
-        self._yaws, self._places = planted.yaws, planted.places
+        self._planted = planted = footing.planted()
         aside = [self._home(foot) - footing.places[foot] for foot in (0, 1)]
         # Both miss by about as much; the one that has to go forward leaves the other in front.
-        forward = turn(footing.front)[:2, 0]
+        forward = turn(planted.front)[:2, 0]
         self.foot = int(np.argmax([way @ forward for way in aside]))
         self.target = np.append(self._home(self.foot), 0.0)
         far = float(np.linalg.norm(aside[self.foot]))
-        self.needed = far > stepping.comfort or abs(way_round(*self._yaws)) > ASKEW
+        self.needed = far > stepping.comfort or abs(way_round(*planted.yaws)) > ASKEW
         self.given_up = False
         self._phase: Phase = "shift"
         self._place = self._from = footing.base.position[:2].copy()
         com = footing.momenta.com[:2] - footing.base.position[:2]
         self._over = footing.places[1 - self.foot] - com
-        self._before, self._after = footing.yaw, self._yaws[1 - self.foot]
+        self._before, self._after = footing.yaw, float(planted.yaws[1 - self.foot])
 
     def done(self, now: float) -> bool:
         """Return whether the step is over, or given up."""
@@ -75,11 +73,11 @@ class ComfortStep:
             return
         footing, part = self._footing, _eased((now - self._began) / SHIFT)
         shifts = self._phase == "shift"
-        to = self._over if shifts else footing.home()
+        to = self._over if shifts else footing.home(self._planted)
         self._place = self._from + part * (to - self._from)
-        base = footing.upright(self._place, self._before if shifts else footing.front)
+        base = footing.upright(self._place, self._before if shifts else self._planted.front)
         for foot in (0, 1):
-            self._keep(goals, foot, base)
+            footing.keep(goals, foot, self._planted, base)
 
     def _go_on(self, now: float) -> None:
         """Lift the foot as soon as the other one can bear the robot; put it down in time."""
@@ -87,7 +85,6 @@ class ComfortStep:
         if self._phase == "shift":
             other, momenta = footing.support((1 - foot,)), footing.momenta
             if min(other.margin(capture_point(momenta)), other.margin(momenta.com)) > INSIDE:
-                self._places[foot, :2] = footing.places[foot]
                 self._begin("swing", now)
             elif gone > SHIFT + WAIT:
                 self.given_up = True
@@ -95,7 +92,7 @@ class ComfortStep:
         elif self._phase == "swing" and gone > SWING:
             # From where it is: it may not have come all the way over the other foot.
             self._place = footing.base.position[:2].copy()
-            self._places[foot], self._yaws[foot] = self.target, self._after
+            self._planted = self._planted.step(foot, self.target, self._after)
             self._begin("back", now)
 
     def _swing(self, goals: Array, gone: float) -> None:
@@ -103,23 +100,19 @@ class ComfortStep:
         part = _eased(gone / SWING)
         place = self._from + part * (self._over - self._from)
         base = self._footing.upright(place, heading_between(self._before, self._after, part))
-        heading = heading_between(self._yaws[self.foot], self._after, part)
-        start, lift = self._places[self.foot], self._stepping.lift
-        at = swing_foot(start, self.target, gone / SWING, lift)
+        start = self._planted.places[self.foot]
+        heading = heading_between(self._planted.yaws[self.foot], self._after, part)
+        at = swing_foot(start, self.target, gone / SWING, self._stepping.lift)
         self._footing.put(goals, self.foot, at, heading, base)
-        self._keep(goals, 1 - self.foot, base)
+        self._footing.keep(goals, 1 - self.foot, self._planted, base)
 
     def _begin(self, phase: Phase, now: float) -> None:
         self._phase, self._began, self._from = phase, now, self._place
 
-    def _keep(self, goals: Array, foot: int, base: Pose) -> None:
-        """Keep a foot where it was put: one that slips is not followed."""
-        self._footing.put(goals, foot, self._places[foot], self._yaws[foot], base)
-
     def _home(self, foot: int) -> Array:
         """Return where (2,) m a foot is in the stance, beside the other one as that stands."""
         homes, other = self._footing.homes, 1 - foot
-        way = turn(self._yaws[other])[:2, :2] @ (homes[foot] - homes[other])[:2]
+        way = turn(self._planted.yaws[other])[:2, :2] @ (homes[foot] - homes[other])[:2]
         return self._footing.places[other] + way
 
 

@@ -11,7 +11,7 @@ from shapely import MultiPoint
 from control.body import Body
 from control.limb_ik import LimbIk, Pose
 from control.momenta import Momenta
-from control.rotation import facing, quaternion_matrix, turn, turn_about_y, yaw_of
+from control.rotation import facing, heading_between, quaternion_matrix, turn, turn_about_y, yaw_of
 from control.soles import Soles
 from control.support import SupportRegion
 from hal.errors import StateMissingError
@@ -26,19 +26,26 @@ ITERATIONS = 2
 
 @dataclass(frozen=True)
 class Planted:
-    """Where feet stood at some time.
+    """Where two feet have been put, and stay.
 
     Attributes:
-        places: (k, 3) of the soles' centres, on the ground, m.
-        yaws: (k,) rad.
-        home: Where (2,) m the base is over them in the stance.
-        front: Heading between them, rad.
+        places: (2, 3) of the soles' centres, on the ground, m.
+        yaws: (2,) rad.
     """
 
     places: Array
-    yaws: list[float]
-    home: Array
-    front: float
+    yaws: Array
+
+    @property
+    def front(self) -> float:
+        """Heading between the feet, rad."""
+        return heading_between(self.yaws[0], self.yaws[1], 0.5)
+
+    def step(self, foot: int, place: Array, yaw: float) -> "Planted":
+        """Return these with one foot at another place (2,) or (3,), m, and heading, rad."""
+        places, yaws = self.places.copy(), self.yaws.copy()
+        places[foot, :2], yaws[foot] = place[:2], yaw
+        return Planted(places, yaws)
 
 
 class Footing:
@@ -57,7 +64,6 @@ class Footing:
         yaw: Heading of the base, rad.
         feet: Poses of the soles' centres.
         places: (k, 2) where these are on the ground, m.
-        front: Heading between the feet, rad: where a base that stands on them should face.
         down: Which feet are on the ground.
         height: Of the base above the soles in the stance, m.
         radius: Of Kenwright's circle for each sole, m; None takes the hull of its points.
@@ -68,7 +74,6 @@ class Footing:
     yaw: float
     feet: list[Pose]
     places: Array
-    front: float
     down: list[bool]
 
     def __init__(
@@ -106,8 +111,6 @@ class Footing:
             for site in sites
         ]
         self.places = data.site_xpos[sites, :2].copy()
-        x, y = (sum(foot.rotation[axis, 0] for foot in self.feet) for axis in (0, 1))
-        self.front = atan2(y, x)
         self._ground = self._soles.seen(data)
         heights = [self._ground[self._soles.foot == k, 2].min() for k in range(len(sites))]
         self.down = [height < min(heights) + DOWN for height in heights]
@@ -128,17 +131,15 @@ class Footing:
         of_these = self._soles.members[list(feet)].any(axis=0)
         return SupportRegion.hull(self._ground[of_these])
 
-    def home(self) -> Array:
-        """Return where (2,) m the base is in the stance, over the feet of now."""
-        return self.places.mean(axis=0) + turn(self.front)[:2, :2] @ self._offset
-
     def planted(self) -> Planted:
-        """Return where the feet are, to keep them there: feet that slip are not followed."""
+        """Return where the feet are, to keep them there."""
         places = np.zeros((len(self.feet), 3))
         places[:, :2] = self.places
-        return Planted(
-            places, [yaw_of(foot.rotation) for foot in self.feet], self.home(), self.front
-        )
+        return Planted(places, np.array([yaw_of(foot.rotation) for foot in self.feet]))
+
+    def home(self, planted: Planted) -> Array:
+        """Return where (2,) m the base is in the stance, over feet that stand there."""
+        return planted.places[:, :2].mean(axis=0) + turn(planted.front)[:2, :2] @ self._offset
 
     def upright(self, place: Array, heading: float, pitch: float = 0.0) -> Pose:
         """Return the stance's pose of the base over a place.
@@ -170,6 +171,13 @@ class Footing:
             base: Where the base will be by then.
         """
         self._solve(goals, foot, Pose(at, turn(heading)).seen_from(base))
+
+    def keep(self, goals: Array, foot: int, planted: Planted, base: Pose) -> None:
+        """Set the joints of a leg in `goals` (n,) so that its sole stays where it was planted.
+
+        A foot that slips, or floats while the robot tips, is not followed.
+        """
+        self.put(goals, foot, planted.places[foot], planted.yaws[foot], base)
 
     def _solve(self, goals: Array, foot: int, target: Pose) -> None:
         limb = self._limbs[foot]

@@ -14,7 +14,6 @@ from shapely.geometry.base import BaseGeometry
 
 from control.comfort import ComfortStep
 from control.footing import Footing
-from control.limb_ik import Pose
 from control.momenta import capture_point
 from control.no_step import NoStep
 from control.rotation import heading_between, turn
@@ -157,7 +156,10 @@ class Stepper:
                 flight.target = better.target
         if part >= 1.0 or (part > stepping.early and self.footing.down[flight.foot]):
             self.phase, self._landed, self._moved = "land", now, now
-            self._planted = self.footing.planted()
+            now_at = self.footing.planted()
+            self._planted = self._planted.step(
+                flight.foot, now_at.places[flight.foot], now_at.yaws[flight.foot]
+            )
 
     def _begin(self, rule: StepRule, now: float) -> None:
         """Choose a foot and lift it, if there is a place for it."""
@@ -213,7 +215,7 @@ class Stepper:
         against = self._against(footing.places.mean(axis=0))
         base = footing.upright(self._centre(now) - against, self._heading(now))
         for foot in (0, 1):
-            self._keep(goals, foot, base)
+            footing.keep(goals, foot, self._planted, base)
 
     def _swing(self, goals: Array, now: float) -> None:
         """Tip over one leg, and put the other foot where it should be `lead` s from now."""
@@ -229,16 +231,12 @@ class Stepper:
         ahead = float(turn(footing.yaw)[:2, 0] @ (capture_point(footing.momenta) - pivot))
         pitch = np.clip(-stepping.trunk * ahead, -MOST_PITCH, MOST_PITCH)
         base = footing.upright(flight.centre - self._against(pivot), footing.yaw, float(pitch))
-        self._keep(goals, 1 - flight.foot, base)
-
-    def _keep(self, goals: Array, foot: int, base: Pose) -> None:
-        """Keep a foot where it was planted: one that slips or floats is not followed."""
-        self.footing.put(goals, foot, self._planted.places[foot], self._planted.yaws[foot], base)
+        footing.keep(goals, 1 - flight.foot, self._planted, base)
 
     def _centre(self, now: float) -> Array:
         """Return where (2,) m the base should be: over the feet, some time after a step."""
         here = self.footing.base.position[:2]
-        return here + self._back(now) * (self._planted.home - here)
+        return here + self._back(now) * (self.footing.home(self._planted) - here)
 
     def _heading(self, now: float) -> float:
         """Return where the base should face, rad: as the feet do, some time after a step."""

@@ -41,7 +41,7 @@ def footing() -> Footing:
 
 def test_in_its_stance_the_base_is_at_home_over_flat_soles(footing: Footing) -> None:
     footing.look(seen(place=(0.3, -0.1)))
-    assert footing.home() == pytest.approx([0.3, -0.1], abs=2e-3)
+    assert footing.home(footing.planted()) == pytest.approx([0.3, -0.1], abs=2e-3)
     assert footing.down == [True, True]
     assert [foot.position[2] for foot in footing.feet] == pytest.approx([0.0, 0.0], abs=1e-3)
     assert footing.support((0, 1)).margin(footing.momenta.com[:2]) > 0.03
@@ -53,8 +53,8 @@ def test_standing_as_it_stands_changes_no_joint(footing: Footing, yaw: float) ->
     footing.look(seen(yaw))
     goals, planted = STANCE.copy(), footing.planted()
     for foot in (0, 1):
-        base = footing.upright(planted.home, planted.front)
-        footing.put(goals, foot, planted.places[foot], planted.yaws[foot], base)
+        base = footing.upright(footing.home(planted), planted.front)
+        footing.keep(goals, foot, planted, base)
     assert np.abs(goals - STANCE).max() < 0.02
 
 

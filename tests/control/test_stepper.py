@@ -97,7 +97,7 @@ def test_a_turned_foot_is_turned_back() -> None:
     robot.reset(observation)
     comfort = ComfortStep(robot.footing, 0.0, find_stepping(OP3))
     assert comfort.needed
-    assert abs(robot.footing.front) == pytest.approx(0.2, abs=0.02)
+    assert abs(robot.footing.planted().front) == pytest.approx(0.2, abs=0.02)
 
 
 def test_a_base_that_is_turned_comes_back_to_where_the_feet_point() -> None:
