@@ -32,7 +32,7 @@ STEEPEST = 0.15
 """Slope of the ground that is believed, rad."""
 MOST_BEHIND = 0.1
 """How far behind where it should be it is at most taken to be, m."""
-FACING = 0.05
+FACING = 0.1
 """A trunk that is turned by less than this needs no step, rad."""
 
 

@@ -16,6 +16,12 @@ def push(impulse: float, directions: Sequence[float], seed: int = 0, **more: Any
     return Job("push", _options(impulse, directions, seed) | more)
 
 
+def stride(seed: int = 0, speed: float = 0.1, **more: Any) -> Job:
+    """Return a walk of OP3 as `windup stride` has it, with its sensors."""
+    options = {"speed": speed, "seed": seed, "noise": NOISE, "state": "estimated"}
+    return Job("stride", options | more)
+
+
 def fall(direction: float, *, protect: bool, seed: int = 0) -> Job:
     """Return a push that nothing can stand, with protection or a stiff fall."""
     how = {"way": "hold", "stance": "stand", "protect": protect}
