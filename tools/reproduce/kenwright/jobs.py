@@ -5,6 +5,7 @@ from typing import Any
 
 from tools.reproduce.figure import Job, Result, Results
 
+STEP = "predictive"
 OVER = 4.0  # N s, nothing stands that
 NOISE = 0.2  # degrees on the start pose
 AROUND = tuple(22.5 * k for k in range(16))
