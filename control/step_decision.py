@@ -76,10 +76,14 @@ def landing_point(rule: StepRule, body: Momenta, pivot: Array, left: float) -> A
         left: Time until the foot lands, s.
     """
     if rule.where is None:
-        # p + (xi - p) e^(omega T): where the capture point will be by then.
-        return pivot + (capture_point(body) - pivot) * exp(body.omega * left)
+        return coming_point(body, pivot, left)
     linear, angular = rule.where
     return desired_cp(body, linear * body.omega, angular * body.omega)
+
+
+def coming_point(body: Momenta, pivot: Array, left: float) -> Array:
+    """Return the capture point (2,) m in `left` s, p + (xi - p) e^(omega T), about a pivot."""
+    return np.asarray(pivot + (capture_point(body) - pivot) * exp(body.omega * left))
 
 
 @dataclass(frozen=True)
@@ -115,11 +119,13 @@ class Placement:
         foot: Which foot.
         target: (2,) where its sole's centre comes down, m.
         missed: How far that is from where it should, m.
+        uncaught: How far the best place within reach is from the coming capture point, m.
     """
 
     foot: int
     target: Array
     missed: float
+    uncaught: float = 0.0
 
 
 def place(
@@ -139,15 +145,20 @@ def place(
 
 
 def choose(candidates: Sequence[Placement], feet: Array, wanted: Array) -> Placement:
-    """Return the placement that misses least; where all do alike, that of the nearest foot.
+    """Return whose foot can catch the fall, then what misses least, then the nearest foot.
+
+    The paper takes the nearest foot (section 4.2). After a wide step that is often the one that
+    has just landed, and about the other the body would only fall faster.
 
     Args:
         candidates: One for each foot that may step.
         feet: (k, 2) where the feet are, m.
         wanted: (2,) where one should come down, m.
     """
-    least = min(candidate.missed for candidate in candidates)
-    good = [candidate for candidate in candidates if candidate.missed <= least + 0.005]
+    least = min(candidate.uncaught for candidate in candidates)
+    able = [candidate for candidate in candidates if candidate.uncaught <= least + 0.01]
+    least = min(candidate.missed for candidate in able)
+    good = [candidate for candidate in able if candidate.missed <= least + 0.005]
     return min(good, key=lambda c: float(np.linalg.norm(feet[c.foot, :2] - wanted)))
 
 

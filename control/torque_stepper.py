@@ -5,7 +5,7 @@ where the centre of mass and the swing foot should be, and the whole-body optimi
 accelerations of that, at its own rate; inverse dynamics makes torques of these at every tick.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -16,6 +16,7 @@ from control.step_decision import (
     Placement,
     StepRule,
     choose,
+    coming_point,
     landing_point,
     needs_step,
     place,
@@ -30,7 +31,7 @@ from hal.joints import Array, Joints
 from hal.observation import Observation
 
 Phase = Literal["stand", "swing", "land"]
-PERIOD = 0.01
+PERIOD = 0.005
 """Of the optimisation, s."""
 COM_GAIN, COM_DAMPING = 40.0, 12.0
 """k_L, 1/s2, and d_L, 1/s, of Eq. 10."""
@@ -208,7 +209,11 @@ class TorqueStepper:
         self._wanted = pivot + self._stepping.gain * (wanted - pivot) - middle
         stance = self.dynamics.ends[other]
         region = self._reach.region(stance.position[:2], yaw_of(stance.rotation), 1 - 2 * foot)
-        return place(foot, self._wanted, region)
+        placed = place(foot, self._wanted, region)
+        catch = place(foot, coming_point(momenta, pivot, left) - middle, region)
+        if placed is None or catch is None:
+            return None
+        return replace(placed, uncaught=catch.missed)
 
     @property
     def _heading(self) -> float:
