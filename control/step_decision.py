@@ -5,7 +5,7 @@ for where) are given here as multiples of omega = sqrt(g / c_z), so that small r
 faster, have them too.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, exp, sin
 from typing import Final
@@ -20,6 +20,8 @@ from hal.errors import UnknownNameError
 from hal.joints import Array
 
 Damping = tuple[float, float]
+AGAIN: Final = 0.25
+"""How much better the same foot has to catch a fall to step twice in a row, m."""
 
 
 @dataclass(frozen=True)
@@ -144,22 +146,30 @@ def place(
     return Placement(foot, target, float(np.linalg.norm(target - wanted)))
 
 
-def choose(candidates: Sequence[Placement], feet: Array, wanted: Array) -> Placement:
+def choose(
+    candidates: Sequence[Placement], feet: Array, wanted: Array, landed: int | None = None
+) -> Placement:
     """Return whose foot can catch the fall, then what misses least, then the nearest foot.
 
     The paper takes the nearest foot (section 4.2). After a wide step that is often the one that
-    has just landed, and about the other the body would only fall faster.
+    has just landed, and about the other, far behind, the body would only fall faster.
 
     Args:
         candidates: One for each foot that may step.
         feet: (k, 2) where the feet are, m.
         wanted: (2,) where one should come down, m.
+        landed: The foot that has just come down, if one has.
     """
-    least = min(candidate.uncaught for candidate in candidates)
-    able = [candidate for candidate in candidates if candidate.uncaught <= least + 0.01]
-    least = min(candidate.missed for candidate in able)
-    good = [candidate for candidate in able if candidate.missed <= least + 0.005]
+    able = _least(candidates, lambda c: c.uncaught + AGAIN * (c.foot == landed), 0.01)
+    good = _least(able, lambda c: c.missed, 0.005)
     return min(good, key=lambda c: float(np.linalg.norm(feet[c.foot, :2] - wanted)))
+
+
+def _least(
+    candidates: Sequence[Placement], size: Callable[[Placement], float], margin: float
+) -> list[Placement]:
+    least = min(map(size, candidates))
+    return [candidate for candidate in candidates if size(candidate) <= least + margin]
 
 
 def needs_step(point: Array, support: SupportRegion, slack: float = 0.0) -> bool:

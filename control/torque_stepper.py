@@ -104,11 +104,13 @@ class TorqueStepper:
         self.phase: Phase = "stand"
         self.steps = self.comforts = 0
         self._swing: Swing | None = None
+        self._landed: int | None = None
 
     def reset(self, observation: Observation) -> None:
         """Begin to stand; the robot is in its stance."""
         self.dynamics.look(observation)
         self.phase, self.steps, self.comforts = "stand", 0, 0
+        self._swing = self._landed = None
         self._height = float(self.dynamics.momenta.com[2])
         self._since = self._due = observation.time
         self._began = self.dynamics.momenta.com[:2].copy()
@@ -147,6 +149,7 @@ class TorqueStepper:
         if self._rule is not None and self._falls(self._rule):
             self._begin(self._rule, now)
         elif self.phase == "land" and gone >= self._stepping.settle:
+            self._landed = None
             self._enter("stand", now)
 
     def _enter(self, phase: Phase, now: float) -> None:
@@ -166,7 +169,7 @@ class TorqueStepper:
         if not possible:
             return
         feet = np.array([end.position for end in self.dynamics.ends])
-        chosen = choose(possible, feet, self._wanted)
+        chosen = choose(possible, feet, self._wanted, self._landed)
         self.steps += 1
         self._lift(chosen.foot, chosen.target, self._heading, duration, rule, now)
 
@@ -189,7 +192,7 @@ class TorqueStepper:
                 swing.target = better.target
         lowest = float(self.dynamics.ground(swing.foot)[:, 2].min())
         if part > stepping.early and (lowest < TOUCH or part > 2.0):
-            self._swing = None
+            self._landed, self._swing = swing.foot, None
             self._enter("land", now)
 
     @property

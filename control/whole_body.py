@@ -110,7 +110,7 @@ class WholeBody:
         low[-len(self._limit) :] -= self._limit
         high[-len(self._limit) :] += self._limit
         sense = np.full(size + count, SOFT, dtype=np.int32)
-        sense[:size], sense[size : size + 6] = 0, EQUAL
+        sense[count:size], sense[size : size + 6] = 0, EQUAL
         answer, _, flag, _ = daqp.solve(hessian, linear, matrix, high, low, sense)
         if flag < 1:
             raise WindupError(f"whole-body control found no accelerations (daqp: {flag})")
