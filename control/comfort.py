@@ -29,6 +29,7 @@ class ComfortStep:
     Attributes:
         foot: The foot that steps: the one that is behind or too far out.
         astray: How far it stands from its place beside the other one, m.
+        target: (3,) that place, m.
     """
 
     def __init__(self, footing: Footing, now: float, lift: float) -> None:
@@ -43,7 +44,7 @@ class ComfortStep:
         stance = footing.places[1 - self.foot]
         com = footing.momenta.com[:2] - footing.base.position[:2]
         self._over = stance - com
-        self._target = np.append(self._home(self.foot), 0.0)
+        self.target = np.append(self._home(self.foot), 0.0)
 
     def done(self, now: float) -> bool:
         """Return whether the step is over."""
@@ -60,7 +61,7 @@ class ComfortStep:
         elif gone < SHIFT + SWING:
             base = footing.upright(self._over)
             part = (gone - SHIFT) / SWING
-            at = swing_foot(self._start, self._target, part, self._lift)
+            at = swing_foot(self._start, self.target, part, self._lift)
             footing.put(goals, self.foot, at, base)
             footing.stand(goals, stance, base)
         else:

@@ -1,5 +1,6 @@
 """`footprints.toml` of a robot: how it walks footprints. SI units."""
 
+from math import inf
 from typing import Annotated
 
 from msgspec import Meta
@@ -11,7 +12,7 @@ Gain = Annotated[float, Meta(ge=0.0)]
 
 
 class Directed(Record, frozen=True, kw_only=True):
-    """How a robot with position servos walks footprints.
+    """How a robot walks footprints.
 
     Attributes:
         stance: Name of the pose that it starts from, soles flat.
@@ -22,13 +23,11 @@ class Directed(Record, frozen=True, kw_only=True):
         height: Of the base above the soles, m.
         near: The weight is over a foot when the centre of mass is so near to its middle, m,
         quiet: and no faster than this, m/s.
+        pace: Most acceleration of the centre of mass on its way from foot to foot, m/s2; what
+            is far takes longer than `shift`.
         patience: After so many times `shift` the step begins all the same.
-        hold: Part of the error of the centre of mass that the goals go too far.
-        brake: Time by which its speed moves the goals against it, s.
-        level: Part of the tilt of the base that the goals lean against it.
-        steady: Time by which the rate of that tilt does so, s.
-        follow: Rate at which what lasts of either is made up for, 1/s.
-        slow: Time constant of the torques that hold the weight, s.
+        close: A foot is where it should be when it is so near to its place, m,
+        turned: and turned no more from it than this, degrees.
     """
 
     stance: str
@@ -39,7 +38,24 @@ class Directed(Record, frozen=True, kw_only=True):
     height: Positive
     near: Positive
     quiet: Positive
+    pace: Positive = inf
     patience: Positive = 3.0
+    close: Positive = 0.01
+    turned: Positive = 5.0
+
+
+class ServoDirected(Directed, frozen=True, kw_only=True):
+    """How a robot with position servos does so.
+
+    Attributes:
+        hold: Part of the error of the centre of mass that the goals go too far.
+        brake: Time by which its speed moves the goals against it, s.
+        level: Part of the tilt of the base that the goals lean against it.
+        steady: Time by which the rate of that tilt does so, s.
+        follow: Rate at which what lasts of either is made up for, 1/s.
+        slow: Time constant of the torques that hold the weight, s.
+    """
+
     hold: Gain
     brake: Gain
     level: Gain

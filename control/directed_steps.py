@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from control.body import Body, heading
-from control.directed_file import Directed
+from control.directed_file import ServoDirected
 from control.footprints import Footprint, between, ground_places, onto, seen_from
 from control.limb_ik import LimbIk, Pose
 from control.rotation import quaternion_matrix, turn, turn_between
@@ -66,7 +66,7 @@ class DirectedSteps:
         limbs: Sequence[LimbIk],
         stance: Array,
         prints: Sequence[Footprint],
-        how: Directed,
+        how: ServoDirected,
     ) -> None:
         self.joints, self.body, self.base, self.limbs = joints, body, base, limbs
         self.stance, self.prints, self.how = stance, prints, how

@@ -1,10 +1,11 @@
 """The feet of an observed robot: where they stand, and joint angles that put them elsewhere."""
 
 from collections.abc import Sequence
-from math import atan2
+from math import atan2, pi, sqrt
 
 import mujoco
 import numpy as np
+from shapely import MultiPoint
 
 from control.body import Body, heading
 from control.limb_ik import LimbIk, Pose
@@ -40,6 +41,7 @@ class Footing:
         places: (k, 2) where these are on the ground, m.
         down: Which feet are on the ground.
         height: Of the base above the soles in the stance, m.
+        radius: Of Kenwright's circle for each sole, m; None takes the hull of its points.
     """
 
     momenta: Momenta
@@ -53,6 +55,7 @@ class Footing:
         self, body: Body, base: str, sites: Sequence[str], soles: Soles, stance: Array
     ) -> None:
         self._body, self._soles = body, soles
+        self.radius: float | None = None
         self._limbs = [LimbIk(body.model, base, site) for site in sites]
         self._last = [stance.copy() for _ in sites]
         homes = [limb.forward(stance) for limb in self._limbs]
@@ -89,8 +92,19 @@ class Footing:
         heights = [self._ground[self._soles.foot == k, 2].min() for k in range(len(sites))]
         self.down = [height < min(heights) + DOWN for height in heights]
 
+    def ground(self, foot: int) -> Array:
+        """Return the points (p, 3) m of a sole in the world."""
+        return self._ground[self._soles.foot == foot]
+
+    def round_off(self) -> None:
+        """Take circles and capsules for what soles support, as large as they are in the mean."""
+        areas = [MultiPoint(self.ground(k)[:, :2]).convex_hull.area for k in range(len(self.feet))]
+        self.radius = sqrt(float(np.mean(areas)) / pi)
+
     def support(self, feet: Sequence[int]) -> SupportRegion:
-        """Return the hull of all points of these feet's soles, whether or not they bear load."""
+        """Return what these feet's soles can support, whether or not they bear load."""
+        if self.radius is not None:
+            return SupportRegion.capsule(self.places[list(feet)], self.radius)
         of_these = self._soles.members[list(feet)].any(axis=0)
         return SupportRegion.hull(self._ground[of_these])
 

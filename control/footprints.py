@@ -91,16 +91,20 @@ def footprint(row: StepRecord, frame: Frame, feet: tuple[str, ...]) -> Footprint
 
 
 def foot_index(name: str, feet: tuple[str, ...]) -> int:
-    """Return which foot is meant; "left" means "left_foot" as well.
+    """Return which foot is meant; "left" means "left_foot" or "left_hand" as well.
 
     Raises:
         UsageError: None is.
     """
-    short = [foot.removesuffix("_foot") for foot in feet]
+    short = [_short(foot) for foot in feet]
     for names in (feet, short):
         if name in names:
             return names.index(name)
     raise UnknownNameError("foot", name, short)
+
+
+def _short(foot: str) -> str:
+    return foot.removesuffix("_foot").removesuffix("_hand")
 
 
 def write_footprints(prints: list[Footprint], feet: tuple[str, ...]) -> str:
@@ -108,7 +112,7 @@ def write_footprints(prints: list[Footprint], feet: tuple[str, ...]) -> str:
     lines = [f'frame = "{prints[0].frame}"']
     for one in prints:
         x, y, yaw = one.place
-        lines += ["", "[[step]]", f'foot = "{feet[one.foot].removesuffix("_foot")}"']
+        lines += ["", "[[step]]", f'foot = "{_short(feet[one.foot])}"']
         lines += [f"x = {x:.4f}", f"y = {y:.4f}", f"yaw = {np.degrees(yaw):.2f}"]
         if one.duration is not None:
             lines.append(f"duration = {one.duration:g}")

@@ -10,10 +10,12 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from shapely.geometry.base import BaseGeometry
 
 from control.comfort import ComfortStep
 from control.footing import Footing
 from control.momenta import capture_point
+from control.no_step import NoStep
 from control.rotation import turn
 from control.step_decision import (
     Placement,
@@ -64,6 +66,7 @@ class Stepper:
         stance: (n,) rad, the pose to stand in.
         rule: When and where to step; None balances with the feet alone.
         stepping: How.
+        no_step: Where no foot may come down.
 
     Attributes:
         steps: Steps that were taken to prevent a fall.
@@ -78,9 +81,11 @@ class Stepper:
         stance: Array,
         rule: StepRule | None,
         stepping: Stepping,
+        no_step: NoStep | None = None,
     ) -> None:
         self.joints, self.footing, self.stance = joints, footing, stance
         self.rule, self.stepping = rule, stepping
+        self.no_step = no_step or NoStep()
         self._reach = stepping.reach.reach()
         self.phase: Phase = "stand"
         self.steps = self.comforts = 0
@@ -93,6 +98,9 @@ class Stepper:
         self._landed = -np.inf
         self._moved = observation.time
         self.footing.look(observation)
+        if self.stepping.support == "capsule":
+            self.footing.round_off()
+        self.no_step.begin(self.footing.feet, [self.footing.ground(foot) for foot in (0, 1)])
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the goals of now.
@@ -107,6 +115,11 @@ class Stepper:
         command.position[:] = self.stance
         self._pose(command.position, now)
         return command
+
+    @property
+    def stepping_foot(self) -> int:
+        """The foot of the step that it is at, or of the last one."""
+        return self._flight.foot
 
     def _decide(self, now: float) -> None:
         """Go over to the next phase where it is time."""
@@ -160,7 +173,13 @@ class Stepper:
         wanted = landing_point(rule, momenta, pivot, left)
         self._wanted = pivot + self.stepping.gain * (wanted - pivot)
         region = self._reach.region(footing.places[1 - foot], footing.yaw, 1 - 2 * foot)
-        return place(foot, self._wanted, region)
+        return place(foot, self._wanted, region, self._holes(foot))
+
+    def _holes(self, foot: int) -> list[BaseGeometry]:
+        """Return where a foot must not be sent."""
+        flying = self.phase == "swing"
+        start = self._flight.start if flying else self.footing.places[foot]
+        return self.no_step.holes(foot, self.footing.yaw, start)
 
     def _settle(self, now: float) -> None:
         """Take a comfort step when the robot has stood still for long enough off its stance."""
@@ -170,7 +189,9 @@ class Stepper:
         if now - self._moved < stepping.patience:
             return
         comfort = ComfortStep(footing, now, stepping.lift)
-        if comfort.astray > stepping.comfort:
+        foot, yaw = comfort.foot, footing.yaw
+        free = self.no_step.allows(foot, yaw, footing.places[foot], comfort.target)
+        if comfort.astray > stepping.comfort and free:
             self._comfort = comfort
             self.phase, self.comforts = "comfort", self.comforts + 1
 

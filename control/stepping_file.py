@@ -1,6 +1,6 @@
 """`stepping.toml` of a robot: how it steps when a push asks for it. SI units."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from msgspec import Meta
 
@@ -10,6 +10,7 @@ from hal.config import Record
 Part = Annotated[float, Meta(ge=0.0, le=1.0)]
 Seconds = Annotated[float, Meta(ge=0.0)]
 Metres = Annotated[float, Meta(ge=0.0)]
+Support = Literal["hull", "capsule"]
 
 
 class ReachTable(Record, frozen=True):
@@ -57,6 +58,9 @@ class Stepping(Record, frozen=True):
         patience: How long a robot stands still before it takes a comfort step, s.
         comfort: How far a foot may stand from its nominal place, m.
         rate: Of the loop, Hz; the robot's own by default.
+        support: What the soles support: the hull of their points, or Kenwright's circles and
+            capsule about their middles; for servos alone.
+        clear: How far soles keep off ground where they must not come down, m.
         torque: Largest torque that whole-body control asks of a joint with ideal torque, N m.
     """
 
@@ -79,6 +83,8 @@ class Stepping(Record, frozen=True):
     patience: Seconds = 0.6
     comfort: Metres = 0.015
     rate: Annotated[float, Meta(gt=0.0)] | None = None
+    support: Support = "hull"
+    clear: Metres = 0.015
     torque: Annotated[float, Meta(gt=0.0)] = 1e3
 
     def find_rule(self, name: str) -> StepRule:

@@ -24,6 +24,15 @@ def gaussian_progress(s: float, width: float = WIDTH) -> float:
     return 0.5 * (1.0 + erf((s - 0.5) * scale) / whole)
 
 
+def smooth_progress(s: float) -> float:
+    """Return how much of the way, 0 to 1, is done at the part `s` of the time.
+
+    The quintic with no speed and no acceleration at either end (minimum jerk).
+    """
+    s = min(max(s, 0.0), 1.0)
+    return s**3 * (10.0 - 15.0 * s + 6.0 * s * s)
+
+
 def lift(s: float, height: float, early: float = 0.0) -> float:
     """Return how high the foot is, m, at the part `s` of the time.
 

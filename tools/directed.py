@@ -3,18 +3,20 @@
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 import mujoco
 import numpy as np
 
 from control.body import Body
-from control.directed_file import Directed
+from control.directed_file import Directed, ServoDirected
 from control.directed_steps import DirectedSteps
 from control.footprint_checks import FootprintChecks, outline
 from control.footprints import Footprint, between, ground_places, seen_from
 from control.limb_ik import LimbIk
 from control.soles import Soles
+from control.torque_directed import TorqueDirected
+from hal.controller import Controller
 from hal.errors import UnknownNameError, UsageError
 from hal.joints import Array
 from hal.observation import Observation
@@ -22,10 +24,38 @@ from robots import RobotDescription
 from tools.build import body_of
 from tools.robot import Robot
 from tools.robot_file import load_beside
+from tools.stepping import find_stepping, whole_body_of
 
 FILE: Final = "footprints.toml"
-CLOSE, TURNED = 0.01, 5.0
-"""How far from its place a foot may come down, m, and how far turned, degrees."""
+
+
+class DirectedController(Controller, Protocol):
+    """A controller that walks footprints.
+
+    Attributes:
+        finished: All steps are done and the weight is between the feet.
+        landed: How many feet have come down.
+        stood: How many of these have borne the weight since, as they were told.
+    """
+
+    finished: bool
+    landed: int
+    stood: int
+
+    @property
+    def prints(self) -> Sequence[Footprint]:
+        """What to do."""
+        ...
+
+    @property
+    def how(self) -> Directed:
+        """Times, and how close a foot has to come."""
+        ...
+
+    @property
+    def places(self) -> Array:
+        """Where (2, 3) the feet are now, as the controller sees it."""
+        ...
 
 
 def find_directed(robot: RobotDescription) -> Directed:
@@ -35,7 +65,8 @@ def find_directed(robot: RobotDescription) -> Directed:
         UsageError: It has no footprints.toml.
         ConfigError: That file says something that cannot be.
     """
-    how = load_beside(robot, FILE, Directed)
+    kind = Directed if robot.drive.kind == "torque" else ServoDirected
+    how = load_beside(robot, FILE, kind)
     if how.stance not in robot.poses:
         raise UnknownNameError(f"pose of {robot.name}", how.stance, robot.poses)
     return how
@@ -55,6 +86,11 @@ def feet_of(robot: RobotDescription) -> tuple[str, ...]:
 def limbs_of(robot: RobotDescription, body: Body) -> list[LimbIk]:
     """Return the inverse kinematics of its legs."""
     return [LimbIk(body.model, robot.base, foot.site) for foot in robot.feet]
+
+
+def loop_rate(robot: RobotDescription) -> float | None:
+    """Return the rate, Hz, of the loop that walks footprints; None is the robot's own."""
+    return find_stepping(robot).rate if robot.drive.kind == "torque" else None
 
 
 def build_checks(robot: RobotDescription) -> FootprintChecks:
@@ -83,15 +119,19 @@ def build_checks(robot: RobotDescription) -> FootprintChecks:
     return FootprintChecks(names, limbs, outlines, homes, stance, -com, how.height)
 
 
-def build_directed(robot: RobotDescription, prints: Sequence[Footprint]) -> DirectedSteps:
+def build_directed(robot: RobotDescription, prints: Sequence[Footprint]) -> DirectedController:
     """Return the controller that walks footprints.
 
     Raises:
         UsageError: They cannot be walked by this robot.
     """
     build_checks(robot).check(prints)
-    how, body = find_directed(robot), body_of(robot)
-    stance, limbs = robot.poses[how.stance], limbs_of(robot, body)
+    how = find_directed(robot)
+    stance = robot.poses[how.stance]
+    if not isinstance(how, ServoDirected):
+        return TorqueDirected(robot.joints, whole_body_of(robot), stance, prints, how)
+    body = body_of(robot)
+    limbs = limbs_of(robot, body)
     return DirectedSteps(robot.joints, body, robot.base, limbs, stance, prints, how)
 
 
@@ -117,10 +157,9 @@ class Footfall:
         """How far turned, degrees."""
         return float(np.degrees(seen_from(self.wanted.place, self.place)[2]))
 
-    @property
-    def good(self) -> bool:
-        """It is where it should be."""
-        return self.away <= CLOSE and abs(self.turned) <= TURNED
+    def good(self, how: Directed) -> bool:
+        """Return whether it is where it should be."""
+        return self.away <= how.close and abs(self.turned) <= how.turned
 
     def record(self, names: tuple[str, ...]) -> dict[str, Any]:
         """Return it as programs read it."""
@@ -140,6 +179,7 @@ class DirectedWalk:
     Attributes:
         names: Names of the feet.
         prints: What should be walked.
+        how: How close the feet have to come.
         falls: Where the feet came down: the twin's truth, or what a robot believes.
         reason: Why it ended.
         seconds: How long it took, s.
@@ -147,6 +187,7 @@ class DirectedWalk:
 
     names: tuple[str, ...]
     prints: Sequence[Footprint]
+    how: Directed
     falls: list[Footfall] = field(default_factory=list)
     reason: str = "interrupted"
     seconds: float = 0.0
@@ -154,7 +195,9 @@ class DirectedWalk:
     @property
     def good(self) -> bool:
         """Every foot came down where it should."""
-        return len(self.falls) == len(self.prints) and all(fall.good for fall in self.falls)
+        return len(self.falls) == len(self.prints) and all(
+            fall.good(self.how) for fall in self.falls
+        )
 
     def record(self) -> dict[str, Any]:
         """Return it as programs read it."""
@@ -170,13 +213,13 @@ class DirectedWalk:
         }
 
 
-def walk_prints(robot: Robot, controller: DirectedSteps) -> DirectedWalk:
+def walk_prints(robot: Robot, controller: DirectedController) -> DirectedWalk:
     """Walk footprints, and look where the feet come down.
 
     A foot is looked at once it bears the weight, so that its slip counts; and seen from where the
     other one stood when it came down, for that one moves as soon as it bears nothing.
     """
-    walk = DirectedWalk(feet_of(robot.description), controller.prints)
+    walk = DirectedWalk(feet_of(robot.description), controller.prints, controller.how)
     origin: list[Array] = []
     stances: list[Array] = []
 
@@ -198,7 +241,7 @@ def walk_prints(robot: Robot, controller: DirectedSteps) -> DirectedWalk:
     return walk
 
 
-def _places(robot: Robot, controller: DirectedSteps) -> Array:
+def _places(robot: Robot, controller: DirectedController) -> Array:
     """Return the (2, 3) places of the feet: the truth of a twin, or what a robot believes."""
     twin, feet = robot.stack.twin, robot.description.feet
     if twin is None:

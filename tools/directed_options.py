@@ -1,7 +1,7 @@
 """What `windup step` and `windup footprints` share: walk on each seed, and say how it went."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -9,11 +9,9 @@ import numpy as np
 from control.footprints import Footprint
 from robots import load_robot
 from tools.directed import (
-    CLOSE,
-    TURNED,
     DirectedWalk,
     build_directed,
-    find_directed,
+    loop_rate,
     walk_prints,
 )
 from tools.options import Common
@@ -50,8 +48,9 @@ class DirectedOptions(TwinOptions, Common, ABC):
     def _one(self, seed: int) -> DirectedWalk:
         description = load_robot(self.robot)
         controller = build_directed(description, self.prints(seed))
-        with self.open_robot(seed, world=self.world(description, seed)) as robot:
-            robot.start_at(find_directed(description).stance)
+        paced = replace(self, rate=self.rate or loop_rate(description))
+        with paced.open_robot(seed, world=self.world(description, seed)) as robot:
+            robot.start_at(controller.how.stance)
             if (disturb := self.disturb()) is not None:
                 disturb(robot)
             return walk_prints(robot, controller)
@@ -77,5 +76,6 @@ def said(name: str, walk: DirectedWalk) -> str:
         return f"{done} and {walk.reason}"
     away = max(fall.away for fall in walk.falls)
     turned = max(abs(fall.turned) for fall in walk.falls)
-    verdict = "" if walk.good else f", and {1e3 * CLOSE:.0f} mm and {TURNED:.0f} degrees are fine"
+    fine = f", and {1e3 * walk.how.close:.0f} mm and {walk.how.turned:.0f} degrees are fine"
+    verdict = "" if walk.good else fine
     return f"{done}; farthest off {1e3 * away:.1f} mm and {turned:.1f} degrees{verdict}"

@@ -3,14 +3,18 @@
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
+import tyro
 
+from control.stepping_file import Support
 from hal.errors import UsageError
 from robots import load_robot
 from sim_twin.impact import ImpactGauge
 from tools.fall_report import fall_result, fall_said
+from tools.forbid import forbidden
+from tools.landings import landings_said
 from tools.options import Common
 from tools.output import console, write_json
 from tools.push_envelope import Envelope
@@ -46,6 +50,12 @@ class Push(WorldOptions, Common):
     """Pose to stand in; that of the robot's stepping by default."""
     delay: float | None = None
     """Delay of the servos, s."""
+    support: Support | None = None
+    """What the soles are taken to support: the hull of their points, or Kenwright's circles and
+    capsule; what its stepping says by default."""
+    forbid: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """Ground where no foot may come down, such as a hole: X,Y,R (circle), X,Y,W,H (rectangle about
+    X,Y) or X1,Y1,X2,Y2,X3,Y3,.. (polygon), m, seen from between the feet at the start; several."""
     envelope: bool = False
     """Find the largest impulse that it survives in each direction, for each of --ways."""
     directions: int = 16
@@ -64,6 +74,8 @@ class Push(WorldOptions, Common):
         for seed in self.all_seeds:
             rows.append(self.one(seed, self.plan(seed), fall=True))
             console.print(said(rows[-1]), markup=False, soft_wrap=True)
+            if "landings" in rows[-1]:
+                console.print(landings_said(rows[-1]), markup=False, soft_wrap=True)
             if rows[-1]["reason"] == "interrupted":
                 break
         good = sum(row["survived"] for row in rows)
@@ -73,7 +85,8 @@ class Push(WorldOptions, Common):
         write_json(self.json, "push", result)
         if rows[-1]["reason"] == "interrupted":
             return 130
-        return 0 if good == len(rows) else 1
+        clean = not any(row.get("on_forbidden") for row in rows)
+        return 0 if good == len(rows) and clean else 1
 
     def one(self, seed: int, plan: PushPlan, *, fall: bool = False) -> dict[str, Any]:
         """Return the result of one trial; with `fall` a robot that falls does so to the end."""
@@ -107,6 +120,8 @@ class Push(WorldOptions, Common):
             self.every,
             self.body,
             self.stance,
+            self.forbid,
+            self.support,
         )
 
     def _check(self) -> None:
@@ -124,6 +139,7 @@ class Push(WorldOptions, Common):
             raise UsageError(f"--times {self.times}: give 1 or more")
         if self.directions < 1:
             raise UsageError(f"--directions {self.directions}: give 1 or more")
+        forbidden(self.forbid)
         for way in self.ways if self.way is None else (self.way, *self.ways):
             check_way(way)
         stepping_stance(load_robot(self.robot), self.stance)

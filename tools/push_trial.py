@@ -1,5 +1,6 @@
 """One push on a twin, and whether the robot still stands afterwards."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import nan, radians
 from typing import Any
@@ -9,6 +10,7 @@ import numpy as np
 from control.play import PoseHolder
 from control.rotation import turn
 from control.stepper import Stepper
+from control.stepping_file import Support
 from control.torque_stepper import TorqueStepper
 from hal.controller import Controller
 from hal.errors import UsageError
@@ -16,6 +18,8 @@ from hal.joints import Array
 from hal.observation import Observation
 from sim_twin.push import Push
 from sim_twin.touch import TouchWatch
+from tools.forbid import forbidden
+from tools.landings import Landings
 from tools.robot import Robot
 from tools.stepping import build_stepper, footing_of, stepping_stance
 
@@ -26,6 +30,7 @@ AFTER = 3.0
 """How long after the last push it has to, s."""
 LONGEST = 3.0
 """How much longer a comfort step that it is at may take, s."""
+Look = Callable[[Observation, Controller], None]
 LANDING = 1.5
 """From a stiff fall being seen to lying, s."""
 
@@ -44,6 +49,8 @@ class PushPlan:
         every: From one push to the next, s.
         body: Which body is pushed; the torso by default.
         stance: Name of the pose that it stands in; that of its stepping by default.
+        support: What its soles are taken to support; that of its stepping by default.
+        forbid: Ground where no foot may come down; see `tools.forbid`.
     """
 
     way: str
@@ -55,6 +62,8 @@ class PushPlan:
     every: float = 1.0
     body: str | None = None
     stance: str | None = None
+    forbid: tuple[str, ...] = ()
+    support: Support | None = None
 
     @property
     def end(self) -> float:
@@ -71,6 +80,8 @@ class PushWatch:
         touch: What touches the ground.
         controller: Who controls.
         to_the_end: Does a touch of anything but a foot leave the run going?
+        look: Called at every tick, for whoever draws.
+        landings: Where the feet come down, if anybody asks.
         still: Since when the base is still, s; nan while it moves.
         seen: The last observation.
     """
@@ -79,6 +90,8 @@ class PushWatch:
     touch: TouchWatch
     controller: Controller
     to_the_end: bool = False
+    look: Look | None = None
+    landings: Landings | None = None
     still: float = nan
     seen: list[Observation] = field(default_factory=list)
 
@@ -86,6 +99,10 @@ class PushWatch:
         """Return why the run is over, or None."""
         self.seen = [observation]
         self.touch.look()
+        if self.look is not None:
+            self.look(observation, self.controller)
+        if self.landings is not None:
+            self.landings.look(observation)
         if self.touch.touched and not self.to_the_end:
             return "fell"
         base = observation.base
@@ -101,13 +118,16 @@ class PushWatch:
         return None
 
 
-def push_robot(robot: Robot, plan: PushPlan, *, to_the_end: bool = False) -> dict[str, Any]:
+def push_robot(
+    robot: Robot, plan: PushPlan, *, to_the_end: bool = False, look: Look | None = None
+) -> dict[str, Any]:
     """Let a fresh twin stand, push it, and return how it went.
 
     Args:
         robot: The robot.
         plan: What is done to it.
         to_the_end: Do not stop at the first touch of anything but a foot: fall until it lies.
+        look: Called at every tick until then, with the observation and the controller.
 
     Raises:
         UsageError: A body or a height that the robot does not have, or it cannot step.
@@ -115,17 +135,20 @@ def push_robot(robot: Robot, plan: PushPlan, *, to_the_end: bool = False) -> dic
     """
     description = robot.description
     stance = stepping_stance(description, plan.stance)
-    controller = build_stepper(description, plan.way, stance)
+    regions = forbidden(plan.forbid)
+    controller = build_stepper(description, plan.way, stance, regions, plan.support)
     robot.start_in(stance)
     arrange(robot, plan)
     touch = TouchWatch(description, robot.twin.model, robot.twin.data)
-    watch = PushWatch(plan, touch, controller, to_the_end)
+    landings = Landings(robot, footing_of(description, stance), regions) if regions else None
+    watch = PushWatch(plan, touch, controller, to_the_end, look, landings)
     report = robot.run(controller, until=watch)
     stepper = controller if isinstance(controller, STEPPERS) else None
     survived = report.reason == "done" and not (robot.fallen or touch.touched)
     if to_the_end and robot.fallen and not robot.protect:
         robot.run(PoseHolder(robot.description.joints, stance, ramp=0.0), LANDING, down=True)
-    return {
+    more = {} if landings is None else landings.record()
+    return more | {
         "robot": description.name,
         "way": plan.way,
         "impulse": plan.impulse,

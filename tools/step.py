@@ -16,7 +16,8 @@ class Step(DirectedOptions):
     """Which foot: left or right."""
     to: tuple[float, float]
     """Where its sole's middle should come down: X forward and Y to the left, m, seen from the
-    middle of the sole that stays; OP3 stands at 0 0.117 (left) or 0 -0.117 (right)."""
+    middle of the sole that stays (the human's: from below its ankle). They stand beside each other
+    at 0 0.117 (OP3, left; -0.117 right), 0 0.167 (human), 0 0.26 (human_handstand)."""
     yaw: float = 0.0
     """How far it should be turned to the left, degrees, against the foot that stays."""
     duration: float | None = None

@@ -1,16 +1,20 @@
 """Putting together what stands and steps under pushes, from a robot and the name of a rule."""
 
+from collections.abc import Sequence
 from typing import Final
 
+import msgspec
 import numpy as np
+from shapely.geometry.base import BaseGeometry
 
 from control.dynamics import Dynamics
 from control.footing import Footing
+from control.no_step import NoStep
 from control.play import PoseHolder
 from control.soles import Soles
 from control.step_decision import RULES
 from control.stepper import Stepper
-from control.stepping_file import Stepping
+from control.stepping_file import Stepping, Support
 from control.torque_stepper import TorqueStepper
 from control.whole_body import WholeBody
 from hal.controller import Controller
@@ -65,8 +69,21 @@ def whole_body_of(robot: RobotDescription) -> WholeBody:
     return WholeBody(dynamics, limit, FRICTION)
 
 
-def build_stepper(robot: RobotDescription, way: str, stance: Array) -> Controller:
+def build_stepper(
+    robot: RobotDescription,
+    way: str,
+    stance: Array,
+    forbid: Sequence[BaseGeometry] = (),
+    support: Support | None = None,
+) -> Controller:
     """Return the controller that meets pushes in one of the `WAYS`, standing in a pose (n,) rad.
+
+    Args:
+        robot: The robot.
+        way: Which way.
+        stance: The pose.
+        forbid: Ground where no foot may come down; see `control.no_step.NoStep`.
+        support: What the soles are taken to support; what its stepping says by default.
 
     Raises:
         UnknownNameError: There is no such way.
@@ -79,9 +96,12 @@ def build_stepper(robot: RobotDescription, way: str, stance: Array) -> Controlle
         raise UsageError(f"{robot.name} has {len(robot.feet)} feet; stepping takes two")
     stepping = find_stepping(robot)
     rule = None if way == FEET else stepping.find_rule(way)
+    if support is not None:
+        stepping = msgspec.structs.replace(stepping, support=support)
+    no_step = NoStep(forbid, stepping.clear)
     if robot.drive.kind == "torque":
-        return TorqueStepper(robot.joints, whole_body_of(robot), stance, rule, stepping)
-    return Stepper(robot.joints, footing_of(robot, stance), stance, rule, stepping)
+        return TorqueStepper(robot.joints, whole_body_of(robot), stance, rule, stepping, no_step)
+    return Stepper(robot.joints, footing_of(robot, stance), stance, rule, stepping, no_step)
 
 
 def check_way(way: str) -> None:

@@ -6,7 +6,7 @@ from hal.errors import ConfigError
 from robots import RobotDescription, load_robot
 from robots.mirror import mirror_map
 
-ROBOTS = ["op3", "human", "human12", "robobird", "duck"]
+ROBOTS = ["op3", "human", "human12", "robobird", "duck", "human_handstand"]
 CROOKED = {"duck": 4e-3}  # its legs are not quite mirror images; m
 
 

@@ -72,7 +72,7 @@ def test_a_step_that_cannot_be_is_refused_in_one_line(
 
 def test_a_robot_without_the_file_is_told_who_has_it(windup: Windup) -> None:
     ran = windup("step", "duck", "--foot", "left", "--to", "0", "0.1")
-    assert (ran.status, "robots that have: op3" in ran.err) == (2, True)
+    assert (ran.status, "robots that have: human, human_handstand, op3" in ran.err) == (2, True)
 
 
 def test_footprints_need_a_file_or_a_number(windup: Windup) -> None:

@@ -20,7 +20,7 @@ class Reproduce:
     """
 
     paper: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="PAPER")]
-    """Which paper: laszlo."""
+    """Which paper: laszlo or kenwright."""
     figures: Annotated[tuple[str, ...], tyro.conf.Positional, tyro.conf.arg(metavar="FIGURE")] = ()
     """Figures, such as 4.3; all by default."""
     quick: bool = False

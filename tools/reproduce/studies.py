@@ -5,6 +5,7 @@ from tools.reproduce.figure import Study
 
 def studies() -> dict[str, Study]:
     """Return the papers by name; loaded only when somebody asks."""
+    from tools.reproduce.kenwright import KENWRIGHT
     from tools.reproduce.laszlo import LASZLO
 
-    return {study.name: study for study in (LASZLO,)}
+    return {study.name: study for study in (LASZLO, KENWRIGHT)}
