@@ -40,3 +40,19 @@ def turn_between(one: Array, other: Array) -> Array:
     if size < 1e-9:
         return sine
     return sine * (np.arctan2(size, 0.5 * (np.trace(way) - 1.0)) / size)
+
+
+def way_round(one: float, other: float) -> float:
+    """Return the shorter way from one direction to another, rad."""
+    return atan2(sin(other - one), cos(other - one))
+
+
+def lying(normal: Array, yaw: float) -> Array:
+    """Return the rotation (3, 3) of what lies on ground of a unit `normal` (3,), heading `yaw` rad.
+
+    Seen from above it has that heading.
+    """
+    c, s = cos(yaw), sin(yaw)
+    along = np.array([c, s, -(c * normal[0] + s * normal[1]) / normal[2]])
+    along /= np.linalg.norm(along)
+    return np.column_stack([along, np.cross(normal, along), normal])
