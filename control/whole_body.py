@@ -24,7 +24,7 @@ SOFT: Final = 8
 """Its mark of one that may be broken at a cost: torque limits, at speeds that none can stop."""
 REGULAR: Final = 1e-6
 """Weight of every variable, so that the answer is the only one."""
-FASTEST: Final = 500.0
+FASTEST: Final = 1000.0
 """Largest acceleration of a plan, m/s2 and rad/s2: more only shakes a light foot."""
 REACH: Final = 10.0
 """Moment of inertia that makes angular momentum commensurate with the rest, kg m2."""
