@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from control.rotation import (
+    heading_between,
     lying,
     quaternion_matrix,
     turn,
@@ -30,6 +31,11 @@ def test_a_turn_about_y_leans_forward() -> None:
 def test_the_turn_between_two_is_what_is_missing(angle: float) -> None:
     one = turn(0.4) @ turn_about_y(0.2)
     assert turn_between(one, turn(angle) @ one) == pytest.approx([0.0, 0.0, angle], abs=1e-9)
+
+
+def test_between_two_headings_it_goes_the_shorter_way() -> None:
+    assert heading_between(0.1, 0.5, 0.25) == pytest.approx(0.2)
+    assert turn(heading_between(3.0, -3.0, 0.5)) == pytest.approx(turn(np.pi))
 
 
 def test_what_lies_on_a_slope_keeps_its_heading_seen_from_above() -> None:
