@@ -29,8 +29,6 @@ SPIN_DAMPING = 5.0
 """d_z of Eq. 11, 1/s."""
 STILL_DAMPING = 20.0
 """Damping of a standing foot, 1/s."""
-TOUCH = 0.003
-"""A foot has landed when its lowest corner is that near to the ground, m."""
 FOLLOW_DAMPING = 2.0
 """Damping of every joint about the speed that was planned, N m s/rad."""
 

@@ -24,12 +24,14 @@ from control.step_decision import (
 from control.stepping_file import Stepping
 from control.support import SupportRegion
 from control.swing import bezier, gaussian_progress
-from control.torque_motion import PERIOD, TOUCH, Swing, TorqueMotion
+from control.torque_motion import PERIOD, Swing, TorqueMotion
 from control.whole_body import WholeBody
 from hal.joints import Array, Joints
 from hal.observation import Observation
 
 Phase = Literal["stand", "swing", "land"]
+TOUCH = 0.003
+"""A foot has landed when its lowest corner is that near to the ground, m."""
 
 
 class TorqueStepper(TorqueMotion):
