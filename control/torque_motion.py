@@ -17,7 +17,7 @@ from hal.command import JointCommand
 from hal.joints import Array, Joints
 from hal.observation import Observation
 
-PERIOD = 0.01
+PERIOD = 0.005
 """Of the optimisation, s."""
 COM_GAIN, COM_DAMPING = 40.0, 12.0
 """k_L, 1/s2, and d_L, 1/s, of Eq. 10."""

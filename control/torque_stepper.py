@@ -3,6 +3,7 @@
 Wu & Zordan 2010, section 4: the supervisor decides when and where to step.
 """
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -14,6 +15,7 @@ from control.step_decision import (
     Placement,
     StepRule,
     choose,
+    coming_point,
     landing_point,
     needs_step,
     place,
@@ -64,11 +66,12 @@ class TorqueStepper(TorqueMotion):
         self._reach = stepping.reach.reach()
         self.phase: Phase = "stand"
         self.steps = self.comforts = 0
+        self._landed: int | None = None
 
     def reset(self, observation: Observation) -> None:
         """Begin to stand; the robot is in its stance."""
         super().reset(observation)
-        self.phase, self.steps, self.comforts = "stand", 0, 0
+        self.phase, self.steps, self.comforts, self._landed = "stand", 0, 0, None
         self.no_step.begin(self.dynamics.ends, [self.dynamics.ground(foot) for foot in (0, 1)])
         self._since, self._began = observation.time, self.dynamics.momenta.com[:2].copy()
 
@@ -83,6 +86,7 @@ class TorqueStepper(TorqueMotion):
         if self._rule is not None and self._falls(self._rule):
             self._begin(self._rule, now)
         elif self.phase == "land" and gone >= self._stepping.settle:
+            self._landed = None
             self._enter("stand", now)
 
     def _enter(self, phase: Phase, now: float) -> None:
@@ -91,7 +95,9 @@ class TorqueStepper(TorqueMotion):
 
     def _falls(self, rule: StepRule) -> bool:
         """Return whether both feet as they stand cannot prevent a fall."""
-        support = SupportRegion.hull(np.vstack([self.dynamics.ground(end) for end in (0, 1)]))
+        soles = [self.dynamics.ground(end) for end in (0, 1)]
+        rounded = self._stepping.support == "capsule"
+        support = SupportRegion.rounded(soles) if rounded else SupportRegion.hull(np.vstack(soles))
         return needs_step(trigger_point(rule, self.dynamics.momenta), support, self._stepping.slack)
 
     def _begin(self, rule: StepRule, now: float) -> None:
@@ -102,7 +108,7 @@ class TorqueStepper(TorqueMotion):
         if not possible:
             return
         feet = np.array([end.position for end in self.dynamics.ends])
-        chosen = choose(possible, feet, self._wanted)
+        chosen = choose(possible, feet, self._wanted, self._landed)
         self.steps += 1
         self._lift(chosen.foot, chosen.target, self._heading, duration, now)
         self._enter("swing", now)
@@ -117,7 +123,7 @@ class TorqueStepper(TorqueMotion):
                 swing.target = better.target
         lowest = float(self.dynamics.ground(swing.foot)[:, 2].min())
         if part > stepping.early and (lowest < TOUCH or part > 2.0):
-            self._swing = None
+            self._landed, self._swing = swing.foot, None
             self._enter("land", now)
 
     def _placement(self, rule: StepRule, foot: int, left: float) -> Placement | None:
@@ -134,7 +140,11 @@ class TorqueStepper(TorqueMotion):
         region = self._reach.region(stance.position[:2], yaw_of(stance.rotation), 1 - 2 * foot)
         start = self._swing.start if self._swing else self.dynamics.ends[foot].position
         holes = self.no_step.holes(foot, self._heading, start[:2])
-        return place(foot, self._wanted, region, holes)
+        placed = place(foot, self._wanted, region, holes)
+        catch = place(foot, coming_point(momenta, pivot, left) - middle, region, holes)
+        if placed is None or catch is None:
+            return None
+        return replace(placed, uncaught=catch.missed)
 
     @property
     def _heading(self) -> float:
