@@ -16,7 +16,7 @@ from control.comfort import ComfortStep
 from control.footing import Footing
 from control.momenta import capture_point
 from control.no_step import NoStep
-from control.rotation import heading_between, turn
+from control.rotation import facing, heading_between, turn
 from control.step_decision import (
     Placement,
     StepRule,
@@ -234,7 +234,9 @@ class Stepper:
         at[:2] = flight.start + way * (flight.target - flight.start)
         # Up at once and down at once: the servos are too slow for anything finer.
         at[2] = stepping.lift if gone < stepping.up * stepping.duration else 0.0
-        footing.put(goals, flight.foot, at, footing.yaw, footing.ahead(stepping.lead))
+        # By then the trunk has turned on, and the foot should face as it does.
+        seen = footing.ahead(stepping.lead)
+        footing.put(goals, flight.foot, at, facing(seen.rotation), seen)
         pivot = footing.places[1 - flight.foot]
         ahead = float(turn(footing.yaw)[:2, 0] @ (capture_point(footing.momenta) - pivot))
         pitch = np.clip(-stepping.trunk * ahead, -MOST_PITCH, MOST_PITCH)

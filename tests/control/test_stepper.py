@@ -108,3 +108,17 @@ def test_a_base_that_is_turned_comes_back_to_where_the_feet_point() -> None:
     robot.reset(observation)
     goals = robot.step(replace(observation, time=TICK), TICK).position
     assert goals[hips] == pytest.approx(STANCE[hips], abs=0.05)
+
+
+def test_the_foot_in_the_air_faces_as_the_trunk_will_when_it_turns() -> None:
+    robot, turning = stepper(), at(0.0, 1.0)
+    assert turning.base is not None
+    base = replace(turning.base, angular_velocity=np.array([0.0, 0.0, 3.0]))
+    turning = replace(turning, base=base)
+    robot.reset(turning)
+    for tick in range(1, 12):
+        command = robot.step(replace(turning, time=tick * TICK), TICK)
+    assert robot.phase == "swing"
+    names = OP3.joints.names
+    hip = names.index(("l_hip_yaw", "r_hip_yaw")[robot.stepping_foot])
+    assert command.position[hip] == pytest.approx(STANCE[hip], abs=0.05)
