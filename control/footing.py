@@ -112,14 +112,15 @@ class Footing:
         """Return where (2,) m the base is in the stance, over the feet of now."""
         return self.places.mean(axis=0) + turn(self.yaw)[:2, :2] @ self._offset
 
-    def upright(self, place: Array, pitch: float = 0.0) -> Pose:
+    def upright(self, place: Array, pitch: float = 0.0, height: float | None = None) -> Pose:
         """Return the stance's pose of the base over a place, in the heading of now.
 
         Args:
             place: (2,) m.
             pitch: How far it leans forward from there, rad.
+            height: Above the ground, m; that of the stance by default.
         """
-        position = np.array([place[0], place[1], self.height])
+        position = np.array([place[0], place[1], self.height if height is None else height])
         return Pose(position, turn(self.yaw) @ turn_about_y(pitch) @ self._level)
 
     def ahead(self, time: float) -> Pose:
