@@ -9,11 +9,11 @@ mass outwards, and the velocity of that adds as much again.
 
 from math import atan2, cos, hypot, sin
 
-import mujoco
 import numpy as np
 
-from control.body import Body, heading
+from control.body import Body
 from control.momenta import Momenta, capture_point
+from control.rotation import facing, quaternion_matrix
 from control.soles import Soles
 from control.support import SupportRegion
 from hal.errors import StateMissingError
@@ -91,15 +91,10 @@ class FallPredictor:
                 "[[foot]] in robot.toml, or run with --no-protect"
             )
         self._body.measure(observation)
-        flat = np.empty(9)
-        mujoco.mju_quat2Mat(flat, base.orientation)
-        frame = flat.reshape(3, 3)
-        joints = observation.joints
-        self._soles.update(joints.position, joints.velocity, frame[2])
-        points = self._soles.position @ frame[:2].T + base.position[:2]
+        points = self._soles.seen(self._body.data)[:, :2]
         way = unreachable(self._body.momenta(), points, self.reach)
         if way is None:
             return None
-        yaw = float(heading(base.orientation))
+        yaw = facing(quaternion_matrix(base.orientation))
         c, s = cos(yaw), sin(yaw)
         return np.array([c * way[0] + s * way[1], c * way[1] - s * way[0]]) / hypot(*way)

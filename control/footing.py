@@ -1,16 +1,17 @@
 """The feet of an observed robot: where they stand, and joint angles that put them elsewhere."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import atan2, pi, sqrt
 
 import mujoco
 import numpy as np
 from shapely import MultiPoint
 
-from control.body import Body, heading
+from control.body import Body
 from control.limb_ik import LimbIk, Pose
 from control.momenta import Momenta
-from control.rotation import quaternion_matrix, turn, turn_about_y, yaw_of
+from control.rotation import facing, quaternion_matrix, turn, turn_about_y, yaw_of
 from control.soles import Soles
 from control.support import SupportRegion
 from hal.errors import StateMissingError
@@ -21,6 +22,23 @@ DOWN = 0.004
 """A foot is down when its lowest point is not higher than this above the lowest of all, m."""
 ITERATIONS = 2
 """Of the inverse kinematics in a tick; each one begins where the last tick ended."""
+
+
+@dataclass(frozen=True)
+class Planted:
+    """Where feet stood at some time.
+
+    Attributes:
+        places: (k, 3) of the soles' centres, on the ground, m.
+        yaws: (k,) rad.
+        home: Where (2,) m the base is over them in the stance.
+        front: Heading between them, rad.
+    """
+
+    places: Array
+    yaws: list[float]
+    home: Array
+    front: float
 
 
 class Footing:
@@ -39,6 +57,7 @@ class Footing:
         yaw: Heading of the base, rad.
         feet: Poses of the soles' centres.
         places: (k, 2) where these are on the ground, m.
+        front: Heading between the feet, rad: where a base that stands on them should face.
         down: Which feet are on the ground.
         height: Of the base above the soles in the stance, m.
         radius: Of Kenwright's circle for each sole, m; None takes the hull of its points.
@@ -49,6 +68,7 @@ class Footing:
     yaw: float
     feet: list[Pose]
     places: Array
+    front: float
     down: list[bool]
 
     def __init__(
@@ -79,16 +99,16 @@ class Footing:
         self.momenta = self._body.momenta()
         self.base = Pose(state.position, quaternion_matrix(state.orientation))
         self._state = state
-        self.yaw = float(heading(state.orientation))
+        self.yaw = facing(self.base.rotation)
         sites = self._body.soles
         self.feet = [
             Pose(data.site_xpos[site].copy(), data.site_xmat[site].reshape(3, 3).copy())
             for site in sites
         ]
         self.places = data.site_xpos[sites, :2].copy()
-        up = self.base.rotation[2]
-        self._soles.update(observation.joints.position, observation.joints.velocity, up)
-        self._ground = self.base.position + self._soles.position @ self.base.rotation.T
+        x, y = (sum(foot.rotation[axis, 0] for foot in self.feet) for axis in (0, 1))
+        self.front = atan2(y, x)
+        self._ground = self._soles.seen(data)
         heights = [self._ground[self._soles.foot == k, 2].min() for k in range(len(sites))]
         self.down = [height < min(heights) + DOWN for height in heights]
 
@@ -110,18 +130,29 @@ class Footing:
 
     def home(self) -> Array:
         """Return where (2,) m the base is in the stance, over the feet of now."""
-        return self.places.mean(axis=0) + turn(self.yaw)[:2, :2] @ self._offset
+        return self.places.mean(axis=0) + turn(self.front)[:2, :2] @ self._offset
 
-    def upright(self, place: Array, pitch: float = 0.0, height: float | None = None) -> Pose:
-        """Return the stance's pose of the base over a place, in the heading of now.
+    def planted(self) -> Planted:
+        """Return where the feet are, to keep them there: feet that slip are not followed."""
+        places = np.zeros((len(self.feet), 3))
+        places[:, :2] = self.places
+        return Planted(
+            places, [yaw_of(foot.rotation) for foot in self.feet], self.home(), self.front
+        )
+
+    def upright(
+        self, place: Array, heading: float, pitch: float = 0.0, height: float | None = None
+    ) -> Pose:
+        """Return the stance's pose of the base over a place.
 
         Args:
             place: (2,) m.
+            heading: rad.
             pitch: How far it leans forward from there, rad.
             height: Above the ground, m; that of the stance by default.
         """
         position = np.array([place[0], place[1], self.height if height is None else height])
-        return Pose(position, turn(self.yaw) @ turn_about_y(pitch) @ self._level)
+        return Pose(position, turn(heading) @ turn_about_y(pitch) @ self._level)
 
     def ahead(self, time: float) -> Pose:
         """Return where the base will be in `time` s if it goes on as it does."""
@@ -144,16 +175,21 @@ class Footing:
         place = np.array([sole.position[0], sole.position[1], 0.0])
         self._solve(goals, foot, Pose(place, level).seen_from(base))
 
-    def put(self, goals: Array, foot: int, at: Array, base: Pose) -> None:
+    def put(self, goals: Array, foot: int, at: Array, heading: float, base: Pose) -> None:
         """Set the joints of a leg in `goals` (n,) so that its sole is flat at `at` (3,) m.
 
         Args:
             goals: rad, changed in place.
             foot: Which foot.
-            at: Where its sole's centre should be, in the heading of now.
+            at: Where its sole's centre should be.
+            heading: Of the sole, rad.
             base: Where the base will be by then.
         """
-        self._solve(goals, foot, Pose(at, turn(self.yaw)).seen_from(base))
+        self._solve(goals, foot, Pose(at, turn(heading)).seen_from(base))
+
+    def missed(self, foot: int) -> float:
+        """Return how far out of reach the last place of a foot was, m."""
+        return self._limbs[foot].missed
 
     def _solve(self, goals: Array, foot: int, target: Pose) -> None:
         limb = self._limbs[foot]

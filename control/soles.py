@@ -14,6 +14,7 @@ from hal.joints import Array
 Indices = npt.NDArray[np.intp]
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+UP = np.array([0.0, 0.0, 1.0])
 GEOM = mujoco.mjtGeom
 
 
@@ -69,14 +70,21 @@ class Soles:
         mujoco.mj_kinematics(self._model, data)
         mujoco.mj_comPos(self._model, data)
         mujoco.mj_comVel(self._model, data)
-        frames = data.xmat[self._bodies].reshape(-1, 3, 3)
-        turned = (frames[self.foot] @ self._local)[:, :, 0]
-        self.position = turned + data.xpos[self._of_point] - self._radius * up
+        self.position = self._points(data, up)
         self.heights = self.position @ up
         twist = data.cvel[self._bodies]
         self.rotation = twist[:, :3]
         self._pivot = data.subtree_com[self._root]
         self._linear = twist[:, 3:]
+
+    def seen(self, data: mujoco.MjData) -> Array:
+        """Return where (p, 3) the points are in the world of `data`, of the same model, m."""
+        return self._points(data, UP)
+
+    def _points(self, data: mujoco.MjData, up: Array) -> Array:
+        frames = data.xmat[self._bodies].reshape(-1, 3, 3)
+        turned = (frames[self.foot] @ self._local)[:, :, 0]
+        return turned + data.xpos[self._of_point] - self._radius * up
 
     def flow(self, weights: Array) -> tuple[Array, Array]:
         """Return the sums of each foot's positions and velocities under `weights` (p,).

@@ -14,10 +14,10 @@ import numpy as np
 from shapely.geometry.base import BaseGeometry
 
 from control.comfort import ComfortStep
-from control.footing import Footing
+from control.footing import Footing, Planted
 from control.momenta import capture_point
 from control.no_step import NoStep
-from control.rotation import turn
+from control.rotation import heading_between, turn
 from control.step_decision import (
     Placement,
     StepRule,
@@ -100,6 +100,7 @@ class Stepper:
         self._hold = JointCommand.hold(self.joints, self.stance)
         self._landed = self._taken = -np.inf
         self._before, self._above = self.stance, self.footing.height
+        self._planted: Planted | None = None
         self._moved = observation.time
         self.footing.look(observation)
         if self.stepping.support == "capsule":
@@ -151,7 +152,8 @@ class Stepper:
         elif self.phase == "land":
             self.phase = "stand"
         elif self.phase == "comfort" and self._comfort.done(now):
-            self.phase, self._moved = "stand", now
+            # What the legs cannot do now they cannot do until something moves the robot.
+            self.phase, self._moved = "stand", np.inf if self._comfort.given_up else now
         elif self.phase == "stand":
             self._settle(now)
 
@@ -181,6 +183,7 @@ class Stepper:
         chosen = choose(possible, footing.places, self._wanted)
         start = footing.places[chosen.foot].copy()
         self._flight = Flight(rule, chosen.foot, now, start, chosen.target, self._centre(now))
+        self._planted = None
         self.phase, self.steps = "swing", self.steps + 1
 
     def _placement(self, rule: StepRule, foot: int, left: float) -> Placement | None:
@@ -205,11 +208,11 @@ class Stepper:
             self._moved = now
         if now - self._moved < stepping.patience:
             return
-        comfort = ComfortStep(footing, now, stepping.lift)
+        comfort = ComfortStep(footing, now, stepping)
         foot, yaw = comfort.foot, footing.yaw
         free = self.no_step.allows(foot, yaw, footing.places[foot], comfort.target)
-        if comfort.astray > stepping.comfort and free:
-            self._comfort = comfort
+        if comfort.needed and free:
+            self._comfort, self._planted = comfort, None
             self.phase, self.comforts = "comfort", self.comforts + 1
 
     def _pose(self, goals: Array, now: float) -> None:
@@ -221,10 +224,17 @@ class Stepper:
         if self.phase == "swing":
             self._swing(goals, now)
             return
-        place = self._centre(now) - self._against(footing.places.mean(axis=0))
-        base = footing.upright(place, height=self._height)
+        against = self._against(footing.places.mean(axis=0))
+        if self._back(now) < 1.0:
+            place = self._centre(now) - against
+            base = footing.upright(place, self._heading(now), height=self._height)
+            for foot in (0, 1):
+                footing.stand(goals, foot, base)
+            return
+        planted = self._planted = self._planted or footing.planted()
+        base = footing.upright(planted.home - against, planted.front)
         for foot in (0, 1):
-            footing.stand(goals, foot, base)
+            footing.put(goals, foot, planted.places[foot], planted.yaws[foot], base)
 
     def _swing(self, goals: Array, now: float) -> None:
         """Tip over one leg, and put the other foot where it should be `lead` s from now."""
@@ -235,19 +245,26 @@ class Stepper:
         at[:2] = flight.start + way * (flight.target - flight.start)
         # Up at once and down at once: the servos are too slow for anything finer.
         at[2] = stepping.lift if gone < stepping.up * stepping.duration else 0.0
-        footing.put(goals, flight.foot, at, footing.ahead(stepping.lead))
+        footing.put(goals, flight.foot, at, footing.yaw, footing.ahead(stepping.lead))
         pivot = footing.places[1 - flight.foot]
         ahead = float(turn(footing.yaw)[:2, 0] @ (capture_point(footing.momenta) - pivot))
         pitch = np.clip(-stepping.trunk * ahead, -MOST_PITCH, MOST_PITCH)
         place = flight.centre - self._against(pivot)
-        base = footing.upright(place, float(pitch), self._height)
+        base = footing.upright(place, footing.yaw, float(pitch), self._height)
         footing.stand(goals, 1 - flight.foot, base)
 
     def _centre(self, now: float) -> Array:
         """Return where (2,) m the base should be: over the feet, some time after a step."""
         here, home = self.footing.base.position[:2], self.footing.home()
-        back = min((now - self._landed) / max(self.stepping.settle, 1e-6), 1.0)
-        return here + back * (home - here)
+        return here + self._back(now) * (home - here)
+
+    def _heading(self, now: float) -> float:
+        """Return where the base should face, rad: as the feet do, some time after a step."""
+        return heading_between(self.footing.yaw, self.footing.front, self._back(now))
+
+    def _back(self, now: float) -> float:
+        """Return how far the base has come back over the feet after a step, 0 to 1."""
+        return min((now - self._landed) / max(self.stepping.settle, 1e-6), 1.0)
 
     def _against(self, middle: Array) -> Array:
         """Return how far (2,) m the base is drawn from where the capture point runs to."""

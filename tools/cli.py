@@ -27,6 +27,7 @@ from tools.scan import Scan
 from tools.stand import Stand
 from tools.step import Step
 from tools.stop import Stop
+from tools.stride import Stride
 from tools.sweep import Sweep, separate
 from tools.synthesis import Synthesise
 from tools.walk import Walk
@@ -39,6 +40,7 @@ Command = (
     | Annotated[Push, tyro.conf.subcommand("push")]
     | Annotated[Step, tyro.conf.subcommand("step")]
     | Annotated[Footprints, tyro.conf.subcommand("footprints")]
+    | Annotated[Stride, tyro.conf.subcommand("stride")]
     | Annotated[Stop, tyro.conf.subcommand("stop")]
     | Annotated[Scan, tyro.conf.subcommand("scan")]
     | Annotated[Emulate, tyro.conf.subcommand("emulate")]

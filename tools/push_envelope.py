@@ -1,14 +1,19 @@
-"""`windup push --envelope`: the largest impulse survived in each direction, each way to meet it."""
+"""`windup push --envelope`: the largest impulse survived in each direction, each way to meet it.
+
+Survival is not monotone in the impulse: beside the largest with no fall below it stands how many
+of a grid of impulses, the same for all ways, were survived.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.table import Table
 
+from tools.envelope_tables import largest_table, summarise, summary_table
 from tools.output import console, write_json
 from tools.parallel import side_by_side
 from tools.plot_envelope import plot_envelope
@@ -16,12 +21,12 @@ from tools.plot_envelope import plot_envelope
 if TYPE_CHECKING:
     from tools.push import Push
 
-COARSE, FINE = 0.2, 0.05
-"""Steps of the impulse of a light robot: up to the first fall, and from the last success, N s."""
+COARSE, FINE = 0.4, 0.1
+"""Steps of the impulse of a light robot: of the grid, and from the last success, N s."""
 LIGHT = 3.0
 """Mass of a light robot, kg; heavier ones take larger steps, see `Search.scale`."""
-MOST = 30
-"""Coarse steps after which nothing makes it fall."""
+GRID, MOST = 6, 30
+"""Steps of the grid, and steps after which nothing makes it fall."""
 
 
 @dataclass(frozen=True)
@@ -54,24 +59,37 @@ class Edge:
 
     Attributes:
         impulse: The largest survived with none failed below it, N s.
-        rows: All trials.
+        grid: The trials of the grid, from light to hard.
+        rows: The trials between.
     """
 
     impulse: float
+    grid: list[dict[str, Any]] = field(default_factory=list)
     rows: list[dict[str, Any]] = field(default_factory=list)
 
 
 def find_edge(search: Search) -> Edge:
-    """Go up in coarse steps to the first fall, then in fine ones from the last success."""
-    edge = Edge(0.0)
-    for step in (COARSE * search.scale, FINE * search.scale):
-        for _ in range(MOST):
-            impulse = round(edge.impulse + step, 6)
-            edge.rows.append(search.survives(impulse))
-            if not edge.rows[-1]["survived"]:
-                break
-            edge.impulse = impulse
+    """Try the whole grid, and more where nothing of it felled; then look between closely."""
+    coarse = COARSE * search.scale
+    edge = Edge(0.0, [search.survives(round((k + 1) * coarse, 6)) for k in range(GRID)])
+    before = list(takewhile(_survived, edge.grid))
+    while len(before) >= GRID and len(before) < MOST:
+        edge.rows.append(search.survives(round((len(before) + 1) * coarse, 6)))
+        if not _survived(edge.rows[-1]):
+            break
+        before.append(edge.rows[-1])
+    edge.impulse = round(len(before) * coarse, 6)
+    for _ in range(1, round(COARSE / FINE)):
+        impulse = round(edge.impulse + FINE * search.scale, 6)
+        edge.rows.append(search.survives(impulse))
+        if not _survived(edge.rows[-1]):
+            break
+        edge.impulse = impulse
     return edge
+
+
+def _survived(row: dict[str, Any]) -> bool:
+    return bool(row["survived"])
 
 
 class Envelope:
@@ -94,35 +112,19 @@ class Envelope:
         found: dict[str, dict[float, Edge]] = {way: {} for way in push.ways}
         for search, edge in side_by_side(find_edge, searches, label="pushing", jobs=push.jobs):
             found[search.way][search.direction] = edge
-        table = {way: [found[way][float(d)].impulse for d in directions] for way in push.ways}
-        console.print(_table(directions.tolist(), table))
-        write_json(push.json, "push", _record(push, directions.tolist(), found))
+        largest = {way: [found[way][float(d)].impulse for d in directions] for way in push.ways}
+        console.print(largest_table(directions.tolist(), largest))
+        summaries = {way: summarise(found[way], found) for way in push.ways}
+        console.print(summary_table(summaries))
+        ways = {
+            way: summaries[way]
+            | {"largest": largest[way], "worst": min(largest[way])}
+            | {"trials": [row for edge in found[way].values() for row in (*edge.grid, *edge.rows)]}
+            for way in push.ways
+        }
+        result = {"robot": push.robot, "directions": directions.tolist(), "ways": ways}
+        write_json(push.json, "push", result)
         if push.plot is not None:
-            plot_envelope(Path(push.plot), push.robot, np.radians(directions).tolist(), table)
+            plot_envelope(Path(push.plot), push.robot, np.radians(directions).tolist(), largest)
             console.print(f"picture: {push.plot}")
         return 0
-
-
-def _table(directions: list[float], found: dict[str, list[float]]) -> Table:
-    table = Table(title="largest impulse survived, N s")
-    for name in ("way", *(f"{direction:g}" for direction in directions), "worst", "mean"):
-        table.add_column(name, justify="left" if name == "way" else "right")
-    for way, row in found.items():
-        ends = (min(row), float(np.mean(row)))
-        table.add_row(way, *(f"{value:.2f}" for value in (*row, *ends)))
-    return table
-
-
-def _record(
-    push: Push, directions: list[float], found: dict[str, dict[float, Edge]]
-) -> dict[str, Any]:
-    ways = {
-        way: {
-            "largest": [edges[d].impulse for d in directions],
-            "worst": min(edges[d].impulse for d in directions),
-            "mean": float(np.mean([edges[d].impulse for d in directions])),
-            "trials": [row for d in directions for row in edges[d].rows],
-        }
-        for way, edges in found.items()
-    }
-    return {"robot": push.robot, "directions": directions, "ways": ways}

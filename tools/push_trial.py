@@ -191,5 +191,5 @@ def astray(robot: Robot, stance: Array, seen: Observation) -> float:
     footing = footing_of(robot.description, stance)
     footing.look(seen)
     home = footing.homes[0][:2] - footing.homes[1][:2]
-    way = turn(footing.yaw)[:2, :2].T @ (footing.places[0] - footing.places[1])
+    way = turn(footing.front)[:2, :2].T @ (footing.places[0] - footing.places[1])
     return float(np.linalg.norm(way - home))

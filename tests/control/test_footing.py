@@ -31,8 +31,7 @@ def seen(
 
 
 def footing_level(footing: Footing, yaw: float) -> np.ndarray:
-    footing.yaw = yaw
-    return footing.upright(np.zeros(2)).rotation
+    return footing.upright(np.zeros(2), yaw).rotation
 
 
 @pytest.fixture
@@ -54,7 +53,7 @@ def test_standing_as_it_stands_changes_no_joint(footing: Footing, yaw: float) ->
     footing.look(seen(yaw))
     goals = STANCE.copy()
     for foot in (0, 1):
-        footing.stand(goals, foot, footing.upright(footing.home()))
+        footing.stand(goals, foot, footing.upright(footing.home(), yaw))
     assert np.abs(goals - STANCE).max() < 0.02
 
 
@@ -65,7 +64,7 @@ def test_a_foot_comes_where_it_is_put(footing: Footing, yaw: float) -> None:
     at = np.append(footing.places[0], 0.03) + turn(yaw) @ [0.03, 0.01, 0.0]
     goals = STANCE.copy()
     for _ in range(10):
-        footing.put(goals, 0, at, footing.base)
+        footing.put(goals, 0, at, yaw, footing.base)
     observation.joints.position[:] = goals
     footing.look(observation)
     assert footing.feet[0].position == pytest.approx(at, abs=2e-3)

@@ -41,6 +41,16 @@ def test_what_is_out_of_reach_stays_within_the_joints_limits() -> None:
     assert np.all((far >= lower) & (far <= upper))
 
 
+def test_out_of_reach_the_limb_comes_to_rest_and_says_how_much_is_missing() -> None:
+    home, pose = LEFT.forward(CROUCHED), CROUCHED.copy()
+    target = Pose(home.position + np.array([-0.2, 0.0, 0.0]), home.rotation)
+    for _ in range(60):
+        before = pose[LEFT.joints].copy()
+        pose[LEFT.joints] = LEFT.solve(target, pose, steps=1)
+    assert np.abs(pose[LEFT.joints] - before).max() < 1e-2
+    assert LEFT.missed > 0.005
+
+
 def test_only_the_joints_of_the_limb_belong_to_it() -> None:
     names = [OP3.joints.names[k] for k in LEFT.joints]
     assert len(names) == 6

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from control.comfort import ComfortStep
 from control.step_decision import find_rule
 from control.stepper import Stepper
 from hal.joints import Array
@@ -87,3 +88,23 @@ def test_feet_astray_come_back_by_a_comfort_step() -> None:
         robot.step(replace(observation, time=time), TICK)
     assert (robot.phase, robot.comforts, robot.steps) == ("comfort", 1, 0)
     assert time == pytest.approx(find_stepping(OP3).patience, abs=2 * TICK)
+
+
+def test_a_turned_foot_is_turned_back() -> None:
+    robot = stepper()
+    observation = at(0.0, 0.0)
+    observation.joints.position[OP3.joints.names.index("r_hip_yaw")] += 0.4
+    robot.reset(observation)
+    comfort = ComfortStep(robot.footing, 0.0, find_stepping(OP3))
+    assert comfort.needed
+    assert abs(robot.footing.front) == pytest.approx(0.2, abs=0.02)
+
+
+def test_a_base_that_is_turned_comes_back_to_where_the_feet_point() -> None:
+    robot = stepper()
+    observation = at(0.0, 0.0)
+    hips = [OP3.joints.names.index(name) for name in ("l_hip_yaw", "r_hip_yaw")]
+    observation.joints.position[hips] += 0.3
+    robot.reset(observation)
+    goals = robot.step(replace(observation, time=TICK), TICK).position
+    assert goals[hips] == pytest.approx(STANCE[hips], abs=0.05)

@@ -1,9 +1,12 @@
 import json
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from tools.cli import run
+from tools.envelope_tables import summarise
 from tools.push import Push
 from tools.push_envelope import Search, find_edge
 
@@ -69,10 +72,45 @@ def test_a_robot_that_cannot_step_is_told_who_can(capsys: pytest.CaptureFixture[
     assert "op3" in capsys.readouterr().err
 
 
+def trial(fall: float) -> Callable[[Search, float], dict[str, Any]]:
+    """Return pushes that fell from `fall` N s on, and take a step from 0.5 N s on."""
+
+    def survives(search: Search, impulse: float) -> dict[str, Any]:
+        steps = 0 if search.way == "feet" else int(impulse > 0.5)
+        how = {"impulse": impulse, "steps": steps, "settling_s": 1.0, "astray_m": 0.01}
+        return how | {"survived": impulse < fall}
+
+    return survives
+
+
 def test_the_edge_is_the_last_before_the_first_fall(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Search, "survives", lambda self, impulse: {"survived": impulse < 0.93})
+    monkeypatch.setattr(Search, "survives", trial(0.93))
     edge = find_edge(Search(Push(robot="op3"), "hold", 0.0, 1.0))
     assert edge.impulse == pytest.approx(0.9)
+    assert [row["survived"] for row in edge.grid] == [True, True, False, False, False, False]
+
+
+def test_a_fall_in_the_middle_of_the_grid_bounds_the_edge(monkeypatch: pytest.MonkeyPatch) -> None:
+    falls = {"impulse": 0.0, "steps": 0, "settling_s": 1.0, "astray_m": 0.0}
+    monkeypatch.setattr(
+        Search,
+        "survives",
+        lambda self, impulse: falls | {"impulse": impulse, "survived": impulse != 0.8},
+    )
+    edge = find_edge(Search(Push(robot="op3"), "hold", 0.0, 1.0))
+    assert edge.impulse == pytest.approx(0.7)
+    assert [row["survived"] for row in edge.grid].count(True) == 5
+
+
+def test_a_step_is_needless_where_the_feet_alone_do_as_well(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(Search, "survives", trial(0.93))
+    push = Push(robot="op3")
+    ways = {way: {0.0: find_edge(Search(push, way, 0.0, 1.0))} for way in ("feet", "ip")}
+    assert summarise(ways["feet"], ways)["needless"] == 0
+    found = summarise(ways["ip"], ways)
+    assert (found["needless"], found["survived"], found["grid"]) == (1, 2, 6)
 
 
 def test_the_envelope_is_a_table_a_picture_and_json(tmp_path: Path) -> None:
