@@ -26,6 +26,10 @@ class Run:
         self.time = 0.0
         self.supervisor.reset(self.seen(0.0))
 
+    @property
+    def holder(self) -> str:
+        return self.supervisor.holder
+
     def seen(self, drift: float) -> Observation:
         return replace(seen(drift=drift), time=self.time)
 
@@ -47,13 +51,13 @@ def test_a_walk_is_learnt_before_it_is_judged() -> None:
     run = Run()
     run.go(0.3)
     run.go(0.1, drift=-0.5)
-    assert run.supervisor.holder == "walk"
+    assert run.holder == "walk"
 
 
 def test_what_throws_it_forward_or_hardly_at_all_is_the_walks(walking: Run) -> None:
     for drift in (0.5, -0.1):
         walking.go(0.1, drift)
-        assert walking.supervisor.holder == "walk"
+        assert walking.holder == "walk"
         walking.go(1.0)
     assert not walking.supervisor.catches
 
@@ -62,7 +66,7 @@ def test_what_throws_it_back_goes_to_the_stepper_which_halts_and_hands_back(walk
     supervisor = walking.supervisor
     began = walking.time
     walking.go(0.1, drift=-0.5)
-    assert supervisor.holder == "step"
+    assert walking.holder == "step"
     catch = supervisor.catches[-1]
     assert catch.time == pytest.approx(began, abs=2 * TICK)
     assert catch.thrown[0] < -supervisor.table.back
@@ -73,7 +77,7 @@ def test_what_throws_it_back_goes_to_the_stepper_which_halts_and_hands_back(walk
     walked = supervisor.walker.steps
     assert walked == catch.after
     walking.go(2.0)
-    assert supervisor.holder == "walk"
+    assert walking.holder == "walk"
     assert catch.back == pytest.approx(catch.stood + RETURN, abs=2 * TICK)
     assert supervisor.walker.steps > walked
     assert catch.record(supervisor.walker.steps)["walked_after"] == (
@@ -88,7 +92,7 @@ def test_the_stepper_begins_where_the_robot_is_and_takes_time_for_its_stance() -
     arm = OP3.joints.names.index("l_el")
     observation.joints.position[arm] += 0.5
     command = run.supervisor.step(observation, TICK)
-    assert run.supervisor.holder == "step"
+    assert run.holder == "step"
     assert command.position[arm] == pytest.approx(observation.joints.position[arm])
     run.go(0.6)
     assert np.isclose(
