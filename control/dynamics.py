@@ -45,6 +45,8 @@ class Dynamics:
         self.bias = np.zeros(model.nv)
         self.velocity = np.zeros(model.nv)
         mujoco.mj_kinematics(model, self._data)
+        self._jacobians: list[Array | None] = []
+        self._grounds: list[Array] = []
         self.corners = [self._find_corners(site) for site in self._sites]
 
     def look(self, observation: Observation) -> None:
@@ -76,17 +78,22 @@ class Dynamics:
             Pose(data.site_xpos[site].copy(), data.site_xmat[site].reshape(3, 3).copy())
             for site in self._sites
         ]
+        self._jacobians = [None for _ in self.ends]
+        self._grounds = [
+            pose.position + corners @ pose.rotation.T
+            for pose, corners in zip(self.ends, self.corners, strict=True)
+        ]
 
     def ground(self, end: int) -> Array:
         """Return where (p, 3) m in the world the corners of an end are."""
-        pose = self.ends[end]
-        return pose.position + self.corners[end] @ pose.rotation.T
+        return self._grounds[end]
 
     def jacobian(self, end: int) -> Array:
         """Return the Jacobian (6, v) of an end: linear, then angular, in the world."""
-        jacobian = np.zeros((6, self.model.nv))
-        mujoco.mj_jacSite(self.model, self._data, jacobian[:3], jacobian[3:], self._sites[end])
-        return jacobian
+        if (known := self._jacobians[end]) is None:
+            known = self._jacobians[end] = np.zeros((6, self.model.nv))
+            mujoco.mj_jacSite(self.model, self._data, known[:3], known[3:], self._sites[end])
+        return known
 
     def drift(self, end: int) -> Array:
         """Return the acceleration (6,) of an end that comes from velocities alone."""

@@ -5,7 +5,7 @@ for where) are given here as multiples of omega = sqrt(g / c_z), so that small r
 faster, have them too.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, exp, sin
 from typing import Final
@@ -20,6 +20,8 @@ from hal.errors import UnknownNameError
 from hal.joints import Array
 
 Damping = tuple[float, float]
+AGAIN: Final = 0.25
+"""How much better the same foot has to catch a fall to step twice in a row, m."""
 
 
 @dataclass(frozen=True)
@@ -76,10 +78,14 @@ def landing_point(rule: StepRule, body: Momenta, pivot: Array, left: float) -> A
         left: Time until the foot lands, s.
     """
     if rule.where is None:
-        # p + (xi - p) e^(omega T): where the capture point will be by then.
-        return pivot + (capture_point(body) - pivot) * exp(body.omega * left)
+        return coming_point(body, pivot, left)
     linear, angular = rule.where
     return desired_cp(body, linear * body.omega, angular * body.omega)
+
+
+def coming_point(body: Momenta, pivot: Array, left: float) -> Array:
+    """Return the capture point (2,) m in `left` s, p + (xi - p) e^(omega T), about a pivot."""
+    return np.asarray(pivot + (capture_point(body) - pivot) * exp(body.omega * left))
 
 
 @dataclass(frozen=True)
@@ -115,11 +121,13 @@ class Placement:
         foot: Which foot.
         target: (2,) where its sole's centre comes down, m.
         missed: How far that is from where it should, m.
+        uncaught: How far the best place within reach is from the coming capture point, m.
     """
 
     foot: int
     target: Array
     missed: float
+    uncaught: float = 0.0
 
 
 def place(
@@ -138,17 +146,30 @@ def place(
     return Placement(foot, target, float(np.linalg.norm(target - wanted)))
 
 
-def choose(candidates: Sequence[Placement], feet: Array, wanted: Array) -> Placement:
-    """Return the placement that misses least; where all do alike, that of the nearest foot.
+def choose(
+    candidates: Sequence[Placement], feet: Array, wanted: Array, landed: int | None = None
+) -> Placement:
+    """Return whose foot can catch the fall, then what misses least, then the nearest foot.
+
+    The paper takes the nearest foot (section 4.2). After a wide step that is often the one that
+    has just landed, and about the other, far behind, the body would only fall faster.
 
     Args:
         candidates: One for each foot that may step.
         feet: (k, 2) where the feet are, m.
         wanted: (2,) where one should come down, m.
+        landed: The foot that has just come down, if one has.
     """
-    least = min(candidate.missed for candidate in candidates)
-    good = [candidate for candidate in candidates if candidate.missed <= least + 0.005]
+    able = _least(candidates, lambda c: c.uncaught + AGAIN * (c.foot == landed), 0.01)
+    good = _least(able, lambda c: c.missed, 0.005)
     return min(good, key=lambda c: float(np.linalg.norm(feet[c.foot, :2] - wanted)))
+
+
+def _least(
+    candidates: Sequence[Placement], size: Callable[[Placement], float], margin: float
+) -> list[Placement]:
+    least = min(map(size, candidates))
+    return [candidate for candidate in candidates if size(candidate) <= least + margin]
 
 
 def needs_step(point: Array, support: SupportRegion, slack: float = 0.0) -> bool:

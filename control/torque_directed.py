@@ -13,8 +13,10 @@ import numpy as np
 from control.directed_file import Directed
 from control.footprints import Footprint, between, ground_places, onto
 from control.swing import smooth_progress
-from control.torque_motion import PERIOD, TOUCH, TorqueMotion
+from control.torque_motion import PERIOD, TorqueMotion
 from control.whole_body import WholeBody
+from hal.command import JointCommand
+from hal.contacts import ContactSensors
 from hal.joints import Array, Joints
 from hal.observation import Observation
 
@@ -34,6 +36,8 @@ class TorqueDirected(TorqueMotion):
         stance: (n,) rad, the pose to start from.
         prints: What to do.
         how: Times.
+        contacts: The feet's sensors, which tell that one has come down; heights above the ground
+            are too rough for that where the state is estimated.
 
     Attributes:
         finished: All steps are done and the weight is between the feet.
@@ -48,9 +52,10 @@ class TorqueDirected(TorqueMotion):
         stance: Array,
         prints: Sequence[Footprint],
         how: Directed,
+        contacts: ContactSensors,
     ) -> None:
         super().__init__(joints, body, stance, how.lift)
-        self.prints, self.how = prints, how
+        self.prints, self.how, self._contacts = prints, how, contacts
         self.finished, self.landed, self.stood = False, 0, 0
 
     @property
@@ -66,6 +71,11 @@ class TorqueDirected(TorqueMotion):
         self._origin = between(*self.places)
         self.finished, self.landed, self.stood = False, 0, 0
         self._enter("rest", observation.time)
+
+    def step(self, observation: Observation, dt: float) -> JointCommand:
+        """Return the torques of now; see `TorqueMotion.step`."""
+        self._down = self._contacts.feet_down(observation.contacts)
+        return super().step(observation, dt)
 
     def _enter(self, phase: Phase, now: float) -> None:
         self._phase, self._since = phase, now
@@ -105,8 +115,7 @@ class TorqueDirected(TorqueMotion):
         """Put the foot down when it is there."""
         swing = self._flying
         part = (now - swing.began) / swing.duration
-        lowest = float(self.dynamics.ground(swing.foot)[:, 2].min())
-        if part >= LATE or (part >= 1.0 and lowest < TOUCH):
+        if part >= LATE or (part >= 1.0 and self._down[swing.foot]):
             self._swing = None
             self.landed += 1
             self._enter("land", now)

@@ -17,7 +17,7 @@ from hal.command import JointCommand
 from hal.joints import Array, Joints
 from hal.observation import Observation
 
-PERIOD = 0.01
+PERIOD = 0.005
 """Of the optimisation, s."""
 COM_GAIN, COM_DAMPING = 40.0, 12.0
 """k_L, 1/s2, and d_L, 1/s, of Eq. 10."""
@@ -29,8 +29,6 @@ SPIN_DAMPING = 5.0
 """d_z of Eq. 11, 1/s."""
 STILL_DAMPING = 20.0
 """Damping of a standing foot, 1/s."""
-TOUCH = 0.003
-"""A foot has landed when its lowest corner is that near to the ground, m."""
 FOLLOW_DAMPING = 2.0
 """Damping of every joint about the speed that was planned, N m s/rad."""
 

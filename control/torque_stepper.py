@@ -3,6 +3,7 @@
 Wu & Zordan 2010, section 4: the supervisor decides when and where to step.
 """
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -14,6 +15,7 @@ from control.step_decision import (
     Placement,
     StepRule,
     choose,
+    coming_point,
     landing_point,
     needs_step,
     place,
@@ -22,12 +24,14 @@ from control.step_decision import (
 from control.stepping_file import Stepping
 from control.support import SupportRegion
 from control.swing import bezier, gaussian_progress
-from control.torque_motion import PERIOD, TOUCH, Swing, TorqueMotion
+from control.torque_motion import PERIOD, Swing, TorqueMotion
 from control.whole_body import WholeBody
 from hal.joints import Array, Joints
 from hal.observation import Observation
 
 Phase = Literal["stand", "swing", "land"]
+TOUCH = 0.003
+"""A foot has landed when its lowest corner is that near to the ground, m."""
 
 
 class TorqueStepper(TorqueMotion):
@@ -62,11 +66,12 @@ class TorqueStepper(TorqueMotion):
         self._reach = stepping.reach.reach()
         self.phase: Phase = "stand"
         self.steps = self.comforts = 0
+        self._landed: int | None = None
 
     def reset(self, observation: Observation) -> None:
         """Begin to stand; the robot is in its stance."""
         super().reset(observation)
-        self.phase, self.steps, self.comforts = "stand", 0, 0
+        self.phase, self.steps, self.comforts, self._landed = "stand", 0, 0, None
         self.no_step.begin(self.dynamics.ends, [self.dynamics.ground(foot) for foot in (0, 1)])
         self._since, self._began = observation.time, self.dynamics.momenta.com[:2].copy()
 
@@ -81,6 +86,7 @@ class TorqueStepper(TorqueMotion):
         if self._rule is not None and self._falls(self._rule):
             self._begin(self._rule, now)
         elif self.phase == "land" and gone >= self._stepping.settle:
+            self._landed = None
             self._enter("stand", now)
 
     def _enter(self, phase: Phase, now: float) -> None:
@@ -100,7 +106,7 @@ class TorqueStepper(TorqueMotion):
         if not possible:
             return
         feet = np.array([end.position for end in self.dynamics.ends])
-        chosen = choose(possible, feet, self._wanted)
+        chosen = choose(possible, feet, self._wanted, self._landed)
         self.steps += 1
         self._lift(chosen.foot, chosen.target, self._heading, duration, now)
         self._enter("swing", now)
@@ -115,7 +121,7 @@ class TorqueStepper(TorqueMotion):
                 swing.target = better.target
         lowest = float(self.dynamics.ground(swing.foot)[:, 2].min())
         if part > stepping.early and (lowest < TOUCH or part > 2.0):
-            self._swing = None
+            self._landed, self._swing = swing.foot, None
             self._enter("land", now)
 
     def _placement(self, rule: StepRule, foot: int, left: float) -> Placement | None:
@@ -132,7 +138,11 @@ class TorqueStepper(TorqueMotion):
         region = self._reach.region(stance.position[:2], yaw_of(stance.rotation), 1 - 2 * foot)
         start = self._swing.start if self._swing else self.dynamics.ends[foot].position
         holes = self.no_step.holes(foot, self._heading, start[:2])
-        return place(foot, self._wanted, region, holes)
+        placed = place(foot, self._wanted, region, holes)
+        catch = place(foot, coming_point(momenta, pivot, left) - middle, region, holes)
+        if placed is None or catch is None:
+            return None
+        return replace(placed, uncaught=catch.missed)
 
     @property
     def _heading(self) -> float:

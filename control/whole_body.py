@@ -6,6 +6,7 @@ quadratic programme; inverse dynamics turns its answer into torques at every tic
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import sqrt
 from typing import Final
 
 import daqp
@@ -23,6 +24,8 @@ SOFT: Final = 8
 """Its mark of one that may be broken at a cost: torque limits, at speeds that none can stop."""
 REGULAR: Final = 1e-6
 """Weight of every variable, so that the answer is the only one."""
+FASTEST: Final = 1000.0
+"""Largest acceleration of a plan, m/s2 and rad/s2: more only shakes a light foot."""
 REACH: Final = 10.0
 """Moment of inertia that makes angular momentum commensurate with the rest, kg m2."""
 
@@ -88,6 +91,8 @@ class WholeBody:
         self._weights = weights or Weights()
         # Edges of a pyramid inside the cone, each with a vertical part of 1.
         self._edges = np.column_stack((friction * EDGES, np.ones(len(EDGES))))
+        # An arm (3,) times this is its cross product with each edge, one after the other.
+        self._levers = np.cross(np.eye(3)[:, None], self._edges).reshape(3, -1)
 
     def plan(self, wanted: Objectives) -> Plan:
         """Return what serves `wanted` best within friction and torque limits.
@@ -96,27 +101,22 @@ class WholeBody:
             WindupError: There is no answer, which a body that can fall freely never meets.
         """
         dynamics = self.dynamics
-        count = len(dynamics.bias)
-        points = [dynamics.ground(end) for end in wanted.stance]
-        spread = self._spread(wanted.stance, points)
-        generator = self._forces(points)
-        rows, goals = self._rows(wanted, points, generator)
-        hessian = rows.T @ rows
-        hessian[np.diag_indices_from(hessian)] += REGULAR
-        matrix = np.hstack((dynamics.mass, -spread))
-        free = len(hessian) - count
-        low = np.concatenate((np.full(count, -1e5), np.zeros(free), -dynamics.bias))
-        high = np.concatenate((np.full(count, 1e5), np.full(free, 1e5), -dynamics.bias))
+        hessian, linear = self._cost(wanted)
+        matrix = np.hstack((dynamics.mass, -self._spread(wanted.stance)))
+        count, size = matrix.shape
+        low, high = np.full(size + count, -FASTEST), np.full(size + count, FASTEST)
+        low[count:size], high[count:size] = 0.0, 1e5
+        low[size:] = high[size:] = -dynamics.bias
         low[-len(self._limit) :] -= self._limit
         high[-len(self._limit) :] += self._limit
-        sense = np.zeros(len(low), dtype=np.int32)
-        sense[len(hessian) : len(hessian) + 6] = EQUAL
-        sense[len(hessian) + 6 :] = SOFT
-        answer, _, flag, _ = daqp.solve(hessian, -rows.T @ goals, matrix, high, low, sense)
+        sense = np.full(size + count, SOFT, dtype=np.int32)
+        sense[count:size], sense[size : size + 6] = 0, EQUAL
+        answer, _, flag, _ = daqp.solve(hessian, linear, matrix, high, low, sense)
         if flag < 1:
             raise WindupError(f"whole-body control found no accelerations (daqp: {flag})")
-        forces = (generator @ answer[count:]).reshape(-1, 3)
-        parts = np.split(forces, np.cumsum([len(part) for part in points])[:-1])
+        forces = answer[count:].reshape(-1, len(self._edges)) @ self._edges
+        ends = np.cumsum([len(dynamics.corners[end]) for end in wanted.stance])
+        parts = np.split(forces, ends[:-1])
         return Plan(answer[:count], dict(zip(wanted.stance, parts, strict=True)))
 
     def torque(self, plan: Plan) -> Array:
@@ -125,68 +125,63 @@ class WholeBody:
         force = dynamics.mass @ plan.acceleration + dynamics.bias
         for end, forces in plan.forces.items():
             arms = dynamics.ground(end) - dynamics.ends[end].position
-            wrench = np.concatenate((forces.sum(axis=0), np.cross(arms, forces).sum(axis=0)))
-            force -= dynamics.jacobian(end).T @ wrench
+            lever = arms.T @ forces
+            moment = (lever - lever.T)[[1, 2, 0], [2, 0, 1]]
+            wrench = np.concatenate((forces.sum(axis=0), moment))
+            force -= wrench @ dynamics.jacobian(end)
         return np.clip(force[6:], -self._limit, self._limit)
 
-    def _forces(self, points: Sequence[Array]) -> Array:
-        """Return the matrix that makes forces (3 p,) of the sizes of the pyramids' edges."""
-        return np.asarray(
-            np.kron(np.eye(sum(len(part) for part in points)), self._edges.T), dtype=np.float64
-        )
+    def _spread(self, stance: Sequence[int]) -> Array:
+        """Return the matrix (v, edges) that makes generalised forces of the edges' sizes."""
+        rows = []
+        for end in stance:
+            arms = self.dynamics.ground(end) - self.dynamics.ends[end].position
+            rows.append(self._wrenches(arms) @ self.dynamics.jacobian(end))
+        return np.vstack(rows).T
 
-    def _spread(self, stance: Sequence[int], points: Sequence[Array]) -> Array:
-        """Return the matrix (v, edges) that makes generalised forces of these sizes."""
-        columns = []
-        for end, part in zip(stance, points, strict=True):
-            jacobian = self.dynamics.jacobian(end)
-            for point in part:
-                arm = point - self.dynamics.ends[end].position
-                wrenches = np.column_stack((self._edges, np.cross(arm, self._edges)))
-                columns.append(jacobian.T @ wrenches.T)
-        return np.hstack(columns)
+    def _wrenches(self, arms: Array) -> Array:
+        """Return force and moment (edges, 6) of each edge at the ends of `arms` (p, 3)."""
+        count = len(self._edges)
+        wrenches = np.empty((len(arms), count, 6))
+        wrenches[:, :, :3] = self._edges
+        wrenches[:, :, 3:] = (arms @ self._levers).reshape(len(arms), count, 3)
+        return wrenches.reshape(-1, 6)
 
-    def _rows(
-        self, wanted: Objectives, points: Sequence[Array], generator: Array
-    ) -> tuple[Array, Array]:
-        """Return weighted rows and goals of the least squares over (accelerations, edges)."""
+    def _cost(self, wanted: Objectives) -> tuple[Array, Array]:
+        """Return the least squares over (accelerations, edges): Hessian and linear part."""
+        rows, goals = self._motion(wanted)
+        momentum, rates = self._momentum(wanted)
+        count = len(self.dynamics.bias)
+        size = count + momentum.shape[1]
+        hessian = REGULAR * np.eye(size)
+        hessian[:count, :count] += rows.T @ rows
+        hessian[count:, count:] += momentum.T @ momentum
+        return hessian, -np.concatenate((goals @ rows, rates @ momentum))
+
+    def _motion(self, wanted: Objectives) -> tuple[Array, Array]:
+        """Return weighted rows over the accelerations, and goals."""
         weights, dynamics = self._weights, self.dynamics
-        count = len(dynamics.bias)
-        eye = np.eye(count)
-        parts: list[tuple[float, Array, Array]] = [
+        eye = np.eye(len(dynamics.bias))
+        parts = [
             (weights.posture, eye[6:], wanted.posture),
             (weights.trunk, eye[3:6], wanted.trunk),
         ]
-        for end, rate in zip(wanted.stance, wanted.stance_rate, strict=True):
-            parts.append((weights.stance, dynamics.jacobian(end), rate - dynamics.drift(end)))
+        ends = [
+            (weights.stance, *part) for part in zip(wanted.stance, wanted.stance_rate, strict=True)
+        ]
         if wanted.swing is not None:
-            end, rate = wanted.swing
-            parts.append((weights.swing, dynamics.jacobian(end), rate - dynamics.drift(end)))
-        scaled = [np.sqrt(weight) * rows for weight, rows, _ in parts]
-        left = np.vstack(scaled)
-        goals = [np.sqrt(weight) * goal for weight, _, goal in parts]
-        momentum, rates = self._momentum(wanted, np.vstack(points))
-        right = momentum @ generator
-        rows = np.block(
-            [
-                [left, np.zeros((len(left), right.shape[1]))],
-                [np.zeros((len(right), count)), right],
-            ]
-        )
-        return rows, np.concatenate((*goals, rates))
+            ends.append((weights.swing, *wanted.swing))
+        for weight, end, rate in ends:
+            parts.append((weight, dynamics.jacobian(end), rate - dynamics.drift(end)))
+        rows = np.vstack([sqrt(weight) * part for weight, part, _ in parts])
+        return rows, np.concatenate([sqrt(weight) * goal for weight, _, goal in parts])
 
-    def _momentum(self, wanted: Objectives, points: Array) -> tuple[Array, Array]:
-        """Return weighted rows (6, 3 p) over the forces, which change both momenta, and goals."""
+    def _momentum(self, wanted: Objectives) -> tuple[Array, Array]:
+        """Return weighted rows (6, edges): what forces do to both momenta; and goals."""
         body, weights = self.dynamics.momenta, self._weights
-        linear = np.tile(np.eye(3), len(points)) / body.mass
-        angular = np.hstack([_cross(point - body.com) for point in points]) / REACH
+        points = np.vstack([self.dynamics.ground(end) for end in wanted.stance])
+        rows = self._wrenches(points - body.com).T / np.repeat((body.mass, REACH), 3)[:, None]
         scale = np.sqrt([weights.com] * 3 + [weights.angular] * 2 + [weights.vertical])
         lifted = wanted.com + np.array([0.0, 0.0, GRAVITY])
         goals = np.concatenate((lifted, wanted.angular / REACH))
-        return scale[:, None] * np.vstack((linear, angular)), scale * goals
-
-
-def _cross(arm: Array) -> Array:
-    """Return the matrix (3, 3) that takes a force to its moment about `arm` (3,) away."""
-    x, y, z = arm
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        return scale[:, None] * rows, scale * goals

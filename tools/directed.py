@@ -129,10 +129,11 @@ def build_directed(robot: RobotDescription, prints: Sequence[Footprint]) -> Dire
     how = find_directed(robot)
     stance = robot.poses[how.stance]
     if not isinstance(how, ServoDirected):
-        return TorqueDirected(robot.joints, whole_body_of(robot), stance, prints, how)
-    body = body_of(robot)
-    limbs = limbs_of(robot, body)
-    return DirectedSteps(robot.joints, body, robot.base, limbs, stance, prints, how)
+        body = whole_body_of(robot)
+        return TorqueDirected(robot.joints, body, stance, prints, how, robot.contacts)
+    kinematics = body_of(robot)
+    limbs = limbs_of(robot, kinematics)
+    return DirectedSteps(robot.joints, kinematics, robot.base, limbs, stance, prints, how)
 
 
 @dataclass

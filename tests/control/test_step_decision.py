@@ -5,8 +5,10 @@ import shapely
 from control.momenta import Momenta, capture_point
 from control.step_decision import (
     RULES,
+    Placement,
     Reach,
     choose,
+    coming_point,
     find_rule,
     landing_point,
     needs_step,
@@ -91,3 +93,20 @@ def test_the_foot_that_misses_least_steps_and_of_two_alike_the_nearest() -> None
     assert choose([left, right], FEET, wanted).foot == 0
     alike = [type(left)(k, wanted, 0.0) for k in (0, 1)]
     assert choose(alike, FEET, np.array([0.0, -0.08])).foot == 1
+
+
+def test_the_foot_that_can_catch_the_fall_steps_and_not_twice_the_same() -> None:
+    wanted = np.array([0.0, 0.3])
+    landed = Placement(0, wanted, missed=0.0, uncaught=0.4)
+    behind = Placement(1, np.array([0.0, 0.1]), missed=0.2, uncaught=0.0)
+    assert choose([landed, behind], FEET, wanted).foot == 1
+    alike = [Placement(0, wanted, 0.0), Placement(1, wanted, 0.1, uncaught=0.1)]
+    assert choose(alike, FEET, wanted).foot == 0
+    assert choose(alike, FEET, wanted, landed=0).foot == 1
+
+
+def test_the_capture_point_runs_away_from_the_pivot() -> None:
+    body = pushed(0.5)
+    pivot, now = np.zeros(2), capture_point(body)
+    assert coming_point(body, pivot, 0.0) == pytest.approx(now)
+    assert coming_point(body, pivot, 0.2) == pytest.approx(now * np.exp(0.2 * body.omega))

@@ -6,10 +6,15 @@ import pytest
 from tools.cli import run
 
 
-@pytest.mark.parametrize(("impulse", "steps"), [("10", 0), ("40", 1)])
-def test_the_human_steps_where_a_push_asks_for_it(tmp_path: Path, impulse: str, steps: int) -> None:
+@pytest.mark.parametrize(
+    ("impulse", "direction", "steps"), [("10", "0", 0), ("40", "0", 1), ("50", "90", 1)]
+)
+def test_the_human_steps_where_a_push_asks_for_it(
+    tmp_path: Path, impulse: str, direction: str, steps: int
+) -> None:
     out = tmp_path / "push.json"
-    assert run(["push", "human", "--impulse", impulse, "--at", "0.1", "--json", str(out)]) == 0
+    line = ["push", "human", "--impulse", impulse, "--direction", direction, "--at", "0.1"]
+    assert run([*line, "--json", str(out)]) == 0
     row = json.loads(out.read_text())
     assert row["survived"]
     assert row["steps"] == steps

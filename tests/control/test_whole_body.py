@@ -5,7 +5,7 @@ import pytest
 
 from control.dynamics import Dynamics
 from control.momenta import GRAVITY
-from control.whole_body import Objectives, Weights, WholeBody
+from control.whole_body import FASTEST, Objectives, Weights, WholeBody
 from hal.observation import BaseState, JointState, Observation
 from robots import load_robot
 
@@ -88,3 +88,9 @@ def test_torque_limits_hold(dynamics: Dynamics) -> None:
 def test_the_answer_is_the_same_again(dynamics: Dynamics) -> None:
     first, again = (body(dynamics).plan(standing(dynamics, (1.0, 0.0, 0.0))) for _ in range(2))
     assert first.acceleration.tobytes() == again.acceleration.tobytes()
+
+
+def test_no_plan_asks_for_more_than_a_body_can_do(dynamics: Dynamics) -> None:
+    wanted = replace(standing(dynamics, (0.0, 0.0, 0.0)), posture=np.full(len(STANCE), 1e6))
+    plan = body(dynamics).plan(wanted)
+    assert np.abs(plan.acceleration).max() < 1.01 * FASTEST

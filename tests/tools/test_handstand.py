@@ -56,7 +56,7 @@ def test_it_starts_with_its_weight_over_flat_hands(handstand: RobotDescription) 
 
 
 def test_it_steps_with_a_hand_where_it_is_told(windup: Windup) -> None:
-    where = ("--to", "0.1", "0.26", "--json", "-")
+    where = ("--to", "0.1", "0.26", "--state", "estimated", "--json", "-")
     ran = windup("step", "human_handstand", "--foot", "left", *where)
     (fall,) = ran.json["falls"]
     assert (ran.status, fall["foot"], ran.json["reason"]) == (0, "left_hand", "done")

@@ -20,7 +20,7 @@ class Reproduce:
     """
 
     paper: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="PAPER")]
-    """Which paper: laszlo or kenwright."""
+    """Which paper: laszlo, kenwright or wu-zordan."""
     figures: Annotated[tuple[str, ...], tyro.conf.Positional, tyro.conf.arg(metavar="FIGURE")] = ()
     """Figures, such as 4.3; all by default."""
     quick: bool = False
