@@ -23,6 +23,10 @@ from hal.observation import Observation
 Holder = Literal["walk", "step", "return"]
 REST = 0.5
 """How long the robot has stood still before it goes on, s."""
+CALM = 0.02
+"""A walk that is thrown less than this is on its way, m."""
+FRESH = 0.12
+"""From the last moment on its way to the hand-over at most, s; later on the walk does better."""
 LONGEST = 8.0
 """A robot that is still on its feet after this goes on, s; it only rocks."""
 RETURN = 1.0
@@ -90,6 +94,7 @@ class Supervisor:
         """
         self.catches.clear()
         self.holder = "walk"
+        self._calm = -np.inf
         self._throw.reset()
         self.walker.reset(observation)
 
@@ -101,7 +106,7 @@ class Supervisor:
         """
         if self.holder == "walk":
             thrown = self._thrown(observation, dt)
-            if not self.table.meets(thrown):
+            if not self._lost(thrown, observation.time):
                 return self.walker.step(observation, dt)
             self._catch(observation, thrown)
         if self.holder == "step":
@@ -125,6 +130,12 @@ class Supervisor:
         heading = turn(walker.heading)[:2, :2].T
         tick = round(moment.elapsed / dt) - 1  # the tick that the state was entered in is over
         return self._throw.by(moment.state, tick, heading @ away)
+
+    def _lost(self, thrown: Array, now: float) -> bool:
+        """Return whether a push has just thrown it too far."""
+        if float(np.linalg.norm(thrown)) < CALM:
+            self._calm = now
+        return self.table.meets(thrown) and now - self._calm <= FRESH
 
     def _catch(self, observation: Observation, thrown: Array) -> None:
         """Let the stepper take over."""

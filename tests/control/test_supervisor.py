@@ -62,6 +62,13 @@ def test_what_throws_it_forward_or_hardly_at_all_is_the_walks(walking: Run) -> N
     assert not walking.supervisor.catches
 
 
+def test_what_comes_back_late_from_another_push_is_the_walks(walking: Run) -> None:
+    walking.go(0.16, drift=0.5)
+    walking.go(0.04, drift=-0.5)
+    assert walking.holder == "walk"
+    walking.go(1.0)
+
+
 def test_what_throws_it_back_goes_to_the_stepper_which_halts_and_hands_back(walking: Run) -> None:
     supervisor = walking.supervisor
     began = walking.time
