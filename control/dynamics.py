@@ -19,6 +19,8 @@ class Dynamics:
         model: The robot alone: a free joint, then n hinges in MJCF order.
         base: Name of the body with the free joint.
         ends: Names of the sites at the ends that can stand, feet or hands.
+        delay: From a state being measured to a command for it acting, s; everything is taken to
+            go on so long as it moves now.
 
     Attributes:
         mass: (v, v) mass matrix M, kg and kg m2.
@@ -36,8 +38,10 @@ class Dynamics:
     base: Pose
     ends: list[Pose]
 
-    def __init__(self, model: mujoco.MjModel, base: str, ends: Sequence[str]) -> None:
-        self.model, self._data = model, mujoco.MjData(model)
+    def __init__(
+        self, model: mujoco.MjModel, base: str, ends: Sequence[str], delay: float = 0.0
+    ) -> None:
+        self.model, self._data, self._delay = model, mujoco.MjData(model), delay
         self._base = model.body(base).id
         self._sites = [model.site(name).id for name in ends]
         self._total = float(model.body_subtreemass[self._base])
@@ -59,11 +63,12 @@ class Dynamics:
         if state is None:
             raise StateMissingError("the base state is missing; run with `--state true`")
         model, data = self.model, self._data
-        self.position = observation.joints.position
         self.velocity[:3], self.velocity[3:6] = state.linear_velocity, state.angular_velocity
         self.velocity[6:] = observation.joints.velocity
         data.qpos[:3], data.qpos[3:7] = state.position, state.orientation
-        data.qpos[7:], data.qvel[:] = self.position, self.velocity
+        data.qpos[7:], data.qvel[:] = observation.joints.position, self.velocity
+        mujoco.mj_integratePos(model, data.qpos, self.velocity, self._delay)
+        self.position = data.qpos[7:].copy()
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_makeM(model, data)
@@ -73,7 +78,7 @@ class Dynamics:
         mujoco.mj_subtreeVel(model, data)
         base = self._base
         self.momenta = Momenta.of(data, base, self._total)
-        self.base = Pose(state.position, data.xmat[base].reshape(3, 3).copy())
+        self.base = Pose(data.qpos[:3].copy(), data.xmat[base].reshape(3, 3).copy())
         self.ends = [
             Pose(data.site_xpos[site].copy(), data.site_xmat[site].reshape(3, 3).copy())
             for site in self._sites

@@ -2,11 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import atan2, pi, sqrt
+from math import atan2
 
 import mujoco
 import numpy as np
-from shapely import MultiPoint
 
 from control.body import Body
 from control.limb_ik import LimbIk, Pose
@@ -60,7 +59,7 @@ class Footing:
         front: Heading between the feet, rad: where a base that stands on them should face.
         down: Which feet are on the ground.
         height: Of the base above the soles in the stance, m.
-        radius: Of Kenwright's circle for each sole, m; None takes the hull of its points.
+        rounded: Take circles and a capsule for what the soles support, not their hull.
     """
 
     momenta: Momenta
@@ -75,7 +74,7 @@ class Footing:
         self, body: Body, base: str, sites: Sequence[str], soles: Soles, stance: Array
     ) -> None:
         self._body, self._soles = body, soles
-        self.radius: float | None = None
+        self.rounded = False
         self._limbs = [LimbIk(body.model, base, site) for site in sites]
         self._last = [stance.copy() for _ in sites]
         homes = [limb.forward(stance) for limb in self._limbs]
@@ -116,15 +115,10 @@ class Footing:
         """Return the points (p, 3) m of a sole in the world."""
         return self._ground[self._soles.foot == foot]
 
-    def round_off(self) -> None:
-        """Take circles and capsules for what soles support, as large as they are in the mean."""
-        areas = [MultiPoint(self.ground(k)[:, :2]).convex_hull.area for k in range(len(self.feet))]
-        self.radius = sqrt(float(np.mean(areas)) / pi)
-
     def support(self, feet: Sequence[int]) -> SupportRegion:
         """Return what these feet's soles can support, whether or not they bear load."""
-        if self.radius is not None:
-            return SupportRegion.capsule(self.places[list(feet)], self.radius)
+        if self.rounded:
+            return SupportRegion.rounded([self.ground(foot) for foot in feet])
         of_these = self._soles.members[list(feet)].any(axis=0)
         return SupportRegion.hull(self._ground[of_these])
 

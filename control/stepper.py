@@ -99,8 +99,7 @@ class Stepper:
         self._planted: Planted | None = None
         self._moved = observation.time
         self.footing.look(observation)
-        if self.stepping.support == "capsule":
-            self.footing.round_off()
+        self.footing.rounded = self.stepping.support == "capsule"
         self.no_step.begin(self.footing.feet, [self.footing.ground(foot) for foot in (0, 1)])
 
     def step(self, observation: Observation, dt: float) -> JointCommand:

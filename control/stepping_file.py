@@ -59,7 +59,7 @@ class Stepping(Record, frozen=True):
         comfort: How far a foot may stand from its nominal place, m.
         rate: Of the loop, Hz; the robot's own by default.
         support: What the soles support: the hull of their points, or Kenwright's circles and
-            capsule about their middles; for servos alone.
+            capsule about their middles, as large.
         clear: How far soles keep off ground where they must not come down, m.
         torque: Largest torque that whole-body control asks of a joint with ideal torque, N m.
     """

@@ -6,6 +6,7 @@ capture point will have strayed to.
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from math import atan2, cos, exp, sin, sqrt
 from typing import Literal
 
@@ -32,8 +33,8 @@ STEEPEST = 0.15
 """Slope of the ground that is believed, rad."""
 MOST_BEHIND = 0.1
 """How far behind where it should be it is at most taken to be, m."""
-FACING = 0.05
-"""A trunk that is turned by less than this needs no step, rad."""
+FACING, AWAY = 0.1, 0.2
+"""A robot halts where it faces as ordered to so much, and turns again from so much on, rad."""
 
 
 class Strider(LegMotion):
@@ -148,11 +149,10 @@ class Strider(LegMotion):
         change *= min(self.how.quicken / max(float(np.linalg.norm(change)), 1e-9), 1.0)
         self._pull = self._pull + change
         way = self._pull.copy()
-        if self._pull.any():
-            behind = self._wanted - between(*self.places)[:2]
-            behind *= min(MOST_BEHIND / max(float(np.linalg.norm(behind)), 1e-9), 1.0)
-            self._wanted = between(*self.places)[:2] + behind
-            way += behind / self.how.keep
+        behind = self._wanted - between(*self.places)[:2]
+        behind *= min(MOST_BEHIND / max(float(np.linalg.norm(behind)), 1e-9), 1.0)
+        self._wanted = between(*self.places)[:2] + behind
+        way += behind / self.how.keep
         return Order(float(np.linalg.norm(way)), atan2(way[1], way[0]), face)
 
     def _advance(self, now: float) -> None:
@@ -161,7 +161,7 @@ class Strider(LegMotion):
         if self.phase == "stand":
             self._wanted, self._pull = between(*self.places)[:2], np.zeros(2)
             self._order = self._asked(now)
-            if self._order.speed > 0.0 or abs(way_round(self._yaws[1], self._order.face)) > FACING:
+            if self._order.speed > 0.0 or abs(way_round(self.turned, self._order.face)) > AWAY:
                 self._enter("shift", now)
         elif over and self.phase == "swing":
             self.steps += 1
@@ -194,8 +194,10 @@ class Strider(LegMotion):
         """Decide where the foot goes, and whether it comes to rest there."""
         self._order = self._asked(now)
         stance = self._feet[self._bears]
-        halt = self._order.speed == 0.0
-        self._ending = halt and abs(way_round(stance[2], self._order.face)) < FACING
+        there = abs(way_round(stance[2], self._order.face)) < FACING
+        self._ending = there and not self._pull.any()
+        if self._ending:
+            self._order = replace(self._order, speed=0.0)
         self._landing = self._target = next_place(stance, self._foot, self._order, self.pace)
         self._left = self._feet[self._foot].copy()
         self._left[2] = self._landing[2] + way_round(self._landing[2], self._left[2])

@@ -1,6 +1,8 @@
 """The ground that a robot stands on: a polygon of contact points, or Kenwright's capsule."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from math import pi, sqrt
 
 import numpy as np
 from shapely import MultiPoint, Point
@@ -32,6 +34,14 @@ class SupportRegion:
         Kenwright 2012, section IV-A.2: a circle for one foot, a capsule for two.
         """
         return cls(MultiPoint(feet[:, :2]).convex_hull.buffer(radius))
+
+    @classmethod
+    def rounded(cls, soles: Sequence[Array]) -> "SupportRegion":
+        """Return the capsule of circles as large as soles, given by points (p, 3) m of each."""
+        hulls = [MultiPoint(points[:, :2]).convex_hull for points in soles]
+        radius = sqrt(sum(hull.area for hull in hulls) / len(hulls) / pi)
+        middles = np.array([[hull.centroid.x, hull.centroid.y] for hull in hulls])
+        return cls.capsule(middles, radius)
 
     def margin(self, point: Array) -> float:
         """Return how far inside `point` (2,) is, m; negative outside, -inf without support."""

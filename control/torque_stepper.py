@@ -95,7 +95,9 @@ class TorqueStepper(TorqueMotion):
 
     def _falls(self, rule: StepRule) -> bool:
         """Return whether both feet as they stand cannot prevent a fall."""
-        support = SupportRegion.hull(np.vstack([self.dynamics.ground(end) for end in (0, 1)]))
+        soles = [self.dynamics.ground(end) for end in (0, 1)]
+        rounded = self._stepping.support == "capsule"
+        support = SupportRegion.rounded(soles) if rounded else SupportRegion.hull(np.vstack(soles))
         return needs_step(trigger_point(rule, self.dynamics.momenta), support, self._stepping.slack)
 
     def _begin(self, rule: StepRule, now: float) -> None:

@@ -136,7 +136,8 @@ def push_robot(
     description = robot.description
     stance = stepping_stance(description, plan.stance)
     regions = forbidden(plan.forbid)
-    controller = build_stepper(description, plan.way, stance, regions, plan.support)
+    delay = robot.stack.delay
+    controller = build_stepper(description, plan.way, stance, regions, plan.support, delay)
     robot.start_in(stance)
     arrange(robot, plan)
     touch = TouchWatch(description, robot.twin.model, robot.twin.data)

@@ -62,9 +62,10 @@ def footing_of(robot: RobotDescription, stance: Array) -> Footing:
     return Footing(body, robot.base, [foot.site for foot in robot.feet], soles, stance)
 
 
-def whole_body_of(robot: RobotDescription) -> WholeBody:
-    """Return the whole-body control of a robot with torque joints."""
-    dynamics = Dynamics(robot.spec().compile(), robot.base, [foot.site for foot in robot.feet])
+def whole_body_of(robot: RobotDescription, delay: float = 0.0) -> WholeBody:
+    """Return the whole-body control of a robot with torque joints; `delay` of its commands, s."""
+    ends = [foot.site for foot in robot.feet]
+    dynamics = Dynamics(robot.spec().compile(), robot.base, ends, delay)
     limit = np.minimum(robot.joints.torque, find_stepping(robot).torque)
     return WholeBody(dynamics, limit, FRICTION)
 
@@ -75,6 +76,7 @@ def build_stepper(
     stance: Array,
     forbid: Sequence[BaseGeometry] = (),
     support: Support | None = None,
+    delay: float = 0.0,
 ) -> Controller:
     """Return the controller that meets pushes in one of the `WAYS`, standing in a pose (n,) rad.
 
@@ -84,6 +86,7 @@ def build_stepper(
         stance: The pose.
         forbid: Ground where no foot may come down; see `control.no_step.NoStep`.
         support: What the soles are taken to support; what its stepping says by default.
+        delay: From a state being measured to a command for it acting, s; where torques are.
 
     Raises:
         UnknownNameError: There is no such way.
@@ -100,7 +103,8 @@ def build_stepper(
         stepping = msgspec.structs.replace(stepping, support=support)
     no_step = NoStep(forbid, stepping.clear)
     if robot.drive.kind == "torque":
-        return TorqueStepper(robot.joints, whole_body_of(robot), stance, rule, stepping, no_step)
+        body = whole_body_of(robot, delay)
+        return TorqueStepper(robot.joints, body, stance, rule, stepping, no_step)
     return Stepper(robot.joints, footing_of(robot, stance), stance, rule, stepping, no_step)
 
 

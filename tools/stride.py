@@ -35,7 +35,7 @@ class Stride(TwinOptions, Common):
         """Stride; returns the exit status."""
         rows: list[dict[str, Any]] = []
         for seed in self.all_seeds:
-            rows.append(self._one(seed))
+            rows.append(self.one(seed))
             console.print(said(rows[-1]), markup=False, soft_wrap=True)
             if rows[-1]["reason"] == "interrupted":
                 break
@@ -59,7 +59,8 @@ class Stride(TwinOptions, Common):
             legs.append(read_leg(text, legs[-1]))
         return legs
 
-    def _one(self, seed: int) -> dict[str, Any]:
+    def one(self, seed: int, *, path: bool = False) -> dict[str, Any]:
+        """Return how it went with one seed; with its `path` where somebody draws it."""
         description, legs = load_robot(self.robot), self.legs()
         how = find_stride(description)
         check_legs(legs, self.seconds, how)
@@ -68,7 +69,7 @@ class Stride(TwinOptions, Common):
             robot.start_at(how.stance)
             if (disturb := self.disturb()) is not None:
                 disturb(robot)
-            return stride(robot, strider, legs, self.seconds)
+            return stride(robot, strider, legs, self.seconds, path=path)
 
 
 def said(row: dict[str, Any]) -> str:

@@ -116,8 +116,18 @@ def build_strider(robot: RobotDescription, legs: Sequence[Leg], seconds: float) 
     return Strider(robot.joints, body, robot.base, limbs, stance, orders, how)
 
 
-def stride(robot: Robot, strider: Strider, legs: Sequence[Leg], seconds: float) -> dict[str, Any]:
-    """Let it stride and return how that went; a twin is measured by its truth."""
+def stride(
+    robot: Robot, strider: Strider, legs: Sequence[Leg], seconds: float, *, path: bool = False
+) -> dict[str, Any]:
+    """Let it stride and return how that went; a twin is measured by its truth.
+
+    Args:
+        robot: The robot, in its start pose.
+        strider: The controller.
+        legs: What it is ordered to do.
+        seconds: When it is to halt, s.
+        path: Return where it was, too: time s, x m, y m, yaw rad.
+    """
     rows: list[list[float]] = []
     origin = robot.backend.clock.now()
 
@@ -137,7 +147,8 @@ def stride(robot: Robot, strider: Strider, legs: Sequence[Leg], seconds: float) 
         reason = robot.run(strider, until=until).reason
     trace = np.array(rows).reshape(-1, 4)
     moved = _seen(trace[0], trace[-1]) if len(trace) else np.zeros(3)
-    return {
+    more = {"path": trace.tolist()} if path else {}
+    return more | {
         "robot": robot.description.name,
         "seed": robot.seed,
         "good": reason == "done",

@@ -87,7 +87,7 @@ def test_without_a_base_nobody_knows_where_the_feet_are(footing: Footing) -> Non
 def test_circles_support_as_much_as_the_soles_do(footing: Footing) -> None:
     footing.look(seen())
     hull, centre = footing.support((0,)).shape.area, footing.places[0]
-    footing.round_off()
+    footing.rounded = True
     assert footing.support((0,)).shape.area == pytest.approx(hull, rel=0.01)
     radius = np.sqrt(hull / np.pi)
     assert footing.support((0,)).margin(centre) == pytest.approx(radius, rel=0.01)

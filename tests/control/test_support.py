@@ -29,3 +29,12 @@ def test_one_foot_is_a_circle_and_two_are_a_capsule() -> None:
 
 def test_in_the_air_everything_is_outside() -> None:
     assert SupportRegion.hull(np.zeros((0, 3))).margin(np.zeros(2)) == -np.inf
+
+
+def test_soles_rounded_off_are_circles_of_their_size() -> None:
+    both = SupportRegion.rounded([SQUARE, SQUARE + np.array([0.0, 3.0, 0.0])])
+    radius = 1.0 / np.sqrt(np.pi)
+    assert both.margin(np.array([0.5, 2.0])) == pytest.approx(radius, rel=0.01)
+    assert both.margin(np.array([0.5, -0.5])) == pytest.approx(radius - 1.0, rel=0.01)
+    alone = SupportRegion.rounded([SQUARE])
+    assert alone.shape.area == pytest.approx(1.0, rel=0.01)

@@ -22,3 +22,8 @@ def test_the_human_steps_where_a_push_asks_for_it(
 
 def test_feet_alone_do_not_survive_what_a_step_does() -> None:
     assert run(["push", "human", "--impulse", "40", "--at", "0.1", "--way", "feet"]) == 1
+
+
+def test_the_human_steps_on_its_own_sensors_with_torques_that_come_late() -> None:
+    line = ["push", "human", "--impulse", "25", "--at", "0.1"]
+    assert run([*line, "--state", "estimated", "--delay", "0.01"]) == 0

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from tools.reproduce.figure import Figure, Job, Result
-from tools.reproduce.kenwright import KENWRIGHT, falls, pushes
+from tools.reproduce.kenwright import KENWRIGHT, falls, pushes, regions, turning, walking
 from tools.reproduce.kenwright.comfort import before
-from tools.reproduce.kenwright.jobs import fall, push
+from tools.reproduce.kenwright.jobs import fall, push, stride
 from tools.reproduce.kenwright.recorder import NAMES, column
 from tools.reproduce.kenwright.steps import paths
 from tools.reproduce.kenwright.work import work
@@ -27,7 +27,11 @@ def fake_result(job: Job, good: bool = True) -> Result:
     trace[:, NAMES.index("left.x")] = away
     trace[:, NAMES.index("left.yaw")] = 0.0 if good else 0.5
     options: dict[str, Any] = dict(job.options)
-    return {
+    if job.kind == "stride":
+        return fake_stride(options, good)
+    falls = [{"foot": "left_foot", "x": 0.1, "y": 0.1, "forbidden": not good}]
+    kept = {"landings": falls, "landed_forbidden": int(not good)} if "forbid" in options else {}
+    return kept | {
         "directions": options["directions"],
         "impulse": options["impulse"],
         "seed": 0,
@@ -43,6 +47,22 @@ def fake_result(job: Job, good: bool = True) -> Result:
         "peak_load": 1.0,
         "reach": 0.1 if good else None,
         "powered": good,
+    }
+
+
+def fake_stride(options: dict[str, Any], good: bool) -> Result:
+    """Return a walk that went where it was ordered to, or fell."""
+    heading = options.get("heading", 0.0)
+    leg = {"begin": 0.0, "speed": 0.1, "heading": heading}
+    leg |= {"measured_speed": 0.102, "measured_heading": heading + (0.0 if good else 40.0)}
+    second = {**leg, "heading": 60.0, "measured_heading": 62.0}
+    return {
+        "good": good,
+        "reason": "done" if good else "fell",
+        "steps": 20,
+        "turned_deg": 58.0 if good else 0.0,
+        "legs": [leg, second] if "then" in options else [leg],
+        "path": [[0.0, 0.0, 0.0, 0.0], [1.0, 0.1, 0.0, 0.0]],
     }
 
 
@@ -70,6 +90,15 @@ def test_verdicts_follow_the_data() -> None:
     assert [claim.agrees for claim in pushes.claims(bad)] == [False, True, False]
 
 
+def test_verdicts_on_walks_and_holes_follow_the_data() -> None:
+    for module, jobs in ((walking.claims, walking.jobs), (regions.claims_hole, regions.hole_jobs)):
+        good, bad = ({job: fake_result(job, well) for job in jobs(True)} for well in (True, False))
+        assert all(claim.agrees for claim in module(good))
+        assert not module(bad)[0].agrees
+    step = {job: fake_result(job) for job in turning.jobs(True)}
+    assert [claim.agrees for claim in turning.claims(step)] == [True, True, True]
+
+
 def test_a_way_back_and_a_swing_are_found_in_the_trace() -> None:
     result = fake_result(push(1.8, [0.0]))
     assert before(result) == pytest.approx(0.08)
@@ -88,3 +117,10 @@ def test_a_push_is_traced_and_a_fall_is_measured() -> None:
     assert falls.trunk(fallen) > 0.0
     assert fallen["reach"] is not None
     assert fallen["powered"]
+
+
+def test_a_walk_is_traced() -> None:
+    walked = work(stride(seconds=1.0, then=["0.5,0.05,90"]))
+    assert walked["good"]
+    assert len(walked["legs"]) == 2
+    assert len(walked["path"]) > 20

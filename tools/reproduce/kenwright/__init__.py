@@ -6,7 +6,18 @@ import control
 import robots
 import sim_twin
 from tools.reproduce.figure import Study
-from tools.reproduce.kenwright import comfort, falls, feet, pushes, recorder, steps, work
+from tools.reproduce.kenwright import (
+    comfort,
+    falls,
+    feet,
+    pushes,
+    recorder,
+    regions,
+    steps,
+    turning,
+    walking,
+    work,
+)
 
 
 def _here(package: object) -> Path:
@@ -28,6 +39,9 @@ KENWRIGHT = Study(
         *feet.FIGURES,
         *steps.FIGURES,
         *comfort.FIGURES,
+        *turning.FIGURES,
+        *regions.FIGURES,
+        *walking.FIGURES,
         *falls.FIGURES,
     ),
     work=work.work,
@@ -37,7 +51,7 @@ KENWRIGHT = Study(
         _here(robots) / "op3",
         Path(work.__file__),
         Path(recorder.__file__),
-        Path(work.__file__).parents[2] / "push_trial.py",
+        *(Path(work.__file__).parents[2] / f"{name}.py" for name in ("push_trial", "striding")),
     ),
     missing={
         "7, 8": "pictures of the paper's skeleton: ours is the model of the robot",

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
-from tools.reproduce.kenwright.jobs import AROUND, FOUR, cell, count, push
+from tools.reproduce.kenwright.jobs import AROUND, FOUR, STEP, cell, count, push
 from tools.reproduce.kenwright.pushes import FACING, RELAXED, facing, relaxed
 from tools.reproduce.kenwright.recorder import apart, column
 
@@ -15,7 +15,7 @@ FAR = 0.02  # m
 
 def jobs(quick: bool) -> list[Job]:
     """Return pushes that need steps, all around."""
-    return [push(IMPULSE, [direction]) for direction in (FOUR if quick else AROUND)]
+    return [push(IMPULSE, [direction], way=STEP) for direction in (FOUR if quick else AROUND)]
 
 
 def before(result: Result) -> float:

@@ -17,7 +17,7 @@ def _small(quick: bool) -> list[Job]:
 
 
 def _grid(quick: bool, way: str) -> list[Job]:
-    around, impulses = (FOUR, GRID[1:3]) if quick else (AROUND[::2], GRID)
+    around, impulses = (FOUR, GRID[2:3]) if quick else (AROUND[::2], GRID)
     # Both stand in the same pose, so that only the feet's pressure differs.
     return [push(impulse, [way_to], way=way) for impulse in impulses for way_to in around]
 

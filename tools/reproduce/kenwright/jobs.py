@@ -5,6 +5,7 @@ from typing import Any
 
 from tools.reproduce.figure import Job, Result, Results
 
+STEP = "predictive"
 OVER = 4.0  # N s, nothing stands that
 NOISE = 0.2  # degrees on the start pose
 AROUND = tuple(22.5 * k for k in range(16))
@@ -14,6 +15,12 @@ FOUR = AROUND[::4]
 def push(impulse: float, directions: Sequence[float], seed: int = 0, **more: Any) -> Job:
     """Return pushes of OP3 one after the other, with its sensors and 10 ms of delay."""
     return Job("push", _options(impulse, directions, seed) | more)
+
+
+def stride(seed: int = 0, speed: float = 0.1, **more: Any) -> Job:
+    """Return a walk of OP3 as `windup stride` has it, with its sensors."""
+    options = {"speed": speed, "seed": seed, "noise": NOISE, "state": "estimated"}
+    return Job("stride", options | more)
 
 
 def fall(direction: float, *, protect: bool, seed: int = 0) -> Job:

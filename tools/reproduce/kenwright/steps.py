@@ -5,11 +5,10 @@ from typing import Any
 import numpy as np
 
 from tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
-from tools.reproduce.kenwright.jobs import AROUND, FOUR, cell, count, push
+from tools.reproduce.kenwright.jobs import AROUND, FOUR, STEP, cell, count, push
 from tools.reproduce.kenwright.recorder import column
 
 LARGE = (1.8, 2.0)  # N s
-STEP = "predictive"
 PERIOD = 4.0  # ms, of a tick at 250 Hz
 AHEAD = (0.0, 180.0)
 CLEAR = 0.05  # of the weight, more than half on one foot

@@ -16,15 +16,17 @@ from tools.reproduce.figure import Job, Result
 from tools.reproduce.kenwright.recorder import Recorder
 from tools.robot import Robot
 from tools.stepping import find_stepping, footing_of, stepping_stance
+from tools.stride import Stride
 
 ARMS = ("l_el_link", "r_el_link")
-PLAN = ("impulse", "way", "height", "duration", "every", "body", "stance")
+PLAN = ("impulse", "way", "height", "duration", "every", "body", "stance", "support", "forbid")
 
 
 def work(job: Job) -> Result:
     """Run one job, in any process."""
     options = dict(job.options)
-    return _fall(options) if job.kind == "fall" else _push(options)
+    kinds = {"push": _push, "fall": _fall, "stride": _stride}
+    return kinds[job.kind](options)
 
 
 def _push(options: dict[str, Any]) -> Result:
@@ -47,6 +49,13 @@ def _fall(options: dict[str, Any]) -> Result:
         gauge, arms = ImpactGauge(robot.twin), _Arms(robot, plan.directions[0])
         result = push_robot(robot, plan, to_the_end=True)
     return result | fall_result(gauge) | {"reach": arms.reach, "powered": arms.powered}
+
+
+def _stride(options: dict[str, Any]) -> Result:
+    """Let a robot stride, and note its way."""
+    then = tuple(options.pop("then", ()))
+    command = Stride(robot="op3", then=then, **options)
+    return command.one(command.seed, path=True)
 
 
 class _Arms:
@@ -82,6 +91,7 @@ class _Arms:
 def _command(options: dict[str, Any]) -> Push:
     """Return the command line that these options are."""
     known = {name: options[name] for name in PLAN if name in options}
+    known["forbid"] = tuple(known.get("forbid", ()))
     return Push(robot="op3", seed=options["seed"], noise=options["noise"], **known)
 
 
