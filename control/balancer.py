@@ -32,6 +32,21 @@ from hal.observation import Observation
 IN_FLIGHT = 32  # commands remembered; more than any delay that a robot walks with
 
 
+@dataclass(frozen=True)
+class Moment:
+    """A moment of a step.
+
+    Attributes:
+        state: Index of the graph's state.
+        elapsed: Time since it was entered, s.
+        stance: Index of the stance foot.
+    """
+
+    state: int
+    elapsed: float
+    stance: int
+
+
 @dataclass
 class Balancer:
     """Walks a gait; with a planner it balances, without one it is open loop.
@@ -83,8 +98,31 @@ class Balancer:
         """Number of steps that were planned: the finished ones, and the one it is at."""
         return len(self.records) + (self._start is not None)
 
+    @property
+    def moment(self) -> Moment | None:
+        """Where in the graph it is; None before its first step."""
+        if self._start is None:
+            return None
+        at = self._tracker.now
+        return Moment(int(at.state[0]), float(at.elapsed[0]), self._start.stance)
+
+    @property
+    def heading(self) -> float:
+        """Heading at the start of this step, rad."""
+        return 0.0 if self._start is None else self._start.heading
+
     def reset(self, observation: Observation) -> None:
         """Begin at the graph's first state.
+
+        Raises:
+            StateMissingError: The observation has no base state.
+        """
+        self.records.clear()
+        self.replans = self.late = 0
+        self.resume(observation)
+
+    def resume(self, observation: Observation) -> None:
+        """Begin at the graph's first state again, in the same walk: its steps go on counting.
 
         Raises:
             StateMissingError: The observation has no base state.
@@ -105,13 +143,10 @@ class Balancer:
         self._kept: dict[int, Array] = {}
         self._turned = 0.0
         self.steering.reset()
-        self.replans = 0
         if self.shaken is not None:
             self.shaken.reset()
         if self.footfalls is not None:
             self.footfalls.reset()
-        self.records.clear()
-        self.late = 0
         if self.planner is not None:
             self.planner.reset()
 

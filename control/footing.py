@@ -135,15 +135,18 @@ class Footing:
         """Return where (2,) m the base is in the stance, over feet that stand there."""
         return planted.places[:, :2].mean(axis=0) + turn(planted.front)[:2, :2] @ self._offset
 
-    def upright(self, place: Array, heading: float, pitch: float = 0.0) -> Pose:
+    def upright(
+        self, place: Array, heading: float, pitch: float = 0.0, height: float | None = None
+    ) -> Pose:
         """Return the stance's pose of the base over a place.
 
         Args:
             place: (2,) m.
             heading: rad.
             pitch: How far it leans forward from there, rad.
+            height: Above the ground, m; that of the stance by default.
         """
-        position = np.array([place[0], place[1], self.height])
+        position = np.array([place[0], place[1], self.height if height is None else height])
         return Pose(position, turn(heading) @ turn_about_y(pitch) @ self._level)
 
     def ahead(self, time: float) -> Pose:

@@ -6,6 +6,7 @@ can, and the target is decided anew while there is time. Once it stands still, c
 the feet back to the stance (Kenwright 2012, section IV).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -37,6 +38,8 @@ MOST_SHIFT = 0.06
 """How far the base is drawn at most, m."""
 MOST_PITCH = 0.8
 """How far the trunk turns at most, rad."""
+TAKE = 0.6
+"""Time in which a robot that was walking takes on the stance's height, its arms and head, s."""
 STILL = 0.05
 """The centre of mass of a robot that stands still is slower than this, m/s."""
 
@@ -95,12 +98,24 @@ class Stepper:
         self.phase = "stand"
         self.steps = self.comforts = 0
         self._hold = JointCommand.hold(self.joints, self.stance)
-        self._landed = -np.inf
+        self._landed = self._taken = -np.inf
+        self._before, self._above = self.stance, self.footing.height
         self._moved = observation.time
         self.footing.look(observation)
         self._planted = self.footing.planted()
         self.footing.rounded = self.stepping.support == "capsule"
         self.no_step.begin(self.footing.feet, [self.footing.ground(foot) for foot in (0, 1)])
+
+    def take(self, observation: Observation) -> None:
+        """Begin in the middle of a walk, from wherever the robot is: a foot in the air steps."""
+        self.reset(observation)
+        now, footing = observation.time, self.footing
+        self._landed = self._taken = now
+        self._before = observation.joints.position.copy()
+        lowest = min(foot.position[2] for foot in footing.feet)
+        self._above = float(footing.base.position[2] - lowest)
+        if self.rule is not None and not all(footing.down):
+            self._begin(self.rule, now, [footing.down.index(False)])
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the goals of now.
@@ -112,7 +127,9 @@ class Stepper:
         self.footing.look(observation)
         self._decide(now)
         command = JointCommand(self._hold.block.copy())
-        command.position[:] = self.stance
+        part = min((now - self._taken) / TAKE, 1.0)
+        command.position[:] = self._before + part * (self.stance - self._before)
+        self._height = self._above + part * (self.footing.height - self._above)
         self._pose(command.position, now)
         return command
 
@@ -169,9 +186,9 @@ class Stepper:
             stood = before.places[floated], before.yaws[floated]
             self._planted = self._planted.step(floated, *stood)
 
-    def _begin(self, rule: StepRule, now: float) -> None:
-        """Choose a foot and lift it, if there is a place for it."""
-        placements = [self._placement(rule, foot, self.stepping.duration) for foot in (0, 1)]
+    def _begin(self, rule: StepRule, now: float, feet: Sequence[int] = (0, 1)) -> None:
+        """Choose one of `feet` and lift it, if there is a place for it."""
+        placements = [self._placement(rule, foot, self.stepping.duration) for foot in feet]
         possible = [found for found in placements if found is not None]
         if not possible:
             return
@@ -221,7 +238,8 @@ class Stepper:
             self._swing(goals, now)
             return
         against = self._against(footing.places.mean(axis=0))
-        base = footing.upright(self._centre(now) - against, self._heading(now))
+        place = self._centre(now) - against
+        base = footing.upright(place, self._heading(now), height=self._height)
         for foot in (0, 1):
             footing.keep(goals, foot, self._planted, base)
 
@@ -240,7 +258,8 @@ class Stepper:
         pivot = footing.places[1 - flight.foot]
         ahead = float(turn(footing.yaw)[:2, 0] @ (capture_point(footing.momenta) - pivot))
         pitch = np.clip(-stepping.trunk * ahead, -MOST_PITCH, MOST_PITCH)
-        base = footing.upright(flight.centre - self._against(pivot), footing.yaw, float(pitch))
+        place = flight.centre - self._against(pivot)
+        base = footing.upright(place, footing.yaw, float(pitch), self._height)
         footing.keep(goals, 1 - flight.foot, self._planted, base)
 
     def _centre(self, now: float) -> Array:

@@ -6,6 +6,7 @@ from msgspec import Meta
 
 from control.step_decision import Damping, Reach, StepRule, find_rule
 from hal.config import Record
+from hal.joints import Array
 
 Part = Annotated[float, Meta(ge=0.0, le=1.0)]
 Seconds = Annotated[float, Meta(ge=0.0)]
@@ -31,6 +32,23 @@ class RuleTable(Record, frozen=True):
 
     when: Damping
     where: Damping | None = None
+
+
+class CatchTable(Record, frozen=True):
+    """Which pushes on a walk are for steps, by how far they throw the capture point off its way.
+
+    Attributes:
+        back: Backward by more than this, m.
+        slant: But to the side by no more than this part of that.
+    """
+
+    back: Annotated[float, Meta(gt=0.0)]
+    slant: Annotated[float, Meta(gt=0.0)]
+
+    def meets(self, thrown: Array) -> bool:
+        """Return whether it is `thrown` (2,) m, ahead and to the left, far enough."""
+        ahead, left = thrown
+        return bool(-ahead > self.back and abs(left) < -ahead * self.slant)
 
 
 class Stepping(Record, frozen=True):
@@ -61,6 +79,7 @@ class Stepping(Record, frozen=True):
         support: What the soles support: the hull of their points, or Kenwright's circles and
             capsule about their middles, as large.
         clear: How far soles keep off ground where they must not come down, m.
+        catch: When a push on a walk is one for steps; None where steps are no help to it.
         torque: Largest torque that whole-body control asks of a joint with ideal torque, N m.
     """
 
@@ -85,6 +104,7 @@ class Stepping(Record, frozen=True):
     rate: Annotated[float, Meta(gt=0.0)] | None = None
     support: Support = "hull"
     clear: Metres = 0.015
+    catch: CatchTable | None = None
     torque: Annotated[float, Meta(gt=0.0)] = 1e3
 
     def find_rule(self, name: str) -> StepRule:

@@ -1,4 +1,4 @@
-"""`windup push`: push a standing twin, and see whether it stays up."""
+"""`windup push`: push a twin that stands or walks, and see whether it stays up."""
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -19,13 +19,16 @@ from tools.options import Common
 from tools.output import console, write_json
 from tools.push_envelope import Envelope
 from tools.push_trial import PushPlan, push_robot
+from tools.push_walk import push_walking, walking_said
+from tools.robot import Robot
 from tools.stepping import WAYS, check_way, find_stepping, stepping_stance
 from tools.twin_options import WorldOptions
+from tools.walk_options import WalkOptions
 
 
 @dataclass(frozen=True, kw_only=True)
 class Push(WorldOptions, Common):
-    """Push a standing robot; it survives when only feet touch the ground and it comes to rest."""
+    """Push a robot; it survives when only feet touch the ground and it rests, or walks on."""
 
     impulse: float | None = None
     """Impulse, N s."""
@@ -37,8 +40,14 @@ class Push(WorldOptions, Common):
     """Where it meets the body, m above the ground; its centre of mass by default."""
     body: str | None = None
     """Which body is pushed; the torso by default."""
-    at: float = 1.0
-    """When the first push begins, s."""
+    at: float | None = None
+    """When the first push begins, s; 1 in a stand and 4 in a walk by default."""
+    during: Literal["stand", "walk"] = "stand"
+    """What the robot is at."""
+    speed: float | None = None
+    """Speed of the walk, m/s; the gait's default otherwise."""
+    catch: bool = True
+    """Hand over to the stepper what the walk cannot absorb."""
     times: int = 1
     """How many pushes."""
     every: float = 1.0
@@ -97,10 +106,16 @@ class Push(WorldOptions, Common):
             robot.protect = self.protect and fall
             gauge = ImpactGauge(robot.twin) if fall else None
             with suppress(KeyboardInterrupt):
-                result = push_robot(robot, plan, to_the_end=fall)
+                result = self._push(robot, plan, fall)
             if gauge is not None:
                 result |= fall_result(gauge)
         return result
+
+    def _push(self, robot: Robot, plan: PushPlan, fall: bool) -> dict[str, Any]:
+        if self.during == "stand":
+            return push_robot(robot, plan, to_the_end=fall)
+        options = WalkOptions(speed=self.speed, catch=plan.way if self.catch else None)
+        return push_walking(robot, plan, options, to_the_end=fall)
 
     def plan(self, seed: int) -> PushPlan:
         """Return what is done with a seed."""
@@ -116,13 +131,18 @@ class Push(WorldOptions, Common):
             tuple(directions),
             self.duration,
             self.height,
-            self.at,
+            self._first,
             self.every,
             self.body,
             self.stance,
             self.forbid,
             self.support,
         )
+
+    @property
+    def _first(self) -> float:
+        """When the first push begins, s."""
+        return self.at if self.at is not None else 1.0 if self.during == "stand" else 4.0
 
     def _check(self) -> None:
         """Raise what cannot be, before anything is opened."""
@@ -133,16 +153,29 @@ class Push(WorldOptions, Common):
         for name, value in (("duration", self.duration), ("every", self.every)):
             if not 0.0 < value < inf:
                 raise UsageError(f"--{name} {value:g}: give more than 0 s")
-        if not 0.0 <= self.at < inf:
-            raise UsageError(f"--at {self.at:g}: give 0 s or more")
+        if not 0.0 <= self._first < inf:
+            raise UsageError(f"--at {self._first:g}: give 0 s or more")
         if self.times < 1:
             raise UsageError(f"--times {self.times}: give 1 or more")
         if self.directions < 1:
             raise UsageError(f"--directions {self.directions}: give 1 or more")
+        self._check_walk()
         forbidden(self.forbid)
         for way in self.ways if self.way is None else (self.way, *self.ways):
             check_way(way)
         stepping_stance(load_robot(self.robot), self.stance)
+
+    def _check_walk(self) -> None:
+        """Raise what only a robot that stands, or one that walks, can do."""
+        if self.during == "walk":
+            names = ("envelope", "stance", "forbid", "support")
+            wrong = [name for name in names if getattr(self, name)]
+            what = "is for a robot that stands; leave --during walk away"
+        else:
+            wrong = [] if self.speed is None else ["speed"]
+            what = "is for a robot that walks; give --during walk"
+        if wrong:
+            raise UsageError(f"--{wrong[0]} {what}")
 
 
 def said(row: dict[str, Any]) -> str:
@@ -155,6 +188,8 @@ def said(row: dict[str, Any]) -> str:
     if not row["survived"]:
         how = f"fell onto {row['touched'][0]}" if row["touched"] else row["reason"]
         return f"{row['robot']} {how} after {push} ({row['way']}, {steps}); {fall_said(row)}"
+    if "during" in row:
+        return f"{row['robot']} walks on after {push} ({row['way']}): {walking_said(row)}"
     return (
         f"{row['robot']} stays up after {push} ({row['way']}): {steps}, still after "
         f"{row['settling_s']:.2f} s, feet {1000 * row['astray_m']:.0f} mm from the stance"

@@ -150,6 +150,7 @@ class WalkReport:
             "rollout_time_s": watch.seconds,
             "rollouts_a_step": watch.count / max(walker.begun, 1),
             "replans": walker.replans,
+            "catches": self.catches(),
             "slipped": slip is not None and slip.felt,
             "step_model": self.counters,
             "tick_ms": loop.tick_ms(),
@@ -158,6 +159,13 @@ class WalkReport:
             "clamps": {name: count for name, count in robot.backend.clamps.items() if count},
             "regulation": self.regulation(),
         }
+
+    def catches(self) -> list[dict[str, Any]]:
+        """Return what the stepper was called for."""
+        supervisor = self.robot.supervisor
+        if supervisor is None:
+            return []
+        return [catch.record(self.walker.steps) for catch in supervisor.catches]
 
     def route(self) -> dict[str, Any]:
         """Return whether a goal was reached and how near the corners were passed; or nothing."""

@@ -13,6 +13,7 @@ from typing import Self
 from control.loop import LoopReport, Until
 from control.play import GraphPlayer, PoseHolder
 from control.staged import StagedPlayer
+from control.supervisor import Supervisor
 from hal.controller import Stopwatch
 from hal.errors import UnknownNameError, UsageError
 from hal.joints import Array
@@ -29,6 +30,7 @@ from tools.plan_process import ProcessPlanner, plan_aside
 from tools.report import WalkReport
 from tools.session import Session
 from tools.stack import State, twin_stack, wire_stack
+from tools.supervise import build_supervisor
 from tools.walk_end import OnStep, WalkEnd
 from tools.walk_options import WalkOptions
 
@@ -47,6 +49,7 @@ class Robot(Session):
         seed: Seed of everything random.
         clearance: How close the feet of a twin came in the last walk.
         gauges: What was measured at every tick of the last walk.
+        supervisor: Who had the robot in the last walk; None where nothing was to catch it.
         player: What played the last pose graph.
         load: How hard the servos worked for that.
     """
@@ -56,6 +59,7 @@ class Robot(Session):
     seed: int = 0
     clearance: FootClearance | None = field(default=None, init=False)
     gauges: Gauges | None = field(default=None, init=False)
+    supervisor: Supervisor | None = field(default=None, init=False)
     player: GraphPlayer | StagedPlayer | None = field(default=None, init=False)
     load: LoadGauge | None = field(default=None, init=False)
 
@@ -225,6 +229,9 @@ class Robot(Session):
         stopwatch = None if self.paced else self.predictor.stopwatch
         with ExitStack() as stack:
             walker = build_walk(self.description, options, self.predictor)
+            self.supervisor = None
+            if options.catch is not None:
+                self.supervisor = build_supervisor(self.description, walker, options.catch)
             end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
             if self.paced and walker.planner is not None:
                 aside = plan_aside(self.description, options, self.predictor, self.period)
@@ -235,7 +242,8 @@ class Robot(Session):
                 disturb(self)
             report = WalkReport(self, walker, options, steps)
             with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far
-                walked = self.run(walker, until=self._looking(end), rollouts=stopwatch)
+                walking = self.supervisor or walker
+                walked = self.run(walking, until=self._looking(end), rollouts=stopwatch)
                 if stand > 0.0 and walked.reason == "done":
                     walked.reason = self.stand(stand).reason
                     self.loop = walked

@@ -19,6 +19,7 @@ from tools.plot import Trace, plot_walk
 from tools.report import WalkReport, summary
 from tools.robot import Robot
 from tools.step_models import check_learning, keep_learnt
+from tools.stepping import find_stepping
 from tools.twin_options import TwinOptions
 from tools.walk_options import WalkOptions
 
@@ -68,6 +69,8 @@ class Walk(TwinOptions, Common):
     """Targets of the regulation variables: VALUE for the first forward one, or NAME=VALUE."""
     torso_servo: bool = True
     """Keep the torso upright by its own servo, where the gait has one."""
+    catch: bool = False
+    """Let the stepper catch pushes that the walk cannot absorb: it steps, halts, and walks on."""
     open_loop: bool = False
     """Play the bare pose graph, without balance."""
     delay: float | None = None
@@ -147,6 +150,7 @@ class Walk(TwinOptions, Common):
             target=self.target,
             torso_servo=self.torso_servo,
             open_loop=self.open_loop,
+            catch=find_stepping(load_robot(self.robot)).way if self.catch else None,
         )
 
     def _many(self, seeds: list[int]) -> Iterator[dict[str, Any]]:
@@ -211,7 +215,8 @@ def _line(report: WalkReport) -> str:
     return (
         f"{result['robot']} {end}{pace}: {result['distance_m']:.2f} m forward, "
         f"{result['lateral_m']:+.2f} m to the left, heading {result['heading_deg']:+.1f} degrees, "
-        f"{ratio:.1f} x real time{_flying(result)}{_sliding(result)}{_crossing(report)}"
+        f"{ratio:.1f} x real time{_flying(result)}{_sliding(result)}"
+        f"{_caught(result)}{_crossing(report)}"
     )
 
 
@@ -225,6 +230,13 @@ def _flying(result: dict[str, Any]) -> str:
 def _sliding(result: dict[str, Any]) -> str:
     """Return whether the ground was felt to be slippery."""
     return ", with care since it slid" if result["slipped"] else ""
+
+
+def _caught(result: dict[str, Any]) -> str:
+    """Return how often steps caught the robot."""
+    catches = result["catches"]
+    steps = sum(catch["steps"] for catch in catches)
+    return f", {len(catches)} x caught by steps ({steps})" if catches else ""
 
 
 def _crossing(report: WalkReport) -> str:

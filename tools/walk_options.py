@@ -28,3 +28,4 @@ class WalkOptions:
     learn: Path | None = None  # file that keeps the step models
     torso_servo: bool = True
     open_loop: bool = False
+    catch: str | None = None  # by which rule steps catch what the walk cannot absorb

@@ -64,7 +64,7 @@ def test_it_steps_with_a_hand_where_it_is_told(windup: Windup) -> None:
 
 
 def test_a_push_makes_it_step_with_a_hand(windup: Windup) -> None:
-    push = ("--impulse", "30", "--at", "0.1", "--way", "predictive", "--json", "-")
+    push = ("--impulse", "30", "--at", "0.5", "--way", "predictive", "--json", "-")
     ran = windup("push", "human_handstand", *push)
     assert (ran.status, ran.json["steps"]) == (0, 1)
 

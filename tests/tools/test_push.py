@@ -53,6 +53,10 @@ def test_random_directions_are_those_of_the_seed() -> None:
         (["--impulse", "1", "--stance", "lotus"], "lotus"),
         (["--impulse", "1", "--duration", "0"], "more than 0 s"),
         (["--impulse", "1", "--gains", "0"], "above 0"),
+        (["--impulse", "1", "--speed", "0.1"], "--during walk"),
+        (["--impulse", "1", "--during", "walk", "--stance", "ready"], "for a robot that stands"),
+        (["--impulse", "1", "--during", "walk", "--way", "hold"], "a step rule"),
+        (["--impulse", "1", "--during", "walk", "--speed", "9"], "0 .. 0.36 m/s"),
     ],
 )
 def test_what_cannot_be_is_said_in_one_line(
@@ -119,3 +123,21 @@ def test_the_envelope_is_a_table_a_picture_and_json(tmp_path: Path) -> None:
     assert 0.6 < hold["worst"] < 1.4
     assert [row["survived"] for row in hold["trials"]].count(False) >= 1
     assert picture.stat().st_size > 1000
+
+
+def test_a_walk_is_caught_by_steps_halts_and_goes_on(tmp_path: Path) -> None:
+    out = tmp_path / "push.json"
+    line = ["push", "op3", "--during", "walk", "--impulse", "1.4", "--direction", "180"]
+    assert run([*line, "--at", "4.1", "--json", str(out)]) == 0
+    row = json.loads(out.read_text())
+    (catch,) = row["catches"]
+    assert row["pushed_at"][0] < catch["handed_over_at"] < row["pushed_at"][0] + 0.15
+    assert catch["handed_over_at"] < catch["stood_at"] < catch["handed_back_at"]
+    assert catch["walked_after"] >= 20
+
+
+def test_a_walk_that_bears_a_push_is_left_alone(tmp_path: Path) -> None:
+    out = tmp_path / "push.json"
+    line = ["push", "op3", "--during", "walk", "--impulse", "0.6", "--direction", "60"]
+    assert run([*line, "--json", str(out)]) == 0
+    assert json.loads(out.read_text())["catches"] == []

@@ -43,6 +43,7 @@ KEYS = {
     "shake_rad_s",
     "rollouts_a_step",
     "replans",
+    "catches",
     "slipped",
     "step_model",
 }
