@@ -52,7 +52,7 @@ class CatchTable(Record, frozen=True):
 
 
 class Stepping(Record, frozen=True):
-    """How a robot steps; `up`, `lead`, `balance`, `trunk` and comfort steps are for servos alone.
+    """How a robot steps; `up`, `lead`, `balance` and `trunk` are for servos alone.
 
     Attributes:
         stance: Name of the pose that it stands in, soles flat.

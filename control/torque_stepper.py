@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from control.footprints import ground_places
 from control.momenta import capture_point
 from control.no_step import NoStep
 from control.rotation import yaw_of
@@ -24,12 +25,16 @@ from control.step_decision import (
 from control.stepping_file import Stepping
 from control.support import SupportRegion
 from control.swing import bezier, gaussian_progress
+from control.torque_comfort import TorqueComfort
 from control.torque_motion import PERIOD, Swing, TorqueMotion
 from control.whole_body import WholeBody
+from hal.command import JointCommand
 from hal.joints import Array, Joints
 from hal.observation import Observation
 
-Phase = Literal["stand", "swing", "land"]
+Phase = Literal["stand", "swing", "land", "comfort"]
+STILL = 0.05
+"""The centre of mass of a robot that stands still is slower than this, m/s."""
 TOUCH = 0.003
 """A foot has landed when its lowest corner is that near to the ground, m."""
 
@@ -44,10 +49,11 @@ class TorqueStepper(TorqueMotion):
         rule: When and where to step; None balances without steps.
         stepping: How.
         no_step: Where no foot may come down.
+        comfort: How it comes back to its stance; None stays as it stands.
 
     Attributes:
         steps: Steps that were taken to prevent a fall.
-        comforts: Comfort steps, which it does not take.
+        comforts: Comfort steps.
         phase: What it is at.
     """
 
@@ -59,8 +65,9 @@ class TorqueStepper(TorqueMotion):
         rule: StepRule | None,
         stepping: Stepping,
         no_step: NoStep | None = None,
+        comfort: TorqueComfort | None = None,
     ) -> None:
-        self.no_step = no_step or NoStep()
+        self.no_step, self._comfort = no_step or NoStep(), comfort
         super().__init__(joints, body, stance, stepping.lift)
         self._rule, self._stepping = rule, stepping
         self._reach = stepping.reach.reach()
@@ -74,6 +81,49 @@ class TorqueStepper(TorqueMotion):
         self.phase, self.steps, self.comforts, self._landed = "stand", 0, 0, None
         self.no_step.begin(self.dynamics.ends, [self.dynamics.ground(foot) for foot in (0, 1)])
         self._since, self._began = observation.time, self.dynamics.momenta.com[:2].copy()
+        self._moved = observation.time
+        if self._comfort is not None:
+            self._comfort.reset(self._places)
+
+    def step(self, observation: Observation, dt: float) -> JointCommand:
+        """Return the torques of now.
+
+        Raises:
+            StateMissingError: The observation has no base.
+            WindupError: The optimisation found no answer.
+        """
+        now = observation.time
+        if self.phase == "comfort":
+            command = self._walk.step(observation, dt)
+            if self._walk.finished or (self._rule is not None and self._falls(self._rule)):
+                # What the legs cannot do now they cannot do until something moves the robot.
+                self._moved = np.inf if self._walk.given_up else now
+                self._due, self._plan = now, None
+                self._enter("stand", now)
+            return command
+        command = super().step(observation, dt)
+        if self.phase == "stand" and self._comfort is not None:
+            self._settle(self._comfort, observation)
+        return command
+
+    def _settle(self, comfort: TorqueComfort, observation: Observation) -> None:
+        """Begin a comfort step when the robot has stood still for long enough off its stance."""
+        now = observation.time
+        if np.linalg.norm(self.dynamics.momenta.velocity[:2]) > STILL:
+            self._moved = now
+        if now - self._moved < self._stepping.patience:
+            return
+        if (missing := comfort.needed(self._places, self.no_step.allows)) is not None:
+            self._walk = comfort.walk(missing)
+            self._walk.reset(observation)
+            self.phase, self.comforts = "comfort", self.comforts + 1
+
+    @property
+    def _places(self) -> Array:
+        """The places (2, 3) of the feet."""
+        ends = self.dynamics.ends
+        frames = np.array([end.rotation.ravel() for end in ends])
+        return ground_places(np.array([end.position for end in ends]), frames)
 
     def _decide(self, now: float) -> None:
         """Go over to the next phase where it is time."""

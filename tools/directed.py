@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Any, Final, Protocol
+from typing import Any, Protocol
 
 import mujoco
 import numpy as np
@@ -24,9 +24,7 @@ from robots import RobotDescription
 from tools.build import body_of
 from tools.robot import Robot
 from tools.robot_file import load_beside
-from tools.stepping import find_stepping, whole_body_of
-
-FILE: Final = "footprints.toml"
+from tools.stepping import FOOTPRINTS, find_stepping, whole_body_of
 
 
 class DirectedController(Controller, Protocol):
@@ -66,7 +64,7 @@ def find_directed(robot: RobotDescription) -> Directed:
         ConfigError: That file says something that cannot be.
     """
     kind = Directed if robot.drive.kind == "torque" else ServoDirected
-    how = load_beside(robot, FILE, kind)
+    how = load_beside(robot, FOOTPRINTS, kind)
     if how.stance not in robot.poses:
         raise UnknownNameError(f"pose of {robot.name}", how.stance, robot.poses)
     return how

@@ -18,12 +18,14 @@ Edges = Mapping[float, "Edge"]
 
 def largest_table(directions: Sequence[float], largest: Mapping[str, Sequence[float]]) -> Table:
     """Return the table of the largest impulses, N s, of each way in each direction, degrees."""
-    table = Table(title="largest impulse survived with no fall below it, N s")
-    for name in ("way", *(f"{direction:g}" for direction in directions), "worst", "mean"):
-        table.add_column(name, justify="left" if name == "way" else "right")
-    for way, row in largest.items():
-        ends = (min(row), float(np.mean(row)))
-        table.add_row(way, *(f"{value:.2f}" for value in (*row, *ends)))
+    table = Table("toward", title="largest impulse survived with no fall below it, N s")
+    for way in largest:
+        table.add_column(way, justify="right")
+    for number, direction in enumerate(directions):
+        table.add_row(f"{direction:g}", *(f"{row[number]:.2f}" for row in largest.values()))
+    table.add_section()
+    table.add_row("worst", *(f"{min(row):.2f}" for row in largest.values()))
+    table.add_row("mean", *(f"{np.mean(row):.2f}" for row in largest.values()))
     return table
 
 

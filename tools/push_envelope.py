@@ -21,7 +21,7 @@ from tools.plot_envelope import plot_envelope
 if TYPE_CHECKING:
     from tools.push import Push
 
-COARSE, FINE = 0.4, 0.1
+COARSE, FINE = 0.4, 0.05
 """Steps of the impulse of a light robot: of the grid, and from the last success, N s."""
 LIGHT = 3.0
 """Mass of a light robot, kg; heavier ones take larger steps, see `Search.scale`."""

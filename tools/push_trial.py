@@ -28,7 +28,7 @@ STILL = 0.05
 """Speed of the base of a robot that stands still, m/s."""
 AFTER = 3.0
 """How long after the last push it has to, s."""
-LONGEST = 3.0
+LONGEST = 5.0
 """How much longer a comfort step that it is at may take, s."""
 Look = Callable[[Observation, Controller], None]
 LANDING = 1.5

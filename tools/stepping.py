@@ -7,14 +7,17 @@ import msgspec
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
+from control.directed_file import Directed
 from control.dynamics import Dynamics
 from control.footing import Footing
+from control.footprints import Footprint
 from control.no_step import NoStep
 from control.play import PoseHolder
 from control.soles import Soles
 from control.step_decision import RULES
 from control.stepper import Stepper
 from control.stepping_file import Stepping, Support
+from control.torque_comfort import ComfortWalk, TorqueComfort
 from control.torque_stepper import TorqueStepper
 from control.whole_body import WholeBody
 from hal.controller import Controller
@@ -25,6 +28,7 @@ from tools.build import body_of
 from tools.robot_file import load_beside
 
 STEPPING: Final = "stepping.toml"
+FOOTPRINTS: Final = "footprints.toml"
 FRICTION: Final = 0.8
 """What whole-body control counts on; the floor has 1."""
 HOLD, FEET = "hold", "feet"
@@ -104,8 +108,26 @@ def build_stepper(
     no_step = NoStep(forbid, stepping.clear)
     if robot.drive.kind == "torque":
         body = whole_body_of(robot, delay)
-        return TorqueStepper(robot.joints, body, stance, rule, stepping, no_step)
+        comfort = comfort_of(robot, body, stance, stepping)
+        return TorqueStepper(robot.joints, body, stance, rule, stepping, no_step, comfort)
     return Stepper(robot.joints, footing_of(robot, stance), stance, rule, stepping, no_step)
+
+
+def comfort_of(
+    robot: RobotDescription, body: WholeBody, stance: Array, stepping: Stepping
+) -> TorqueComfort:
+    """Return the comfort steps of a robot with torque joints, as it walks footprints.
+
+    Raises:
+        UsageError: It has no footprints.toml.
+    """
+    # Feet that stand far apart do not let the weight come all the way over one of them.
+    how = msgspec.structs.replace(load_beside(robot, FOOTPRINTS, Directed), patience=1.0)
+
+    def walk(missing: Footprint) -> ComfortWalk:
+        return ComfortWalk(robot.joints, body, stance, [missing], how, robot.contacts)
+
+    return TorqueComfort(walk, stepping.comfort)
 
 
 def check_way(way: str) -> None:

@@ -20,6 +20,15 @@ def test_the_human_steps_where_a_push_asks_for_it(
     assert row["steps"] == steps
 
 
+def test_the_human_comes_back_to_its_stance(tmp_path: Path) -> None:
+    out = tmp_path / "push.json"
+    line = ["push", "human", "--impulse", "30", "--at", "0.1", "--json", str(out)]
+    assert run(line) == 0
+    row = json.loads(out.read_text())
+    assert (row["steps"], row["comfort_steps"]) == (1, 1)
+    assert row["astray_m"] < 0.03
+
+
 def test_feet_alone_do_not_survive_what_a_step_does() -> None:
     assert run(["push", "human", "--impulse", "40", "--at", "0.1", "--way", "feet"]) == 1
 

@@ -98,7 +98,7 @@ def test_a_fall_in_the_middle_of_the_grid_bounds_the_edge(monkeypatch: pytest.Mo
         lambda self, impulse: falls | {"impulse": impulse, "survived": impulse != 0.8},
     )
     edge = find_edge(Search(Push(robot="op3"), "hold", 0.0, 1.0))
-    assert edge.impulse == pytest.approx(0.7)
+    assert edge.impulse == pytest.approx(0.75)
     assert [row["survived"] for row in edge.grid].count(True) == 5
 
 
