@@ -20,6 +20,8 @@ SWING = 0.4
 """Time for the foot in the air, s."""
 INSIDE = 0.02
 """How far inside a sole the centre of mass has to be for that foot to bear the robot alone, m."""
+STILL = 0.05
+"""The centre of mass of a robot that stands still is slower than this, m/s."""
 ASKEW = 0.15
 """The feet of a relaxed stance are turned less than this from each other, rad."""
 

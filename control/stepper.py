@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
-from control.comfort import ComfortStep
+from control.comfort import STILL, ComfortStep
 from control.footing import Footing
 from control.momenta import capture_point
 from control.no_step import NoStep
@@ -40,8 +40,6 @@ MOST_PITCH = 0.8
 """How far the trunk turns at most, rad."""
 TAKE = 0.6
 """Time in which a robot that was walking takes on the stance's height, its arms and head, s."""
-STILL = 0.05
-"""The centre of mass of a robot that stands still is slower than this, m/s."""
 
 
 @dataclass

@@ -10,10 +10,11 @@ from typing import Any, Literal
 import numpy as np
 
 from control.balancer import Balancer
+from control.comfort import STILL
 from control.momenta import capture_point
 from control.play import PoseHolder
 from control.rotation import turn
-from control.stepper import STILL, Stepper
+from control.stepper import Stepper
 from control.stepping_file import CatchTable
 from control.throw import Throw
 from hal.command import JointCommand

@@ -8,14 +8,12 @@ from collections.abc import Callable
 
 import numpy as np
 
+from control.comfort import ASKEW
 from control.footprints import Footprint, onto, seen_from
 from control.momenta import capture_point
 from control.support import SupportRegion
 from control.torque_directed import TorqueDirected
 from hal.joints import Array
-
-ASKEW = 0.15
-"""The feet of a relaxed stance are turned less than this from each other, rad."""
 
 
 class ComfortWalk(TorqueDirected):

@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from control.directed_file import Directed
-from control.footprints import Footprint, between, ground_places, onto
+from control.footprints import Footprint, between, onto
 from control.swing import smooth_progress
 from control.torque_motion import PERIOD, TorqueMotion
 from control.whole_body import WholeBody
@@ -57,13 +57,6 @@ class TorqueDirected(TorqueMotion):
         super().__init__(joints, body, stance, how.lift)
         self.prints, self.how, self._contacts = prints, how, contacts
         self.finished, self.landed, self.stood = False, 0, 0
-
-    @property
-    def places(self) -> Array:
-        """The places (2, 3) where the feet are now."""
-        ends = self.dynamics.ends
-        frames = np.array([end.rotation.ravel() for end in ends])
-        return ground_places(np.array([end.position for end in ends]), frames)
 
     def reset(self, observation: Observation) -> None:
         """Begin where the feet are."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from control.footprints import ground_places
 from control.rotation import turn, turn_between, yaw_of
 from control.swing import gaussian_progress, lift
 from control.whole_body import Objectives, Plan, WholeBody
@@ -120,6 +121,13 @@ class TorqueMotion(ABC):
     def _flying(self) -> Swing:
         assert self._swing is not None
         return self._swing
+
+    @property
+    def places(self) -> Array:
+        """The places (2, 3), x m, y m, yaw rad, where the feet are now."""
+        ends = self.dynamics.ends
+        frames = np.array([end.rotation.ravel() for end in ends])
+        return ground_places(np.array([end.position for end in ends]), frames)
 
     def _middle(self, foot: int) -> Array:
         """Return (2,) m, the middle of a sole on the ground."""

@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from control.footprints import ground_places
+from control.comfort import STILL
 from control.momenta import capture_point
 from control.no_step import NoStep
 from control.rotation import yaw_of
@@ -33,8 +33,6 @@ from hal.joints import Array, Joints
 from hal.observation import Observation
 
 Phase = Literal["stand", "swing", "land", "comfort"]
-STILL = 0.05
-"""The centre of mass of a robot that stands still is slower than this, m/s."""
 TOUCH = 0.003
 """A foot has landed when its lowest corner is that near to the ground, m."""
 
@@ -83,7 +81,7 @@ class TorqueStepper(TorqueMotion):
         self._since, self._began = observation.time, self.dynamics.momenta.com[:2].copy()
         self._moved = observation.time
         if self._comfort is not None:
-            self._comfort.reset(self._places)
+            self._comfort.reset(self.places)
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the torques of now.
@@ -113,17 +111,10 @@ class TorqueStepper(TorqueMotion):
             self._moved = now
         if now - self._moved < self._stepping.patience:
             return
-        if (missing := comfort.needed(self._places, self.no_step.allows)) is not None:
+        if (missing := comfort.needed(self.places, self.no_step.allows)) is not None:
             self._walk = comfort.walk(missing)
             self._walk.reset(observation)
             self.phase, self.comforts = "comfort", self.comforts + 1
-
-    @property
-    def _places(self) -> Array:
-        """The places (2, 3) of the feet."""
-        ends = self.dynamics.ends
-        frames = np.array([end.rotation.ravel() for end in ends])
-        return ground_places(np.array([end.position for end in ends]), frames)
 
     def _decide(self, now: float) -> None:
         """Go over to the next phase where it is time."""
