@@ -11,16 +11,14 @@ import numpy as np
 from control.body import Body
 from control.directed_file import ServoDirected
 from control.footprints import Footprint, between, onto, seen_from
-from control.leg_motion import PRESS, Aim, LegMotion
+from control.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
 from control.limb_ik import LimbIk, Pose
 from control.rotation import turn, way_round
-from control.swing import gaussian_progress, lift
+from control.swing import gaussian_progress, lift, smooth_progress
 from hal.joints import Array, Joints
 from hal.observation import Observation
 
 Phase = Literal["shift", "swing", "land", "rest"]
-TAKE_OFF = 0.2
-"""Part of the swing in which the leg goes over from bearing to flying."""
 
 
 class DirectedSteps(LegMotion):
@@ -80,7 +78,7 @@ class DirectedSteps(LegMotion):
 
     def _between(self, part: float) -> Aim:
         """Return what is planned at a part of the phase."""
-        s = part**3 * (10.0 - 15.0 * part + 6.0 * part * part)
+        s = smooth_progress(part)
         pace = 30.0 * (part * (1.0 - part)) ** 2 / self._seconds()
         begin, end = self._from, self._to
         return Aim(

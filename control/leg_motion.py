@@ -65,6 +65,10 @@ class Gains(Protocol):
         ...
 
 
+TAKE_OFF = 0.2
+"""Part of the swing in which the leg goes over from bearing to flying."""
+
+
 @dataclass
 class Aim:
     """What is planned for now.

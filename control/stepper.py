@@ -219,6 +219,7 @@ class Stepper:
             self._moved = now
         if now - self._moved < stepping.patience:
             return
+        self._moved = now  # where nothing is to do, it looks again as long after
         comfort = ComfortStep(footing, now, stepping)
         foot, yaw = comfort.foot, footing.yaw
         free = self.no_step.allows(foot, yaw, footing.places[foot], comfort.target)

@@ -14,7 +14,7 @@ import numpy as np
 
 from control.body import Body
 from control.footprints import between, onto, seen_from
-from control.leg_motion import PRESS, Aim, LegMotion
+from control.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
 from control.limb_ik import LimbIk, Pose
 from control.momenta import GRAVITY
 from control.pendulum import Order, Stretch, capture_on_way, future, next_place
@@ -27,8 +27,6 @@ from hal.observation import Observation
 Phase = Literal["stand", "shift", "swing", "land", "halt"]
 AHEAD = 3
 """Steps that are looked ahead; what comes later moves nothing any more."""
-TAKE_OFF = 0.2
-"""Part of the swing in which the leg goes over from bearing to flying."""
 STEEPEST = 0.15
 """Slope of the ground that is believed, rad."""
 MOST_BEHIND = 0.1

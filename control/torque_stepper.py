@@ -111,6 +111,7 @@ class TorqueStepper(TorqueMotion):
             self._moved = now
         if now - self._moved < self._stepping.patience:
             return
+        self._moved = now  # where nothing is to do, it looks again as long after
         if (missing := comfort.needed(self.places, self.no_step.allows)) is not None:
             self._walk = comfort.walk(missing)
             self._walk.reset(observation)

@@ -133,6 +133,11 @@ class Study:
         return tuple(known[name] for name in names) if names else self.figures
 
 
+def folder_of(package: object) -> Path:
+    """Return the folder of an imported package: what a study's runs depend on."""
+    return Path(str(getattr(package, "__file__", ""))).parent
+
+
 def distinct(figures: tuple[Figure, ...], quick: bool) -> Iterator[Job]:
     """Yield the jobs of all figures, each once."""
     seen = set()

@@ -5,7 +5,7 @@ from pathlib import Path
 import control
 import robots
 import sim_twin
-from tools.reproduce.figure import Study
+from tools.reproduce.figure import Study, folder_of
 from tools.reproduce.kenwright import (
     comfort,
     falls,
@@ -18,11 +18,6 @@ from tools.reproduce.kenwright import (
     walking,
     work,
 )
-
-
-def _here(package: object) -> Path:
-    return Path(str(getattr(package, "__file__", ""))).parent
-
 
 KENWRIGHT = Study(
     name="kenwright",
@@ -46,9 +41,9 @@ KENWRIGHT = Study(
     ),
     work=work.work,
     sources=(
-        _here(control),
-        _here(sim_twin),
-        _here(robots) / "op3",
+        folder_of(control),
+        folder_of(sim_twin),
+        folder_of(robots) / "op3",
         Path(work.__file__),
         Path(recorder.__file__),
         *(Path(work.__file__).parents[2] / f"{name}.py" for name in ("push_trial", "striding")),

@@ -5,7 +5,7 @@ from pathlib import Path
 import control
 import robots
 import sim_twin
-from tools.reproduce.figure import Study
+from tools.reproduce.figure import Study, folder_of
 from tools.reproduce.laszlo import (
     discrete,
     following,
@@ -23,11 +23,6 @@ from tools.reproduce.laszlo import (
     turning,
     work,
 )
-
-
-def _here(package: object) -> Path:
-    return Path(str(getattr(package, "__file__", ""))).parent
-
 
 LASZLO = Study(
     name="laszlo",
@@ -58,10 +53,10 @@ LASZLO = Study(
     ),
     work=work.work,
     sources=(
-        _here(control),
-        _here(sim_twin),
-        _here(robots) / "human",
-        _here(robots) / "robobird",
+        folder_of(control),
+        folder_of(sim_twin),
+        folder_of(robots) / "human",
+        folder_of(robots) / "robobird",
         Path(work.__file__),
         Path(tours.__file__),
         Path(work.__file__).with_name("recorder.py"),

@@ -5,13 +5,8 @@ from pathlib import Path
 import control
 import robots
 import sim_twin
-from tools.reproduce.figure import Study
+from tools.reproduce.figure import Study, folder_of
 from tools.reproduce.wu_zordan import directed, pendulum, reactive, work
-
-
-def _here(package: object) -> Path:
-    return Path(str(getattr(package, "__file__", ""))).parent
-
 
 WU_ZORDAN = Study(
     name="wu-zordan",
@@ -27,10 +22,10 @@ WU_ZORDAN = Study(
     figures=(*directed.FIGURES, *reactive.FIGURES, *pendulum.FIGURES),
     work=work.work,
     sources=(
-        _here(control),
-        _here(sim_twin),
-        _here(robots) / "human",
-        _here(robots) / "human_handstand",
+        folder_of(control),
+        folder_of(sim_twin),
+        folder_of(robots) / "human",
+        folder_of(robots) / "human_handstand",
         Path(work.__file__),
         Path(work.__file__).parents[2] / "push_trial.py",
         Path(work.__file__).parents[2] / "directed.py",
