@@ -5,10 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from hal.errors import HardwareError
-from hal.joints import Array, Mask
+from hal.joints import Array
 from hal.plausibility import MARGIN
 from hal.registers import Register
 from hal.servo_line import Rows, ServoLine
+from hal.torque_state import TorqueState
 
 ATTEMPTS = 5
 TRIPPED = -1
@@ -31,11 +32,11 @@ class ServoTorque:
         self._watch = self._registers.get("bus_watchdog")
         self._last = np.array([mount.model.last_count for mount in line.mounts], dtype=np.float64)
 
-    def on(self, gains: Array) -> Mask:
+    def on(self, gains: Array) -> TorqueState:
         """Switch torque on where the joints are now; their P registers are `gains`.
 
         The goal is the present position before the torque comes on, so that nothing moves.
-        Returns (servos,) bool, read back.
+        Returns what was read back of the servos.
 
         Raises:
             HardwareError: A servo cannot be read, or does not take its goal; no torque comes on.
@@ -52,8 +53,8 @@ class ServoTorque:
             self.armed = True
         return self._switch(True)
 
-    def off(self, attempts: int = ATTEMPTS) -> Mask:
-        """Switch torque off and return (servos,) bool, read back."""
+    def off(self, attempts: int = ATTEMPTS) -> TorqueState:
+        """Switch torque off and return what was read back of the servos."""
         state = self._switch(False, attempts)
         self.armed = self.powered = False
         if self._watch is not None:
@@ -66,7 +67,7 @@ class ServoTorque:
         Raises:
             HardwareError: A servo cannot be read, or does not take its goal.
         """
-        here, on = np.clip(self._here(), 0, self._last), np.flatnonzero(self.state())
+        here, on = np.clip(self._here(), 0, self._last), np.flatnonzero(~self.state().off)
         if on.size:
             self._set(self._registers["goal_position"], here[on], on)
 
@@ -85,27 +86,27 @@ class ServoTorque:
             "hold the robot still and check the wiring"
         )
 
-    def _switch(self, on: bool, attempts: int = ATTEMPTS) -> Mask:
+    def _switch(self, on: bool, attempts: int = ATTEMPTS) -> TorqueState:
         """Write and read back until all servos obey; a lost frame is sent again."""
         for _ in range(attempts):
             self._write(self._registers["torque_enable"], int(on))
             state = self.state(attempts)
-            if (state == on).all():
+            if state.all_on if on else state.all_off:
                 break
         return state
 
-    def state(self, attempts: int = ATTEMPTS) -> Mask:
-        """Return (servos,) bool read back; a servo that does not answer counts as on."""
+    def state(self, attempts: int = ATTEMPTS) -> TorqueState:
+        """Return what can be read of the servos' torque now."""
         register = self._registers["torque_enable"]
-        on = np.ones(len(self.line.ids), dtype=bool)
-        unread = on.copy()
+        on = np.zeros(len(self.line.ids), dtype=bool)
+        unread = np.ones_like(on)
         for _ in range(attempts):
             counts, valid = self.line.bus.sync_read(self.line.ids, register)
             on[valid & unread] = counts[valid & unread] != 0
             unread &= ~valid
             if not unread.any():
                 break
-        return on
+        return TorqueState(on, unread)
 
     def revive(self) -> int:
         """Clear the watchdogs that have fired, at the present pose; return how many had.
