@@ -48,14 +48,14 @@ class ServoBackend:
         board: The OpenCR, read with the servos of its bus.
         imu: An IMU on a port of its own.
         couplings: Joints that two servos move together.
-        watchdog: Silence after which servos that can stop by themselves, s; 0 for none.
+        watchdog: Silence after which a bus watchdog freezes the pose, torque on, s; 0 for none.
         contacts: Number of contact sensors that observations have room for; none is measured.
         opener: Opens a port.
 
     Attributes:
         links: The buses, from `connect` to `disconnect`.
         clamps: Clamp name to the number of commands it changed; "unarmed" are goals withheld.
-        watchdog_trips: Servos that had stopped for silence, and were cleared.
+        watchdog_trips: Servos that had frozen for silence, and were cleared.
     """
 
     def __init__(
@@ -233,7 +233,7 @@ class ServoBackend:
         return self.set_torque(True)
 
     def disconnect(self) -> None:
-        """Close the ports. Torque that is on stays on until the servos' watchdog fires."""
+        """Close the ports. Torque that is on stays on, also when the servos' watchdog trips."""
         for link in self.links:
             link.close()
         if self._imu_link is not None:

@@ -13,14 +13,18 @@ from hal.torque_state import TorqueState
 
 ATTEMPTS = 5
 TRIPPED = -1
-"""What a Bus Watchdog reads that has fired; goals are refused until it is set to 0."""
+"""What a Bus Watchdog reads that has fired.
+
+In position mode the servo holds the place where it was then, and refuses goals until the register
+is set to 0: the pose is frozen, the torque is not off.
+"""
 
 
 class ServoTorque:
     """The torque switch of one line, and the Bus Watchdog where its servos have one.
 
     Attributes:
-        watchdog: Silence after which a servo stops, s; 0 for none.
+        watchdog: Silence after which a servo freezes its pose, with torque on, s; 0 for none.
         armed: Is the watchdog running?
         powered: Has torque been switched on?
     """
@@ -111,7 +115,8 @@ class ServoTorque:
     def revive(self) -> int:
         """Clear the watchdogs that have fired, at the present pose; return how many had.
 
-        Torque that a servo has switched off stays off until `on`.
+        The servos hold all the while, and then take goals again. Torque that a servo has switched
+        off stays off until `on`.
         """
         register = self._watch
         if register is None:
