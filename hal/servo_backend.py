@@ -13,15 +13,19 @@ from hal.errors import HardwareError, PortError
 from hal.exchange import TURNAROUND
 from hal.imu.opencr import OpenCr
 from hal.imu.source import ImuSource
-from hal.joints import Array, Joints, Mask
-from hal.observation import ImuState, JointState, Observation
+from hal.imu_link import ImuLink
+from hal.joint_readings import JointReadings
+from hal.joint_torque import JointTorque
+from hal.joints import Array, Joints
+from hal.observation import Observation
 from hal.open_port import open_port
 from hal.port import Port
 from hal.servo_alerts import ServoAlerts, count_errors
 from hal.servo_line import ServoLine
-from hal.servo_link import BusPort, ImuLink, ServoLink
+from hal.servo_link import BusPort, ServoLink
 from hal.servo_model import ServoMount
-from hal.servo_setup import lines_of, names_of, open_links, read_health, set_up
+from hal.servo_setup import lines_of, names_of, open_links, set_up
+from hal.torque_loss import Loss
 from hal.torque_state import TorqueState
 from hal.units import Units
 from hal.wiring import check_mounts
@@ -54,7 +58,10 @@ class ServoBackend:
 
     Attributes:
         links: The buses, from `connect` to `disconnect`.
-        clamps: Clamp name to the number of commands it changed; "unarmed" are goals withheld.
+        clamps: Clamp name to the number of commands it changed; "unarmed" and "lost" are goals
+            withheld, of a bus, and of joints that may have lost their torque.
+        lost_joints: Joint name to how it has lost its torque since the robot was armed. It gets
+            no goal until `rearm`.
         watchdog_trips: Servos that had frozen for silence, and were cleared.
     """
 
@@ -81,15 +88,12 @@ class ServoBackend:
         self.links: list[ServoLink] = []
         self._imu_link: ImuLink | None = None
         self._alerts = ServoAlerts(joints, self.mounts)
+        self._torque = JointTorque(joints, self._couplings)
+        self.lost_joints: Mapping[str, Loss] = {}
         self.clamps: Counter[str] = Counter({"goal": 0, "gain": 0})
         self.watchdog_trips = 0
         n = len(joints)
-        self._counts = np.full((3, n), np.nan)
-        self._health = np.full((2, n), np.nan)
-        self._answered = np.full(n, -np.inf)
-        self._imu_at = -np.inf
-        self._patience = 0.9 * watchdog
-        self._contacts = np.zeros(contacts)
+        self._readings = JointReadings(self.units, self._couplings, imu, contacts)
         self._realised = np.empty((2, n))
         self._realised[1] = self._couplings.joint_gains(self.units.damping)
         self._gains = b""
@@ -113,6 +117,11 @@ class ServoBackend:
     def lost(self) -> dict[str, str]:
         """URL of each port that is gone, to what was seen of it."""
         return {link.bus.port.url: link.lost for link in self.links if link.lost is not None}
+
+    @property
+    def doubtful_joints(self) -> Mapping[str, str]:
+        """The joints that are silent, or whose port is gone, and what to do about each."""
+        return self._torque.doubts(self.links)
 
     def connect(self) -> None:
         """Open the ports. Nothing moves.
@@ -138,17 +147,16 @@ class ServoBackend:
         set_up(self.joints, self.mounts, buses, self.board)
         for line in self.lines:
             line.bus.exchange.turnaround = TURNAROUND
-            line.probe_fast()
+            line.reads.probe_fast()
         began = self.clock.now()
         for _ in range(ATTEMPTS):
             self.read()
-            if (self._answered > began).all():
+            if (self._readings.answered > began).all():
                 break
         else:
-            silent = names_of(self.joints, self._answered <= began)
+            silent = names_of(self.joints, self._readings.answered <= began)
             raise HardwareError(f"no answer to cyclic reads from {silent}; run `windup scan`")
-        for line in self.lines:
-            read_health(line, self._health)
+        self._readings.read_health(self.links)
 
     def request(self) -> None:
         """Ask every joint for its state."""
@@ -157,16 +165,15 @@ class ServoBackend:
 
     def collect(self) -> Observation:
         """Return the state last asked for."""
-        late = False
+        calm = True
         for link in self.links:
-            valid = link.collect(self._counts, self._health, self._alerts.errors)
-            late |= self._note_answers(link.line, valid, link.torque.armed)
-        if late:
-            self.watchdog_trips += sum(link.clear_watchdogs() for link in self.links)
-        self._alerts.update(self.links)
+            self._readings.collect(link, self._alerts.errors)
+            calm &= link.calm
+        if not calm or self._alerts.now:
+            self._see_to(self.links)
         if self._imu_link is not None:
             self._imu_link.poll()
-        return self._observe()
+        return self._readings.observe(self.clock.now(), self.links)
 
     def read(self) -> Observation:
         """Return the present state: `request` and `collect`."""
@@ -185,13 +192,15 @@ class ServoBackend:
         inside = np.minimum(np.maximum(counts, 0.0), self.units.last)
         if not np.array_equal(inside, counts):
             self.clamps["goal"] += 1
-        for link in self.links:
-            if not link.send_goals(inside[link.line.rows]):
-                self.clamps["unarmed"] += 1
         real = np.zeros_like(block)
         angle = self.units.angle(inside)
         real[0] = self._couplings.joints(angle) if self._couplings else angle
         real[3:] = self._realised
+        for link in self.links:
+            if (clamp := link.send_goals(inside[link.line.rows])) is not None:
+                self.clamps[clamp] += 1
+            if link.check.withheld is not None:
+                real[3:, link.line.rows[link.check.withheld]] = 0.0
         return JointCommand(real)
 
     def bus_errors(self) -> Mapping[str, int]:
@@ -202,17 +211,19 @@ class ServoBackend:
         """Switch all torque, on at the present pose only, and return what was read back.
 
         Raises:
-            HardwareError: Torque on, and a servo cannot be read, or a port was gone since the
-                robot was armed; all torque is off.
+            HardwareError: Torque on, and a servo cannot be read, or a port was gone or a joint
+                lost its torque since the robot was armed; all torque is off.
         """
         self._gains = b""
         if on:
+            wanted = self._couplings.servo_gains(self.joints.stiffness)
+            gains, _ = self.units.p_registers(wanted)
             try:
-                return self._switch_on()
+                return self._torque.on(self.links, gains)
             except HardwareError:
                 self.set_torque(False)
                 raise
-        return self._joined([link.switch_off() for link in self.links])
+        return self._torque.off(self.links)
 
     def rearm(self) -> TorqueState:
         """Check and set every servo again, then switch torque on at the present pose.
@@ -230,6 +241,7 @@ class ServoBackend:
         self.configure()
         for link in self.links:
             link.rearmed()
+        self.lost_joints = {}
         return self.set_torque(True)
 
     def disconnect(self) -> None:
@@ -240,58 +252,12 @@ class ServoBackend:
             self._imu_link.close()
         self.links, self._imu_link = [], None
 
-    def _switch_on(self) -> TorqueState:
-        if barred := [link.bus.port.url for link in self.links if link.barred]:
-            raise HardwareError(
-                f"{', '.join(barred)} went away since the robot was armed; torque stays off "
-                "until it is armed again"
-            )
-        wanted = self._couplings.servo_gains(self.joints.stiffness)
-        gains, _ = self.units.p_registers(wanted)
-        return self._joined([link.torque.on(gains[link.line.rows]) for link in self.links])
-
-    def _joined(self, states: list[TorqueState]) -> TorqueState:
-        """Return the torque of the joints from that of the servos of each bus.
-
-        A joint that two servos move is on, or unknown, if one of them is.
-        """
-        on: Mask = np.zeros(len(self.joints), dtype=bool)
-        unknown: Mask = np.zeros_like(on)
-        for link, state in zip(self.links, states, strict=True):
-            on[link.line.rows], unknown[link.line.rows] = state.on, state.unknown
-        on, unknown = self._couplings.any(on), self._couplings.any(unknown)
-        return TorqueState(on, unknown & ~on)
-
-    def _note_answers(self, line: ServoLine, valid: Mask, armed: bool) -> bool:
-        """Date the answers that came; return whether a watchdog may have fired before them."""
-        now = self.clock.now()
-        rows = line.rows if valid.all() else line.rows[valid]
-        silent = armed and rows.size > 0 and now - self._answered[rows].min() > self._patience
-        self._answered[rows] = now
-        if line.imu_fresh:
-            self._imu_at = now
-        return bool(silent)
-
-    def _observe(self) -> Observation:
-        now = self.clock.now()
-        position, velocity, torque = self.units.si(self._counts)
-        voltage, temperature = self._health.copy()
-        answered = self._answered
-        if self._couplings:
-            position, velocity = map(self._couplings.joints, (position, velocity))
-            torque = self._couplings.torques(torque)
-            answered = self._couplings.oldest(answered)
-        state = JointState(position, velocity, torque, voltage, temperature, now - answered)
-        return Observation(now, state, self._imu_state(now), self._contacts, None)
-
-    def _imu_state(self, now: float) -> ImuState | None:
-        if self.imu is not None:
-            return self.imu.state(now)
-        for link in self.links:
-            line = link.line
-            if line.board is not None and line.imu is not None:
-                return line.board.decode(line.imu, now - self._imu_at)
-        return None
+    def _see_to(self, links: Sequence[ServoLink]) -> None:
+        """Look after whoever was silent, signals an error or has lost its torque."""
+        self.lost_joints = self._torque.losses(links)
+        if any(link.check.woke for link in links):
+            self.watchdog_trips += sum(link.clear_watchdogs() for link in links)
+        self._alerts.update(links)
 
     def _send_gains(self, stiffness: Array) -> None:
         wanted = self._couplings.servo_gains(stiffness)

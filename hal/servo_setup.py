@@ -11,12 +11,13 @@ from hal.errors import UsageError
 from hal.families import family_of
 from hal.imu.opencr import POWER, POWER_UP_TIME, OpenCr
 from hal.imu.source import ImuSource
+from hal.imu_link import ImuLink
 from hal.joints import Array, Joints, Mask
 from hal.plausibility import Plausibility
 from hal.port import Port
 from hal.replug import Opener
 from hal.servo_line import ServoLine
-from hal.servo_link import BusPort, ImuLink, ServoLink
+from hal.servo_link import BusPort, ServoLink
 from hal.servo_model import ServoMount
 from hal.servo_settings import assert_settings
 from hal.units import Units

@@ -48,6 +48,9 @@ class ServoTorque:
         here = np.clip(self._here(), 0, self._last)
         if self._watch is not None:
             self._set(self._watch, np.zeros_like(here))
+        mark = self.line.bus.family.mark
+        if mark is not None and mark.armed is not None:
+            self._set(self._registers[mark.name], np.full_like(here, mark.armed))
         for gain, rows, _ in self.line.gains:
             self._set(gain.register, gain.counts(gains[rows]), rows)
         self.powered = True

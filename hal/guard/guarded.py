@@ -6,7 +6,7 @@ from math import isfinite
 
 import numpy as np
 
-from hal.backend import Backend, Clock, Rearmable
+from hal.backend import Backend, Clock, Rearmable, TorqueWatched
 from hal.command import FIELDS, JointCommand
 from hal.errors import (
     PortError,
@@ -18,6 +18,7 @@ from hal.errors import (
 from hal.guard.limits import SafetyLimits, StopPolicy
 from hal.joints import Array, Joints
 from hal.observation import Observation
+from hal.torque_loss import SILENT, torque_lost
 from hal.torque_state import TorqueState
 
 CROUCH_SECONDS = 1.5
@@ -52,6 +53,8 @@ class GuardedBackend:
         self._buffer = np.empty_like(self.limits.lower)
         # Where a limit is infinite, clamping does not show that a value is.
         self._unlimited = not np.isfinite([self.limits.lower, self.limits.upper]).all()
+        self._watched = self.backend if isinstance(self.backend, TorqueWatched) else None
+        self._told = False  # of joints that have lost their torque
         # Bound once: these run on every tick.
         self._write: Callable[[JointCommand], JointCommand] = self.backend.write
         self._collect: Callable[[], Observation] = self.backend.collect
@@ -115,19 +118,33 @@ class GuardedBackend:
         """Return the state last asked for.
 
         Raises:
+            TorqueLostError: A joint has lost its torque since it was armed; said once.
             StaleStateError: A joint has not answered for longer than `limits.max_age`.
         """
         observation = self._collect()
         self._last = observation
+        if self._watched is not None:
+            self._check_torque(self._watched)
         age = observation.joints.age
         if age.max() > self.limits.max_age:
-            worst = int(np.argmax(age))
-            raise StaleStateError(
-                f"joint {self.joints.names[worst]!r} has not answered for {age[worst]:.2f} s "
-                f"(limit {self.limits.max_age:.2f} s); check its cable and power, "
-                "then run `windup health`"
-            )
+            raise self._stale(age)
         return observation
+
+    def _check_torque(self, backend: TorqueWatched) -> None:
+        told, self._told = self._told, bool(backend.lost_joints)
+        if self._told and not told:
+            raise torque_lost(backend.lost_joints)
+
+    def _stale(self, age: Array) -> StaleStateError:
+        worst = int(np.argmax(age))
+        name = self.joints.names[worst]
+        others = int((age > self.limits.max_age).sum()) - 1
+        who = f"joint {name!r} has" if not others else f"joint {name!r} and {others} more have"
+        doubts = self._watched.doubtful_joints if self._watched is not None else {}
+        return StaleStateError(
+            f"{who} not answered for {age[worst]:.2f} s "
+            f"(limit {self.limits.max_age:.2f} s); {doubts.get(name, SILENT)}"
+        )
 
     def write(self, command: JointCommand) -> JointCommand:
         """Clamp `command` into the limits, send it, and return what the joints really got.
@@ -153,6 +170,9 @@ class GuardedBackend:
     def stop(self, policy: StopPolicy | None = None) -> TorqueState:
         """Carry out the stop policy and return the torque as it was read back.
 
+        A robot with a joint that has no torque, or may have none, goes limp at once: a crouch, or
+        a pose that is held, would be a fall.
+
         Args:
             policy: What to do instead of the robot's own policy.
 
@@ -161,6 +181,8 @@ class GuardedBackend:
             TorqueUnknownError: A joint could not be read back.
         """
         policy = policy or self.stop_policy
+        if self._crippled():
+            policy = "limp"
         if policy == "hold":
             self._write(JointCommand.hold(self.joints, self._pose()))
             return TorqueState.known(np.ones(len(self.joints), dtype=bool))
@@ -177,6 +199,11 @@ class GuardedBackend:
                 "or give the port back"
             )
         return state
+
+    def _crippled(self) -> bool:
+        """Return whether a joint has lost its torque, or may have."""
+        watched = self._watched
+        return watched is not None and bool(watched.lost_joints or watched.doubtful_joints)
 
     def _pose(self) -> Array:
         last = self._last or self.read()
