@@ -100,6 +100,10 @@ class TorqueLostError(HardwareError):
     """A joint has no torque any more though nobody of ours switched it off."""
 
 
+class GuardianError(HardwareError):
+    """The process that stops the robot when this one dies has died itself, or does not react."""
+
+
 class RefusedError(HardwareError):
     """A servo answered that it will not do what it was told."""
 

@@ -63,6 +63,7 @@ class ServoBackend:
         lost_joints: Joint name to how it has lost its torque since the robot was armed. It gets
             no goal until `rearm`.
         watchdog_trips: Servos that had frozen for silence, and were cleared.
+        heartbeat: Called again and again while torque is switched, which takes a while.
     """
 
     def __init__(
@@ -97,6 +98,7 @@ class ServoBackend:
         self._realised = np.empty((2, n))
         self._realised[1] = self._couplings.joint_gains(self.units.damping)
         self._gains = b""
+        self.heartbeat: Callable[[], None] = lambda: None
 
     @property
     def lines(self) -> list[ServoLine]:
@@ -202,6 +204,12 @@ class ServoBackend:
             if link.check.withheld is not None:
                 real[3:, link.line.rows[link.check.withheld]] = 0.0
         return JointCommand(real)
+
+    def goal_counts(self, pose: Array) -> Array:
+        """Return the servos' goals (n,) for a pose of the joints (n,) rad, counts."""
+        goal = self._couplings.servos(pose) if self._couplings else pose
+        counts: Array = np.clip(np.rint(self.units.counts(goal)), 0.0, self.units.last)
+        return counts
 
     def bus_errors(self) -> Mapping[str, int]:
         """Return kind of error to how often it has happened, over all buses."""

@@ -61,7 +61,7 @@ def test_a_servo_that_restarts_under_a_standing_robot_stays_limp_until_it_is_arm
                 enabled.append(torque_enable(bus, address))
             return real
 
-        robot.backend._write = write
+        robot.backend._send = write
         stands_until(bus, robot, TorqueLostError, f"^{joint} lost its torque: its servo restarted")
         assert not any(enabled) and len(enabled) > 10
         assert not any(device.driving for device in bus.world.devices)
