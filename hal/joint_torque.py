@@ -6,10 +6,16 @@ import numpy as np
 
 from hal.coupling import Couplings
 from hal.errors import HardwareError
+from hal.heartbeat import Heartbeat
 from hal.joints import Array, Joints, Mask
 from hal.servo_link import ServoLink
 from hal.torque_loss import SILENT, Loss
 from hal.torque_state import TorqueState
+
+BOOT_TIME = 0.5
+"""How long a servo that is silent may boot until it can be read as off, s (assumed)."""
+PAUSE = 20e-3
+"""Between two attempts to switch off who was silent, s."""
 
 
 class JointTorque:
@@ -23,28 +29,47 @@ class JointTorque:
     def __init__(self, joints: Joints, couplings: Couplings) -> None:
         self._joints, self._couplings = joints, couplings
 
-    def on(self, links: Sequence[ServoLink], gains: Array) -> TorqueState:
+    def on(self, links: Sequence[ServoLink], gains: Array, heartbeat: Heartbeat) -> TorqueState:
         """Switch torque on at the present pose, P registers (n,) `gains`.
 
         Raises:
             HardwareError: A servo cannot be read or does not take it, or the robot has to be armed
-                again, because a port was gone or a joint has lost its torque.
+                again, because a port was gone or a joint has lost its torque. Torque has been
+                switched off everywhere; the message says whether that could be read back.
         """
+        try:
+            self._check_armable(links)
+            return self._joined(links, [link.switch_on(gains[link.line.rows]) for link in links])
+        except HardwareError as error:
+            state = self.off(links, heartbeat)
+            where = state.names(self._joints, ~state.off)
+            now = f"is not known to be off at {where}" if where else "is off"
+            raise type(error)(f"{error}; torque {now}") from None
+
+    def off(self, links: Sequence[ServoLink], heartbeat: Heartbeat) -> TorqueState:
+        """Switch torque off and return what was read back.
+
+        Whoever answers is off and read at once; then the silent ones are given time to boot.
+        """
+        for link in links:
+            link.send_off()
+        states = [link.switch_off() for link in links]
+        until = max((link.clock.now() for link in links), default=0.0) + BOOT_TIME
+        while not all(state.all_off for state in states) and links[0].clock.now() < until:
+            heartbeat()
+            links[0].clock.wait_until(links[0].clock.now() + PAUSE)
+            states = [link.insist_off(s) for link, s in zip(links, states, strict=True)]
+        return self._joined(links, states)
+
+    def _check_armable(self, links: Sequence[ServoLink]) -> None:
         if barred := [link.bus.port.url for link in links if link.barred]:
             raise HardwareError(
-                f"{', '.join(barred)} went away since the robot was armed; torque stays off "
-                "until it is armed again"
+                f"{', '.join(barred)} went away since the robot was armed; arm it again by `rearm`"
             )
         if lost := self.losses(links):
             raise HardwareError(
-                f"{', '.join(lost)} lost torque since the robot was armed; torque stays off "
-                "until it is armed again"
+                f"{', '.join(lost)} lost torque since the robot was armed; arm it again by `rearm`"
             )
-        return self._joined(links, [link.switch_on(gains[link.line.rows]) for link in links])
-
-    def off(self, links: Sequence[ServoLink]) -> TorqueState:
-        """Switch torque off and return what was read back."""
-        return self._joined(links, [link.switch_off() for link in links])
 
     def losses(self, links: Sequence[ServoLink]) -> dict[str, Loss]:
         """Return joint name to how it has lost its torque since the robot was armed."""

@@ -6,11 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from hal.backend import Clock
+from hal.bus import Bus
 from hal.clock import WallClock
 from hal.command import JointCommand, shifted_goal
 from hal.coupling import Coupling, Couplings
 from hal.errors import HardwareError, PortError
 from hal.exchange import TURNAROUND
+from hal.heartbeat import Heartbeat, beating, no_heartbeat
 from hal.imu.opencr import OpenCr
 from hal.imu.source import ImuSource
 from hal.imu_link import ImuLink
@@ -32,7 +34,7 @@ from hal.wiring import check_mounts
 
 __all__ = ["BusPort", "ServoBackend"]
 
-ATTEMPTS = 10
+ATTEMPTS = 30
 
 
 class ServoBackend:
@@ -98,12 +100,16 @@ class ServoBackend:
         self._realised = np.empty((2, n))
         self._realised[1] = self._couplings.joint_gains(self.units.damping)
         self._gains = b""
-        self.heartbeat: Callable[[], None] = lambda: None
+        self.heartbeat: Heartbeat = no_heartbeat
 
     @property
     def lines(self) -> list[ServoLine]:
         """The servos of each bus."""
         return [link.line for link in self.links]
+
+    @property
+    def _buses(self) -> list[Bus]:
+        return [link.bus for link in self.links]
 
     @property
     def alert_kinds(self) -> tuple[str, ...]:
@@ -133,7 +139,7 @@ class ServoBackend:
             UsageError: Some ports live on the wall's time and some in a virtual world.
         """
         self.disconnect()
-        build = lines_of(self.mounts, self.units, self.board)
+        build = lines_of(self.joints, self.mounts, self.units, self.board)
         self.links, self._imu_link, self.clock = open_links(
             build, self._ports, self.imu, self._watchdog, self._opener
         )
@@ -146,7 +152,8 @@ class ServoBackend:
             HardwareError: Something is not as wired; nothing has been written.
         """
         buses = {link.line.mounts[0].bus: link.bus for link in self.links}
-        set_up(self.joints, self.mounts, buses, self.board)
+        with beating(self._buses, self.heartbeat):
+            set_up(self.joints, self.mounts, buses, self.board)
         for line in self.lines:
             line.bus.exchange.turnaround = TURNAROUND
             line.reads.probe_fast()
@@ -223,15 +230,12 @@ class ServoBackend:
                 lost its torque since the robot was armed; all torque is off.
         """
         self._gains = b""
-        if on:
+        with beating(self._buses, self.heartbeat):
+            if not on:
+                return self._torque.off(self.links, self.heartbeat)
             wanted = self._couplings.servo_gains(self.joints.stiffness)
             gains, _ = self.units.p_registers(wanted)
-            try:
-                return self._torque.on(self.links, gains)
-            except HardwareError:
-                self.set_torque(False)
-                raise
-        return self._torque.off(self.links)
+            return self._torque.on(self.links, gains, self.heartbeat)
 
     def rearm(self) -> TorqueState:
         """Check and set every servo again, then switch torque on at the present pose.
@@ -242,6 +246,7 @@ class ServoBackend:
             PortError: A port is still gone.
             HardwareError: Something is not as wired; torque stays off.
         """
+        self.heartbeat()
         if self.lost:
             gone = "; ".join(self.lost.values())
             raise PortError(f"cannot arm again: {gone}")

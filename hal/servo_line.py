@@ -1,7 +1,7 @@
 """The joints on one bus: what their answers mean, and where in the arrays they go."""
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -30,10 +30,12 @@ class ServoLine:
         rows: Their joints' indices.
         where: The same, as a slice where they are one.
         mounts: How they sit.
+        names: Their joints' names; () where nobody knows them.
         reads: What a cycle asks.
         check: The plausibility of readings; None where nobody reads them.
         imu: The last bytes of the OpenCR, or None while there are none.
         imu_fresh: Did they come with the last answers?
+        answered: (servos,) bool: who answered the last cycle, believably or not.
         calm: Did all servos answer, believably, and does none signal an error or lack torque?
         slack: (servos,) bool: whose registers said that it does not drive, or has restarted; who
             sees to it clears it.
@@ -48,6 +50,7 @@ class ServoLine:
         rows: Sequence[int],
         board: OpenCr | None = None,
         check: Plausibility | None = None,
+        names: Sequence[str] = (),
     ) -> None:
         self.bus, self.mounts, self.check = bus, tuple(mounts), check
         self.ids = tuple(mount.id for mount in mounts)
@@ -55,9 +58,10 @@ class ServoLine:
         # One bus in joint order is the rule, and a slice costs less than an index.
         whole = self.rows.tolist() == list(range(len(self.ids)))
         self.where: Rows = slice(len(self.ids)) if whole else self.rows
-        self.board = board
+        self.names, self.board = tuple(names), board
         self.imu: bytes | None = None
         self.imu_fresh = self.calm = False
+        self.answered: Mask = np.zeros(len(self.ids), dtype=bool)
         self.slack: Mask = np.zeros(len(self.ids), dtype=bool)
         self._volt = bus.family.registers["present_voltage"].unit
         self._volts: deque[tuple[float, float]] = deque(maxlen=100)
@@ -69,6 +73,12 @@ class ServoLine:
         ]
         self.reads = LineReads(bus, self.ids, [mount.model for mount in mounts], board)
         self._asked = self.reads.next()
+
+    def who(self, rows: Iterable[int]) -> str:
+        """Return the names of some servos, as "l_knee (id 13)" or "id 13"."""
+        if not self.names:
+            return ", ".join(f"id {self.ids[row]}" for row in rows)
+        return ", ".join(f"{self.names[row]} (id {self.ids[row]})" for row in rows)
 
     def goals_of(self, ids: Sequence[int]) -> CyclicWrite:
         """Return what sends goals, counts, to some of the servos."""
@@ -92,8 +102,9 @@ class ServoLine:
         answered = self.bus.exchange.collect()
         self.calm = False
         if not answered.size:
-            return np.zeros(servos, dtype=bool)
-        valid = answered[:servos]
+            self.answered = np.zeros(servos, dtype=bool)
+            return self.answered
+        self.answered = valid = answered[:servos]
         self.imu_fresh = self.board is not None and bool(answered[-1])
         if self.imu_fresh:
             self.imu = asked.read.params(servos)

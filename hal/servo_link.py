@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from hal.backend import Clock
 from hal.bus import Bus
-from hal.errors import HardwareError, PortError
+from hal.errors import PortError
 from hal.joints import Array, Mask
 from hal.port import Port
 from hal.protocols.cyclic import CyclicWrite
@@ -88,7 +88,8 @@ class ServoLink:
                 valid = self.line.collect(counts, health, error)
                 self.calm, self.heard = self.line.calm, self.clock.now()
                 if self.torque.powered:
-                    self.calm &= self.check.update(valid, error, self.heard, self.torque.armed)
+                    watchdog = self.torque.watchdog if self.torque.armed else 0.0
+                    self.calm &= self.check.update(error, self.heard, watchdog)
                 return valid
             except PortError as gone:
                 self._lose(gone)
@@ -125,6 +126,14 @@ class ServoLink:
         self.check.clear()
         return self.torque.on(gains)
 
+    def send_off(self) -> None:
+        """Tell all servos to go off, and wait for nobody."""
+        if self.lost is None:
+            try:
+                self.torque.send_off()
+            except PortError as error:
+                self._lose(error)
+
     def switch_off(self) -> TorqueState:
         """Switch torque off and return what was read back of the servos."""
         self._dropped = False  # from now on it is not lost, but off
@@ -134,6 +143,19 @@ class ServoLink:
             except PortError as error:
                 self._lose(error)
         return TorqueState.unread(len(self.line.ids))
+
+    def insist_off(self, state: TorqueState) -> TorqueState:
+        """Switch off once more who was not read as off; open a port that is back for that."""
+        if state.all_off:
+            return state
+        try:
+            if self.lost is not None:
+                self._replug.hurry()
+                self._open(self.clock.now())
+            return state if self.lost is not None else self.torque.insist(state)
+        except PortError as error:
+            self._lose(error)
+            return state
 
     def clear_watchdogs(self) -> int:
         """Clear watchdogs that have fired; return how many had."""
@@ -180,21 +202,21 @@ class ServoLink:
     def _revive(self) -> None:
         """Open the port, if it is back, and make sure that torque is off."""
         now = self.clock.now()
-        if self.lost is not None:
-            port = self._replug.again(now)
-            if port is None:
-                return
-            self.line.bus.move_to(port)
-            self.lost, self._look_again = None, now
-        if now >= self._look_again:
+        self._open(now)
+        if self.lost is None and now >= self._look_again:
             self._look_again = now + RETRY
             try:
                 self._unsure = not self.torque.off(attempts=1).all_off
                 self._tell_dropped()
             except PortError as error:
                 self._lose(error)
-            except HardwareError:
-                self._unsure = True
+
+    def _open(self, now: float) -> None:
+        """Open the port if it is gone and has come back."""
+        port = self._replug.again(now) if self.lost is not None else None
+        if port is not None:
+            self.line.bus.move_to(port)
+            self.lost, self._look_again = None, now
 
     def _tell_dropped(self) -> None:
         """Once torque has read as off again, say that it was lost with the port."""

@@ -19,13 +19,28 @@ class Suspect(NamedTuple):
 
     Attributes:
         id: Its id.
-        bits: The alert bits of its last answer.
         silent: Was it silent for so long that it may have restarted?
     """
 
     id: int
-    bits: int
     silent: bool
+
+
+class Readback(NamedTuple):
+    """What one servo says of its torque.
+
+    Attributes:
+        values: The family's registers of torque, by name.
+        bits: Alert bits of the answer.
+    """
+
+    values: dict[str, int]
+    bits: int
+
+    @property
+    def drives(self) -> bool:
+        """Is torque on?"""
+        return all(self.values.values())
 
 
 class Evidence(NamedTuple):
@@ -53,22 +68,16 @@ def examine(line: ServoLine, suspects: Sequence[Suspect], watched: bool) -> dict
         watched: Is their Bus Watchdog running, where they have one?
     """
     bus, family = line.bus, line.bus.family
-    ids = [suspect.id for suspect in suspects]
-    torque = _torque(bus, ids)
-    slack = [id for id, values in torque.items() if _is_slack(family, values)]
+    back = _read_back(bus, [suspect.id for suspect in suspects])
+    slack = [id for id, seen in back.items() if _is_slack(family, seen)]
     if slack and family.dialect.weak:  # one broken frame in 256 looks good
-        again = _torque(bus, slack)
-        torque = {id: values for id, values in torque.items() if id not in slack} | again
-    unclear = [
-        suspect
-        for suspect in suspects
-        if suspect.id in torque
-        and (_is_slack(family, torque[suspect.id]) or suspect.bits & family.weakening)
-    ]
-    found: dict[int, Loss | None] = dict.fromkeys(torque)
+        again = _read_back(bus, slack)
+        back = {id: seen for id, seen in back.items() if id not in slack} | again
+    unclear = [suspect for suspect in suspects if _is_unclear(family, back.get(suspect.id))]
+    found: dict[int, Loss | None] = dict.fromkeys(back)
     for suspect in unclear:
         del found[suspect.id]
-    for id, evidence in _evidence(bus, unclear, torque, watched).items():
+    for id, evidence in _evidence(bus, unclear, back, watched).items():
         found[id] = judge(family, evidence, line.lowest_supply())
     return found
 
@@ -86,49 +95,53 @@ def judge(family: Family, evidence: Evidence, volts: float) -> Loss | None:
     return SWITCHED_OFF if family.latching else UNEXPLAINED
 
 
-def _torque(bus: Bus, ids: Sequence[int]) -> dict[int, dict[str, int]]:
-    """Return id to the values of the family's registers of torque, of those who answered."""
-    registers = [bus.family.registers[name] for name in bus.family.torque]
-    begin = bus.family.torque_span(0).address
-    answers = bus.bulk_read([bus.family.torque_span(id) for id in ids])
-    places = [
-        (each, slice(each.address - begin, each.address - begin + each.size)) for each in registers
-    ]
-    return {
-        id: {register.name: register.decode(data[at]) for register, at in places}
-        for id, data in answers.items()
-    }
+def _read_back(bus: Bus, ids: Sequence[int]) -> dict[int, Readback]:
+    """Return id to what the servo says, of those who answered."""
+    family = bus.family
+    registers = [family.registers[name] for name in family.torque]
+    begin = family.torque_span(0).address
+    found = {}
+    for id, status in bus.statuses([family.torque_span(id) for id in ids]).items():
+        values = {
+            each.name: each.decode(status.params[each.address - begin :][: each.size])
+            for each in registers
+        }
+        found[id] = Readback(values, status.error & family.alert)
+    return found
 
 
-def _is_slack(family: Family, values: dict[str, int]) -> bool:
+def _is_slack(family: Family, seen: Readback) -> bool:
     """Return whether a servo does not drive, or has restarted and may drive to an old goal."""
     mark = family.mark
-    again = mark is not None and values.get(mark.name) == mark.restarted
-    return again or not all(values.values())
+    again = mark is not None and seen.values.get(mark.name) == mark.restarted
+    return again or not seen.drives
+
+
+def _is_unclear(family: Family, seen: Readback | None) -> bool:
+    """Return whether it takes more to know whether a servo that has answered has its torque."""
+    return seen is not None and (_is_slack(family, seen) or bool(seen.bits & family.weakening))
 
 
 def _evidence(
-    bus: Bus, suspects: Sequence[Suspect], torque: dict[int, dict[str, int]], watched: bool
+    bus: Bus, suspects: Sequence[Suspect], back: dict[int, Readback], watched: bool
 ) -> dict[int, Evidence]:
     """Return id to all that its registers say, as far as it could be read."""
     if not suspects:
         return {}
     family, mark = bus.family, bus.family.mark
     ids = [suspect.id for suspect in suspects]
-    errors = {suspect.id: suspect.bits for suspect in suspects}
+    errors = {id: back[id].bits for id in ids}
     if not family.errors_in_answers:
         errors = _values(bus, ids, "hardware_error")
     unloading = _values(bus, ids, family.shutdown)
     # Where no register tells, silence does.
     again = {suspect.id: suspect.silent for suspect in suspects}
     if mark is not None and mark.name in family.torque:
-        again = {id: torque[id][mark.name] == mark.restarted for id in ids}
+        again = {id: back[id].values[mark.name] == mark.restarted for id in ids}
     elif mark is not None and watched:
         again = {id: v == mark.restarted for id, v in _values(bus, ids, mark.name).items()}
     known = [id for id in ids if id in errors and id in unloading and id in again]
-    return {
-        id: Evidence(all(torque[id].values()), again[id], errors[id], unloading[id]) for id in known
-    }
+    return {id: Evidence(back[id].drives, again[id], errors[id], unloading[id]) for id in known}
 
 
 def _values(bus: Bus, ids: Sequence[int], name: str) -> Values:

@@ -7,7 +7,7 @@ a shutdown the next one would drive a joint from wherever it hangs.
 import numpy as np
 import numpy.typing as npt
 
-from hal.joints import Mask
+from hal.joints import Array, Mask
 from hal.servo_line import ServoLine
 from hal.torque_cause import Suspect, examine
 from hal.torque_loss import Loss
@@ -17,6 +17,9 @@ MISSES = 4
 SILENCE = 0.1
 """Time without a cycle after which any servo may have, s: booting takes longer (assumed)."""
 
+PATIENCE = 3
+"""Cycles that a suspect waits at most for one that all answer, to be read back in."""
+
 Bits = npt.NDArray[np.uint8]
 
 
@@ -24,14 +27,14 @@ class TorqueCheck:
     """Finds the servos of one line that have lost their torque since it was switched on.
 
     A servo that was silent, signals an error, or whose registers say that it does not drive is
-    suspect: it gets no goal until it has been read back. Then either it has its torque, or it
-    has lost it, until `clear`.
+    suspect until it has been read back: then either it has its torque, or it has lost it, until
+    `clear`. Suspects get no goal where a goal may switch torque on.
 
     Attributes:
         withheld: (servos,) bool, who gets no goal; None while all do.
         losses: Row within the line to how the torque was lost.
         suspects: (servos,) bool, whose torque is unknown.
-        woke: Has somebody answered the last cycle who had been silent?
+        woke: Has somebody answered the last cycle whose Bus Watchdog may have fired?
     """
 
     def __init__(self, line: ServoLine) -> None:
@@ -44,33 +47,32 @@ class TorqueCheck:
         self.withheld: Mask | None = None
         self.losses: dict[int, Loss] = {}
         self.suspects: Mask = np.zeros(servos, dtype=bool)
+        self.woke = False
         self._lost: Mask = np.zeros(servos, dtype=bool)
         self._silent: Mask = np.zeros(servos, dtype=bool)
         self._missed = np.zeros(servos, dtype=np.int64)
+        self._heard: Array = np.full(servos, np.inf)
         self._bits: Bits = np.zeros(servos, dtype=np.uint8)
-        self._calm, self._then = True, np.inf
-        self.woke = False
+        self._calm, self._then, self._waited = True, np.inf, 0
         self.line.slack[:] = False
 
-    def update(self, valid: Mask, error: Bits, now: float, watched: bool) -> bool:
-        """Take in a cycle, and read back the suspects that have answered it.
+    def update(self, error: Bits, now: float, watchdog: float) -> bool:
+        """Take in the line's last cycle, and read back the suspects that have answered it.
 
         Returns whether nothing was to be seen to.
 
         Args:
-            valid: (servos,) bool, who answered.
             error: (n,) error bytes of all joints of the robot.
             now: When, s.
-            watched: Is the Bus Watchdog running, where the servos have one?
+            watchdog: Silence after which the servos' Bus Watchdog fires, s; 0 where none runs.
         """
-        late, self._then = now - self._then > SILENCE, now
+        late = now - self._then > SILENCE
         if self._calm and self.line.calm and not late:
-            self.woke = False
+            self._then, self.woke = now, False
             return True
-        self._look(valid, self.line.errors(error), late)
-        self.woke = bool((self._silent & valid).any())
-        if (ask := self.suspects & valid & ~self._lost).any():
-            self._read_back(np.flatnonzero(ask).tolist(), watched)
+        self._look(self.line.errors(error), now, late, watchdog)
+        if (ask := self.suspects & self.line.answered).any() and self._is_time():
+            self._read_back(np.flatnonzero(ask).tolist(), watchdog > 0.0)
         self._settle()
         return False
 
@@ -80,19 +82,29 @@ class TorqueCheck:
         self._lost[:] = True
         self._settle()
 
-    def _look(self, valid: Mask, errors: Bits, late: bool) -> None:
+    def _look(self, errors: Bits, now: float, late: bool, watchdog: float) -> None:
         """Suspect who was silent, who newly signals an error, whose torque read as off."""
-        alert = np.uint8(self.line.bus.family.alert)
-        bits = np.where(valid, errors & alert, self._bits)
-        self._missed = np.where(valid, 0, self._missed + 1)
+        answered = self.line.answered
+        if self._calm:
+            self._heard[:] = self._then
+        self.woke = watchdog > 0.0 and bool((now - self._heard[answered] > 0.9 * watchdog).any())
+        self._heard[answered], self._then = now, now
+        bits = np.where(answered, errors & self.line.bus.family.alert, self._bits)
+        self._missed = np.where(answered, 0, self._missed + 1)
         self._silent |= late | (self._missed >= MISSES)
         self.suspects |= self._silent | self.line.slack | ((bits & ~self._bits) != 0)
-        self._bits = bits
+        self.suspects &= ~self._lost
+        self._bits = bits.astype(np.uint8)
         self.line.slack[:] = False
 
+    def _is_time(self) -> bool:
+        """Return whether to ask now: rather in a cycle that all have answered, but soon."""
+        self._waited += 1
+        return self._waited >= PATIENCE or bool(self.line.answered.all())
+
     def _read_back(self, rows: list[int], watched: bool) -> None:
-        ids = self.line.ids
-        asked = [Suspect(ids[row], int(self._bits[row]), bool(self._silent[row])) for row in rows]
+        ids, self._waited = self.line.ids, 0
+        asked = [Suspect(ids[row], bool(self._silent[row])) for row in rows]
         found = examine(self.line, asked, watched)
         for row in rows:
             if ids[row] in found:
@@ -104,6 +116,7 @@ class TorqueCheck:
     def _settle(self) -> None:
         self.suspects &= ~self._lost
         self._silent &= self.suspects
-        withheld = self.suspects | self._lost
+        wakes = self.line.bus.family.goal_wakes
+        withheld = self.suspects | self._lost if wakes else self._lost.copy()
         self.withheld = withheld if withheld.any() else None
-        self._calm = self.withheld is None and not self._missed.any()
+        self._calm = not (self.suspects.any() or self._lost.any() or self._missed.any())

@@ -69,6 +69,7 @@ DYNAMIXEL_1 = Family(
     alert=sum(1 << bit for bit in HARDWARE_ERRORS),
     errors=HARDWARE_ERRORS,
     shutdown="shutdown",
+    torque_bytes=12,
     torque=("torque_enable", "torque_limit"),
     mark=Mark("torque_limit", FULL, MARKED),
     latching=True,

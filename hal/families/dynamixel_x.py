@@ -69,6 +69,7 @@ DYNAMIXEL_X = Family(
     alert=0x80,
     errors=HARDWARE_ERRORS,
     shutdown="shutdown",
+    torque_bytes=7,
     mark=Mark("bus_watchdog", 0),
     latching=True,
     errors_in_answers=False,

@@ -109,6 +109,7 @@ class Family:
         check: `health`, and before it the registers of `torque`.
         check_alone: Can one servo be read further on than the others?
         torque: Registers each of which, at 0, says that a servo does not drive.
+        torque_bytes: How many bytes hold them, from the first of them on.
         mark: What shows a restart; None where nothing does.
         shutdown: The register whose bits say which errors end torque, or weaken it.
         weakening: Bits of errors that weaken torque instead of ending it.
@@ -136,6 +137,7 @@ class Family:
     alert: int
     errors: Mapping[int, str]
     shutdown: str
+    torque_bytes: int
     torque: tuple[str, ...] = ("torque_enable",)
     mark: Mark | None = None
     weakening: int = 0
@@ -165,11 +167,13 @@ class Family:
         return self.bauds[baud]
 
     def torque_span(self, id: int) -> Span:
-        """Return where the registers of `torque` stand in one servo."""
-        registers = [self.registers[name] for name in self.torque]
-        first = min(register.address for register in registers)
-        last = max(register.address + register.size for register in registers)
-        return Span(id, first, last - first)
+        """Return where the registers of `torque` stand in one servo.
+
+        It has a size that nothing else has that is read: a late answer to another question cannot
+        pass for torque that is on, or off.
+        """
+        address = self.registers["torque_enable"].address
+        return Span(id, address, self.torque_bytes)
 
     def cycle(self, models: Sequence[ServoModel]) -> Cycle:
         """Return what the cycle of a line of `models` reads."""

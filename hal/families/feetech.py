@@ -87,6 +87,7 @@ FEETECH_STS = Family(
     alert=_ALERT,
     errors=HARDWARE_ERRORS,
     shutdown="unloading_condition",
+    torque_bytes=10,
     torque=("torque_enable", "torque_limit"),
     mark=Mark("torque_limit", FULL, MARKED),
     weakening=OVERLOAD,
@@ -107,5 +108,6 @@ FEETECH_SCS = Family(
     alert=_ALERT,
     errors=HARDWARE_ERRORS,
     shutdown="unloading_condition",
+    torque_bytes=5,
     weakening=OVERLOAD,
 )

@@ -19,6 +19,7 @@ from hal.errors import (
     UnsafeCommandError,
 )
 from hal.guard.limits import SafetyLimits, StopPolicy
+from hal.heartbeat import no_heartbeat
 from hal.joints import Array, Joints
 from hal.observation import Observation
 from hal.torque_loss import SILENT, torque_lost
@@ -28,10 +29,6 @@ CROUCH_SECONDS = 1.5
 TICK = 0.008
 REPLUG_TIME = 2.0
 """What a port that was plugged in again may take until it can be opened, s."""
-
-
-def no_heartbeat() -> None:
-    """Nobody watches whether commands come."""
 
 
 @dataclass
