@@ -28,6 +28,7 @@ from tools.scan import Scan
 from tools.stand import Stand
 from tools.step import Step
 from tools.stop import Stop
+from tools.stop_request import reason_of
 from tools.stride import Stride
 from tools.sweep import Sweep, separate
 from tools.synthesis import Synthesise
@@ -79,8 +80,8 @@ def run(arguments: list[str] | None = None) -> int:
         console.print(f"windup: {error}", markup=False, soft_wrap=True)
         _write_error(command, error)
         return error.exit_status
-    except KeyboardInterrupt:
-        console.print("windup: interrupted")
+    except KeyboardInterrupt as stop:
+        console.print(f"windup: {reason_of(stop)}", markup=False)
         return 130
     except BrokenPipeError:
         # Whoever read our words, such as `head`, has gone: what is left of them goes nowhere.

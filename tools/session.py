@@ -27,10 +27,11 @@ from sim_twin.backend import TwinClock
 from sim_twin.push import Push
 from sim_twin.twin import Twin
 from tools.interrupts import asked_to_end
+from tools.output import console
 from tools.protect import Protection
 from tools.stack import Stack
+from tools.stop_request import INTERRUPTED, asked_for, check_released, how_to_stop, stop_requests
 
-INTERRUPTED = "interrupted"
 # Called once a tick with the observation.
 Watch = Callable[[Observation], None]
 
@@ -141,6 +142,9 @@ class Session:
     def _arm(self, switch_on: Callable[[], TorqueState]) -> None:
         if not self.stack.may_arm:
             raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
+        check_released(self.backend.backend)
+        if self.stack.real:
+            console.print(f"arming {self.description.name}: {how_to_stop(self.backend.backend)}")
         if self.guardian is None or not self.guardian.alive:
             self.guardian = guardian_for(self.backend.backend, self.backend.stop_policy)
         self.armed = True
@@ -185,7 +189,8 @@ class Session:
         protected = None
         if self.protect and self._protection.possible and not down:
             controller = protected = self._protection.around(controller)
-        with asked_to_end() as asked:
+        keys = stop_requests(self.backend.backend, keys=self.stack.real)
+        with asked_to_end() as asked, keys as stop_asked:
             self.arm()
             begin = self.backend.clock.now()
 
@@ -195,6 +200,8 @@ class Session:
                     self.watch(observation)
                 if asked():
                     return INTERRUPTED
+                if (reason := stop_asked()) is not None:
+                    return reason
                 if protected is not None and protected.active:
                     return self._landed() if protected.finished else None
                 if self.fallen and not down:
@@ -205,8 +212,8 @@ class Session:
                 return "done" if over else None
 
             self._run(controller, end, rollouts)
-        if self.loop.reason == INTERRUPTED:
-            raise KeyboardInterrupt
+        if asked_for(self.loop.reason):
+            raise KeyboardInterrupt(self.loop.reason)
         return self.loop
 
     def _landed(self) -> str:
@@ -231,7 +238,7 @@ class Session:
                     report=self.loop,
                     recorder=self.telemetry,
                 )
-            if self.loop.reason == INTERRUPTED:
+            if asked_for(self.loop.reason):
                 self._stop_after_error()
         except WindupError as error:
             self.loop.reason = str(error)

@@ -20,6 +20,7 @@ from tools.report import WalkReport, summary
 from tools.robot import Robot
 from tools.step_models import check_learning, keep_learnt
 from tools.stepping import find_stepping
+from tools.stop_request import asked_for
 from tools.twin_options import TwinOptions
 from tools.walk_options import WalkOptions
 
@@ -88,7 +89,7 @@ class Walk(TwinOptions, Common):
             result = self._one(seeds[0], show=True)
             ok = result["reason"] == "done"
             write_json(self.json, "walk", result)
-            return 130 if result["reason"] == "interrupted" else 0 if ok else 1
+            return 130 if asked_for(result["reason"]) else 0 if ok else 1
         rows = list(self._many(seeds))
         whole = summary(rows)
         console.print(_sentence(whole))
