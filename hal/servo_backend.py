@@ -58,6 +58,7 @@ class ServoBackend:
         clamps: Clamp name to the number of commands it changed; "unarmed" are goals withheld.
         button: The buttons of the OpenCR: any of them is a stop.
         watchdog_trips: Servos that had frozen for silence, and were cleared.
+        heartbeat: Called again and again while torque is switched, which takes a while.
     """
 
     def __init__(
@@ -96,6 +97,7 @@ class ServoBackend:
         self._realised = np.empty((2, n))
         self._realised[1] = self._couplings.joint_gains(self.units.damping)
         self._gains = b""
+        self.heartbeat: Callable[[], None] = lambda: None
 
     @property
     def lines(self) -> list[ServoLine]:
@@ -198,6 +200,12 @@ class ServoBackend:
         real[0] = self._couplings.joints(angle) if self._couplings else angle
         real[3:] = self._realised
         return JointCommand(real)
+
+    def goal_counts(self, pose: Array) -> Array:
+        """Return the servos' goals (n,) for a pose of the joints (n,) rad, counts."""
+        goal = self._couplings.servos(pose) if self._couplings else pose
+        counts: Array = np.clip(np.rint(self.units.counts(goal)), 0.0, self.units.last)
+        return counts
 
     def bus_errors(self) -> Mapping[str, int]:
         """Return kind of error to how often it has happened, over all buses."""

@@ -1,6 +1,7 @@
 """Putting together what walks footprints, walking them, and how well each foot came down."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -24,7 +25,6 @@ from tools.build import body_of
 from tools.robot import Robot
 from tools.robot_file import load_beside
 from tools.stepping import FOOTPRINTS, find_stepping, whole_body_of
-from tools.stop_request import INTERRUPTED, reason_of
 
 
 class DirectedController(Controller, Protocol):
@@ -188,7 +188,7 @@ class DirectedWalk:
     prints: Sequence[Footprint]
     how: Directed
     falls: list[Footfall] = field(default_factory=list)
-    reason: str = INTERRUPTED
+    reason: str = "interrupted"
     seconds: float = 0.0
 
     @property
@@ -234,10 +234,8 @@ def walk_prints(robot: Robot, controller: DirectedController) -> DirectedWalk:
             walk.falls.append(Footfall(wanted, seen_from(seen, places[wanted.foot])))
         return "done" if controller.finished else None
 
-    try:
+    with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far it came
         walk.reason = robot.run(controller, until=until).reason
-    except KeyboardInterrupt as stop:  # the robot has stopped; the report says how far it came
-        walk.reason = reason_of(stop)
     walk.seconds = robot.loop.sim_time
     return walk
 

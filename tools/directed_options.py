@@ -16,7 +16,6 @@ from tools.directed import (
 )
 from tools.options import Common
 from tools.output import console, write_json
-from tools.stop_request import asked_for
 from tools.twin_options import TwinOptions
 
 
@@ -35,14 +34,14 @@ class DirectedOptions(TwinOptions, Common, ABC):
             walk = self._one(seed)
             self._say(walk)
             rows.append({"robot": self.robot, "seed": seed, **walk.record()})
-            if asked_for(walk.reason):
+            if walk.reason == "interrupted":
                 break
         if self.seeds is not None:
             good = sum(row["good"] for row in rows)
             console.print(f"{good} of {len(rows)} seeds put every foot where it should be")
         result = rows[0] if self.seeds is None else {"robot": self.robot, "rows": rows}
         write_json(self.json, command, result)
-        if asked_for(rows[-1]["reason"]):
+        if rows[-1]["reason"] == "interrupted":
             return 130
         return 0 if all(row["good"] for row in rows) else 1
 

@@ -12,7 +12,6 @@ from hal.errors import UsageError
 from robots import load_robot
 from tools.options import Common
 from tools.output import console, write_json
-from tools.stop_request import asked_for
 from tools.twin_options import TwinOptions
 
 
@@ -33,14 +32,14 @@ class Play(TwinOptions, Common):
         for seed in self.all_seeds:
             rows.append(self._one(seed))
             console.print(self._said(rows[-1]), markup=False, soft_wrap=True)
-            if asked_for(rows[-1]["reason"]):
+            if rows[-1]["reason"] == "interrupted":
                 break
         if self.seeds is not None:
             well = sum(row["done"] for row in rows)
             console.print(f"{well} of {len(rows)} seeds came to the end")
         result = rows[0] if self.seeds is None else {"robot": self.robot, "rows": rows}
         write_json(self.json, "play", result)
-        if asked_for(rows[-1]["reason"]):
+        if rows[-1]["reason"] == "interrupted":
             return 130
         return 0 if all(row["done"] for row in rows) else 1
 

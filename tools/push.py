@@ -1,5 +1,6 @@
 """`windup push`: push a twin that stands or walks, and see whether it stays up."""
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf
 from typing import Annotated, Any, Literal
@@ -21,7 +22,6 @@ from tools.push_trial import PushPlan, push_robot
 from tools.push_walk import push_walking, walking_said
 from tools.robot import Robot
 from tools.stepping import WAYS, check_way, find_stepping, stepping_stance
-from tools.stop_request import asked_for, reason_of
 from tools.twin_options import WorldOptions
 from tools.walk_options import WalkOptions
 
@@ -85,14 +85,14 @@ class Push(WorldOptions, Common):
             console.print(said(rows[-1]), markup=False, soft_wrap=True)
             if "landings" in rows[-1]:
                 console.print(landings_said(rows[-1]), markup=False, soft_wrap=True)
-            if asked_for(rows[-1]["reason"]):
+            if rows[-1]["reason"] == "interrupted":
                 break
         good = sum(row["survived"] for row in rows)
         if self.seeds is not None:
             console.print(f"{good} of {len(rows)} seeds stayed up")
         result = rows[0] if self.seeds is None else {"robot": self.robot, "rows": rows}
         write_json(self.json, "push", result)
-        if asked_for(rows[-1]["reason"]):
+        if rows[-1]["reason"] == "interrupted":
             return 130
         clean = not any(row.get("on_forbidden") for row in rows)
         return 0 if good == len(rows) and clean else 1
@@ -102,12 +102,11 @@ class Push(WorldOptions, Common):
         world = self.world(load_robot(self.robot), seed)
         rate = self.rate or find_stepping(load_robot(self.robot)).rate
         with replace(self, rate=rate).open_robot(seed, delay=self.delay, world=world) as robot:
+            result: dict[str, Any] = {"reason": "interrupted", "survived": False, "seed": seed}
             robot.protect = self.protect and fall
             gauge = ImpactGauge(robot.twin) if fall else None
-            try:
+            with suppress(KeyboardInterrupt):
                 result = self._push(robot, plan, fall)
-            except KeyboardInterrupt as stop:
-                result = {"reason": reason_of(stop), "survived": False, "seed": seed}
             if gauge is not None:
                 result |= fall_result(gauge)
         return result
@@ -182,7 +181,7 @@ class Push(WorldOptions, Common):
 def said(row: dict[str, Any]) -> str:
     """Return the sentence of one trial."""
     if "robot" not in row:
-        return str(row["reason"])
+        return "interrupted"
     toward = ", ".join(f"{direction:g}" for direction in row["directions"])
     push = f"{row['impulse']:g} N s toward {toward} degrees"
     steps = f"{row['steps']} steps" if row["steps"] != 1 else "1 step"

@@ -1,5 +1,6 @@
 """`windup rise`: get a robot up from its front or its back."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
@@ -15,7 +16,6 @@ from sim_twin.wire.twin_shaft import TwinPhysics
 from tools.options import Common
 from tools.output import console, write_json
 from tools.robot import Robot
-from tools.stop_request import asked_for, reason_of
 from tools.twin_options import TwinOptions
 
 Side = Literal["front", "back"]
@@ -44,13 +44,13 @@ class Rise(TwinOptions, Common):
         for seed in self.all_seeds:
             rows.append(self._one(seed))
             console.print(_said(self.robot, rows[-1]), markup=False, soft_wrap=True)
-            if asked_for(rows[-1]["reason"]):
+            if rows[-1]["reason"] == "interrupted":
                 break
         if self.seeds is not None:
             console.print(f"{sum(row['up'] for row in rows)} of {len(rows)} seeds stand")
         result = rows[0] if self.seeds is None else {"robot": self.robot, "rows": rows}
         write_json(self.json, "rise", result)
-        if asked_for(rows[-1]["reason"]):
+        if rows[-1]["reason"] == "interrupted":
             return 130
         return 0 if all(row["up"] for row in rows) else 1
 
@@ -65,11 +65,9 @@ class Rise(TwinOptions, Common):
                 disturb(robot)
             began = robot.backend.clock.now()
             report: dict[str, Any] = {"robot": robot.description.name, "seed": seed}
-            report |= {"up": False, "sides": [], "reason": "", "peak_load": 0.0}
-            try:
+            report |= {"up": False, "sides": [], "reason": "interrupted", "peak_load": 0.0}
+            with suppress(KeyboardInterrupt):  # the robot has stopped
                 rise(robot, self.tries, report)
-            except KeyboardInterrupt as stop:  # the robot has stopped
-                report["reason"] = reason_of(stop)
             return report | {"seconds": robot.backend.clock.now() - began}
 
 

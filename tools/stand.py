@@ -14,7 +14,6 @@ from tools.fall_report import fall_result, fall_said
 from tools.options import Common
 from tools.output import console, write_json
 from tools.robot import Robot
-from tools.stop_request import asked_for
 from tools.twin_options import TwinOptions
 
 
@@ -49,15 +48,14 @@ class Stand(TwinOptions, Common):
                 "largest_error_joint": robot.description.joints.names[int(error.argmax())],
             } | (fall_result(gauge) if gauge is not None else {})
         verb = "fell" if result["fell"] else "stood"
-        why = f", {report.reason}" if asked_for(report.reason) else ""
         console.print(
-            f"{self.robot} {verb} for {report.sim_time:.1f} s{why}; farthest from its pose is "
+            f"{self.robot} {verb} for {report.sim_time:.1f} s; farthest from its pose is "
             f"{result['largest_error_joint']} by {error.max():.1f} degrees"
         )
         if gauge is not None and result["fell"]:
             console.print(fall_said(result))
         write_json(self.json, "stand", result)
-        if asked_for(report.reason):
+        if report.reason == "interrupted":
             return 130
         return 0 if report.reason == "done" and not result["fell"] else 1
 

@@ -12,7 +12,7 @@ import tty
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
-KEYS = {b" ": "space", b"q": "q", b"Q": "q"}
+KEYS = {b" ": "the space bar", b"q": "the key q", b"Q": "the key q"}
 
 Ask = Callable[[], str | None]
 """Returns the name of a stop key that has been pressed, or None."""

@@ -8,40 +8,26 @@ from hal.errors import UsageError
 from hal.servo_backend import ServoBackend
 from tools.stop_keys import keyboard, stop_keys
 
-INTERRUPTED = "interrupted"
-BUTTON, KEY = "stop button", "stop key"
 
-
-def asked_for(reason: str) -> bool:
-    """Did a run end because somebody asked for it: by Ctrl-C, a button or a key?
-
-    >>> asked_for("stop key (space)"), asked_for("fell")
-    (True, False)
-    """
-    return reason.startswith((INTERRUPTED, BUTTON, KEY))
-
-
-def reason_of(stop: KeyboardInterrupt) -> str:
-    """Return the reason of a run that has been stopped: Ctrl-C itself says none."""
-    return str(stop) or INTERRUPTED
+def pressed_button(backend: Backend) -> str | None:
+    """Return which button of the robot has been pressed since it was armed, for people."""
+    if isinstance(backend, ServoBackend) and backend.button.pressed is not None:
+        return f"the {backend.button.pressed} button"
+    return None
 
 
 @contextmanager
 def stop_requests(backend: Backend, *, keys: bool) -> Iterator[Callable[[], str | None]]:
-    """Yield a function that returns why a run should stop, or None; ask it once a tick.
+    """Yield a function that returns who wants the robot to stop, or None; ask it once a tick.
 
     Args:
         backend: Its buttons, where it has any, are a stop.
         keys: So are keys of the terminal, where there is one.
     """
-    button = backend.button if isinstance(backend, ServoBackend) else None
-    with stop_keys(keyboard() if keys else None) as key:
+    with stop_keys(keyboard() if keys else None) as pressed_key:
 
         def asked() -> str | None:
-            if button is not None and button.pressed is not None:
-                return f"{BUTTON} ({button.pressed})"
-            pressed = key()
-            return None if pressed is None else f"{KEY} ({pressed})"
+            return pressed_button(backend) or pressed_key()
 
         yield asked
 

@@ -8,7 +8,6 @@ import tyro
 from robots import load_robot
 from tools.options import Common
 from tools.output import console, write_json
-from tools.stop_request import asked_for
 from tools.striding import Leg, build_strider, check_legs, find_stride, read_leg, stride
 from tools.twin_options import TwinOptions
 
@@ -38,14 +37,14 @@ class Stride(TwinOptions, Common):
         for seed in self.all_seeds:
             rows.append(self.one(seed))
             console.print(said(rows[-1]), markup=False, soft_wrap=True)
-            if asked_for(rows[-1]["reason"]):
+            if rows[-1]["reason"] == "interrupted":
                 break
         good = sum(row["good"] for row in rows)
         if self.seeds is not None:
             console.print(f"{good} of {len(rows)} seeds halted on their feet")
         result = rows[0] if self.seeds is None else {"robot": self.robot, "rows": rows}
         write_json(self.json, "stride", result)
-        if asked_for(rows[-1]["reason"]):
+        if rows[-1]["reason"] == "interrupted":
             return 130
         return 0 if good == len(rows) else 1
 

@@ -2,6 +2,7 @@
 
 from bisect import bisect_right
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from math import atan2, degrees, inf, isfinite, radians
 from typing import Any, Final
@@ -20,7 +21,6 @@ from tools.build import body_of
 from tools.directed import limbs_of
 from tools.robot import Robot
 from tools.robot_file import load_beside
-from tools.stop_request import reason_of
 
 FILE: Final = "stride.toml"
 RAMP = 2.0
@@ -142,11 +142,9 @@ def stride(
             return "done"
         return "does not halt" if time > seconds + LATE else None
 
-    halted = [0.0]
-    try:
+    halted, reason = [0.0], "interrupted"
+    with suppress(KeyboardInterrupt):
         reason = robot.run(strider, until=until).reason
-    except KeyboardInterrupt as stop:
-        reason = reason_of(stop)
     trace = np.array(rows).reshape(-1, 4)
     moved = _seen(trace[0], trace[-1]) if len(trace) else np.zeros(3)
     more = {"path": trace.tolist()} if path else {}

@@ -13,6 +13,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from hal.errors import UsageError
 from robots import load_robot
 from tools.build import build_walk
+from tools.interrupts import RunInterruptedError
 from tools.options import Common
 from tools.output import console, write_json
 from tools.plot import Trace, plot_walk
@@ -20,7 +21,6 @@ from tools.report import WalkReport, summary
 from tools.robot import Robot
 from tools.step_models import check_learning, keep_learnt
 from tools.stepping import find_stepping
-from tools.stop_request import asked_for
 from tools.twin_options import TwinOptions
 from tools.walk_options import WalkOptions
 
@@ -89,7 +89,7 @@ class Walk(TwinOptions, Common):
             result = self._one(seeds[0], show=True)
             ok = result["reason"] == "done"
             write_json(self.json, "walk", result)
-            return 130 if asked_for(result["reason"]) else 0 if ok else 1
+            return 130 if result["reason"] == "interrupted" else 0 if ok else 1
         rows = list(self._many(seeds))
         whole = summary(rows)
         console.print(_sentence(whole))
@@ -126,13 +126,17 @@ class Walk(TwinOptions, Common):
 
     def _walk(self, robot: Robot, progress: Progress) -> WalkReport:
         bar = progress.add_task("walking", total=self._most, speed="", lean="")
-        return robot.walk(
-            steps=self._most,
-            options=self._options(),
-            on_step=_update(progress, bar, robot),
-            disturb=self.disturb(),
-            stand=self.stand,
-        )
+        try:
+            return robot.walk(
+                steps=self._most,
+                options=self._options(),
+                on_step=_update(progress, bar, robot),
+                disturb=self.disturb(),
+                stand=self.stand,
+            )
+        except RunInterruptedError as stopped:
+            walked: WalkReport = stopped.report
+            return walked
 
     def _options(self) -> WalkOptions:
         return WalkOptions(
