@@ -104,6 +104,10 @@ class ImuError(HardwareError):
     """The IMU is silent, frozen or wrong, and a robot that balances with it cannot go on."""
 
 
+class GuardianError(HardwareError):
+    """The process that stops the robot when this one dies has died itself, or does not react."""
+
+
 class RefusedError(HardwareError):
     """A servo answered that it will not do what it was told."""
 

@@ -55,7 +55,7 @@ def test_a_hot_servo_is_refused_before_the_first_motion() -> None:
         here = robot.twin.data.qpos.copy()
         with pytest.raises(UnhealthyError, match=r"^l_knee is at 79 .*: nothing has moved; let it"):
             robot.stand(1.0)
-        assert undriven(robot)
+        assert not robot.armed and undriven(robot)
         np.testing.assert_array_equal(robot.twin.data.qpos, here)
 
 
