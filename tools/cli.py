@@ -2,7 +2,6 @@
 
 import logging
 import os
-import signal
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -17,6 +16,7 @@ from tools.emulate import Emulate
 from tools.estimate import Estimate
 from tools.footprints import Footprints
 from tools.health import Health
+from tools.interrupts import end_on_signals
 from tools.options import Common
 from tools.output import check_writable, console, error_record, write_json
 from tools.play import Play
@@ -62,13 +62,12 @@ def main(arguments: list[str] | None = None) -> None:
 
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line and return the exit status."""
-    logging.basicConfig(level=logging.WARNING)
+    logging.basicConfig(level=logging.WARNING, format="windup: %(message)s")
     # MuJoCo would write its warnings into a file in the present folder; a twin that diverges says
     # so itself.
     mujoco.set_mju_user_warning(logging.getLogger("mujoco").debug)
     command = None
-    # A robot has to be let go on SIGTERM as on Ctrl-C.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    end_on_signals()
     try:
         command = parse(separate(arguments))
         if isinstance(command, Common):
