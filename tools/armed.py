@@ -83,6 +83,7 @@ class Armed(OnStack):
         check_released(self.backend.backend)
         if self.stack.real:
             console.print(f"arming {self.description.name}: {how_to_stop(self.backend.backend)}")
+        self.backend.admit()
         self.custody.begin()
         self.armed = True
         atexit.register(self._end_of_program)
