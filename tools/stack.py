@@ -52,6 +52,11 @@ class Stack:
     world: str = ""
     port: str | None = None
 
+    @property
+    def real(self) -> bool:
+        """Is the port of the outer world? There may be an emulator of another program behind it."""
+        return self.wired and not self.world
+
     def close(self) -> None:
         """Disconnect."""
         self.backend.disconnect()
