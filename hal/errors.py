@@ -100,6 +100,14 @@ class TorqueLostError(HardwareError):
     """A joint has no torque any more though nobody of ours switched it off."""
 
 
+class UnhealthyError(HardwareError):
+    """A joint is too hot, on the wrong supply, loaded for too long, or blocked."""
+
+
+class ImuError(HardwareError):
+    """The IMU is silent, frozen or wrong, and a robot that balances with it cannot go on."""
+
+
 class GuardianError(HardwareError):
     """The process that stops the robot when this one dies has died itself, or does not react."""
 

@@ -10,7 +10,6 @@ from hal.imu.source import ImuSource
 from hal.joints import Array, Mask
 from hal.observation import ImuState, JointState, Observation
 from hal.servo_link import ServoLink
-from hal.servo_setup import read_health
 from hal.units import Units
 
 
@@ -33,7 +32,7 @@ class JointReadings:
         n = units.scale.shape[1]
         self._units, self._couplings, self._imu = units, couplings, imu
         self._counts = np.full((3, n), np.nan)
-        self._health = np.full((2, n), np.nan)
+        self._health = np.full((3, n), np.nan)
         self._contacts = np.zeros(contacts)
         self._imu_at = -np.inf
         self.answered: Array = np.full(n, -np.inf)
@@ -49,18 +48,19 @@ class JointReadings:
     def read_health(self, links: Sequence[ServoLink]) -> None:
         """Read voltage and temperature of all servos at once; the cycle refreshes them."""
         for link in links:
-            read_health(link.line, self._health)
+            link.read_health(self._health)
 
     def observe(self, now: float, links: Sequence[ServoLink]) -> Observation:
         """Return the state of the joints as of `now` s."""
         position, velocity, torque = self._units.si(self._counts)
-        voltage, temperature = self._health.copy()
+        voltage, temperature, measured = self._health.copy()
         answered = self.answered
         if self._couplings:
             position, velocity = map(self._couplings.joints, (position, velocity))
             torque = self._couplings.torques(torque)
             answered = self._couplings.oldest(answered)
-        state = JointState(position, velocity, torque, voltage, temperature, now - answered)
+        age = now - answered
+        state = JointState(position, velocity, torque, voltage, temperature, age, now - measured)
         return Observation(now, state, self._imu_state(now, links), self._contacts, None)
 
     def _imu_state(self, now: float, links: Sequence[ServoLink]) -> ImuState | None:

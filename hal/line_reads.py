@@ -116,6 +116,12 @@ class LineReads:
         health = self._health if fast is None else self._fast_health
         return health[self._cycle // self._every % len(health)]
 
+    def health(self) -> Asked:
+        """Return the read of all servos, state and health, that is no part of the cycle."""
+        state, check = self._blocks.state, self._blocks.check
+        end = check.address + check.size
+        return self._of_all(Block(state.address, end - state.address, state.state), False)
+
     def _plain(self, fast: bool = False) -> Asked:
         block = self._blocks.state
         return Asked(self._read(self._spans(block), fast), None, block)

@@ -27,6 +27,7 @@ from hal.servo_line import ServoLine
 from hal.servo_link import BusPort, ServoLink
 from hal.servo_model import ServoMount
 from hal.servo_setup import lines_of, names_of, open_links, set_up
+from hal.stop_button import StopButton
 from hal.torque_loss import Loss
 from hal.torque_state import TorqueState
 from hal.units import Units
@@ -60,6 +61,7 @@ class ServoBackend:
 
     Attributes:
         links: The buses, from `connect` to `disconnect`.
+        button: The buttons of the OpenCR: any of them is a stop.
         clamps: Clamp name to the number of commands it changed; "unarmed" and "lost" are goals
             withheld, of a bus, and of joints that may have lost their torque.
         lost_joints: Joint name to how it has lost its torque since the robot was armed. It gets
@@ -91,6 +93,7 @@ class ServoBackend:
         self.links: list[ServoLink] = []
         self._imu_link: ImuLink | None = None
         self._alerts = ServoAlerts(joints, self.mounts)
+        self.button = StopButton()
         self._torque = JointTorque(joints, self._couplings)
         self.lost_joints: Mapping[str, Loss] = {}
         self.clamps: Counter[str] = Counter({"goal": 0, "gain": 0})
@@ -157,15 +160,22 @@ class ServoBackend:
         for line in self.lines:
             line.bus.exchange.turnaround = TURNAROUND
             line.reads.probe_fast()
+        if silent := self._silent():
+            raise HardwareError(f"no answer to cyclic reads from {silent}; run `windup scan`")
+        self.read_health()
+
+    def read_health(self) -> None:
+        """Read voltage and temperature of every servo now, where its port is there."""
+        self._readings.read_health(self.links)
+
+    def _silent(self) -> str:
+        """Read until every joint has answered, some times at most; return the names of others."""
         began = self.clock.now()
         for _ in range(ATTEMPTS):
             self.read()
             if (self._readings.answered > began).all():
                 break
-        else:
-            silent = names_of(self.joints, self._readings.answered <= began)
-            raise HardwareError(f"no answer to cyclic reads from {silent}; run `windup scan`")
-        self._readings.read_health(self.links)
+        return names_of(self.joints, self._readings.answered <= began)
 
     def request(self) -> None:
         """Ask every joint for its state."""
@@ -180,6 +190,8 @@ class ServoBackend:
             calm &= link.calm
         if not calm or self._alerts.now:
             self._see_to(self.links)
+        if self.board is not None:
+            self.button.look(self.links)
         if self._imu_link is not None:
             self._imu_link.poll()
         return self._readings.observe(self.clock.now(), self.links)
@@ -233,9 +245,12 @@ class ServoBackend:
         with beating(self._buses, self.heartbeat):
             if not on:
                 return self._torque.off(self.links, self.heartbeat)
+            self.button.forget()
             wanted = self._couplings.servo_gains(self.joints.stiffness)
             gains, _ = self.units.p_registers(wanted)
-            return self._torque.on(self.links, gains, self.heartbeat)
+            state = self._torque.on(self.links, gains, self.heartbeat)
+            self._silent()  # what was read before that is old by now
+            return state
 
     def rearm(self) -> TorqueState:
         """Check and set every servo again, then switch torque on at the present pose.

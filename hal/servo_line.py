@@ -17,6 +17,8 @@ from hal.units import gain_groups
 
 LOWEST_OF = 2.0
 """How far back `lowest_supply` looks, s."""
+ATTEMPTS = 5
+"""How often voltage and temperature are read until all have answered."""
 
 Rows = slice | npt.NDArray[np.intp]
 
@@ -95,7 +97,7 @@ class ServoLine:
 
         Args:
             counts: (3, n) position, velocity and current of all joints; fresh ones are put there.
-            health: (2, n) voltage V and temperature degrees C; the same.
+            health: (3, n) voltage V, temperature degrees C, and when they were read, s; the same.
             error: (n,) error bytes; the same.
         """
         asked, servos = self._asked, len(self.ids)
@@ -123,6 +125,17 @@ class ServoLine:
         """Return the lowest voltage that any servo read a moment ago, V; nan without a reading."""
         since = self.bus.port.clock.now() - LOWEST_OF
         return min((volts for time, volts in self._volts if time >= since), default=np.nan)
+
+    def read_health(self, health: Array) -> None:
+        """Read voltage and temperature of all servos into (3, n), as of `collect`, out of turn."""
+        asked = self.reads.health()
+        for _ in range(ATTEMPTS):
+            self.bus.exchange.request(asked.read)
+            fresh = self.bus.exchange.collect()[: len(self.ids)]
+            if asked.longer is not None and fresh.any():
+                self._take_health(asked.longer, fresh, health)
+            if fresh.all():
+                break
 
     def forget(self) -> None:
         """Take nothing for granted: servos may have been turned by hand, or be missing."""
@@ -166,7 +179,8 @@ class ServoLine:
         volts = longer.volts[fresh] * self._volt
         health[0, rows] = volts
         health[1, rows] = longer.degrees[fresh]
-        self._volts.append((self.bus.port.clock.now(), float(volts.min())))
+        health[2, rows] = now = self.bus.port.clock.now()
+        self._volts.append((now, float(volts.min())))
 
     def _look_at_torque(self, longer: Longer, fresh: Mask) -> None:
         """Note who does not drive, or has restarted, where that was read."""

@@ -96,6 +96,14 @@ class ServoLink:
         self.calm = False
         return np.zeros(len(self.line.ids), dtype=bool)
 
+    def read_health(self, health: Array) -> None:
+        """Read voltage and temperature of the servos into (3, n), if the port is there."""
+        if self.lost is None:
+            try:
+                self.line.read_health(health)
+            except PortError as error:
+                self._lose(error)
+
     def send_goals(self, counts: Array) -> str | None:
         """Send goals, (servos,) counts, to all that have their torque.
 

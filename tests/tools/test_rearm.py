@@ -29,7 +29,7 @@ def test_a_duck_that_was_unplugged_stays_limp_until_it_is_armed_again() -> None:
     line = servos.lines[0]
     goals, _ = line.bus.sync_read(line.ids, line.bus.family.registers["goal_position"])
     here = duck.backend.read().joints.position
-    np.testing.assert_allclose(servos.units.angle(goals.astype(float)), here, atol=0.1)
+    np.testing.assert_allclose(servos.units.angle(goals.astype(float)), here, atol=0.2)
     withheld = servos.clamps["unarmed"]
     report = duck.run(PoseHolder(duck.description.joints, here), 0.5, down=True)  # as it lies
     assert report.reason == "done"

@@ -8,6 +8,7 @@ import sim_twin.wire.servo
 from hal.command import JointCommand
 from hal.errors import StaleStateError, TorqueLostError, WindupError
 from hal.observation import Observation
+from hal.servo_backend import ServoBackend
 from tests.tools.conftest import Windup
 from tools.robot import Robot
 from tools.servo_bus import ServoBus
@@ -130,3 +131,32 @@ def test_no_goal_wakes_a_servo_of_any_make(family: str, fault: str) -> None:
         assert str(rig.backend.lost_joints["servo 2"]).startswith(said)
         others = [rig.world.devices[0], rig.world.devices[2]]
         assert all(device.driving for device in others)
+
+
+@pytest.mark.parametrize(("gone", "known"), [(0.5, True), (30.0, False)])
+def test_a_port_that_went_is_named_and_torque_is_read_as_off_if_it_comes_back(
+    gone: float, known: bool
+) -> None:
+    with ServoBus("duck", seed=1, faults=f"unplug:at=2.5:seconds={gone:g}:bus=body") as bus:
+        robot = bus.robot()
+        said = r"joint 'left_hip_yaw' and 13 more have not answered .*; port .* went away"
+        assert stands_until(bus, robot, StaleStateError, said) < 1.0
+        assert robot.armed is not known
+        drives = [device.driving for device in bus.world.bus("body").devices]
+        assert any(drives) is not known
+
+
+def test_a_servo_that_restarts_too_slowly_is_named_and_read_as_off_all_the_same() -> None:
+    with ServoBus("duck", seed=1, faults=f"reset:at=2.5:ids={KNEE}") as bus:
+        robot = bus.robot()
+        stands_until(bus, robot, StaleStateError, "joint 'right_knee' has not answered")
+        assert not robot.armed and torque_enable(bus, 40) == 0
+
+
+def test_a_robot_stands_behind_an_adapter_that_holds_answers_back() -> None:
+    with ServoBus("duck", seed=5) as bus:
+        bus.faults.delay(0.016).drop(ids=[KNEE], rate=0.02)
+        robot = bus.robot()
+        assert robot.stand(2.0).reason == "done"
+        servos = robot.backend.backend
+        assert isinstance(servos, ServoBackend) and servos.lost_joints == {}
