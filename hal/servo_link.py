@@ -86,10 +86,11 @@ class ServoLink:
         if self.lost is None:
             try:
                 valid = self.line.collect(counts, health, error)
-                self.calm, self.heard = self.line.calm, self.clock.now()
+                self.heard = self.clock.now()
                 if self.torque.powered:
                     watchdog = self.torque.watchdog if self.torque.armed else 0.0
-                    self.calm &= self.check.update(error, self.heard, watchdog)
+                    self.check.update(error, self.heard, watchdog)
+                self.calm = self.line.calm and self.check.calm and not self.check.woke
                 return valid
             except PortError as gone:
                 self._lose(gone)

@@ -34,6 +34,7 @@ class TorqueCheck:
         withheld: (servos,) bool, who gets no goal; None while all do.
         losses: Row within the line to how the torque was lost.
         suspects: (servos,) bool, whose torque is unknown.
+        calm: Did all answer the last cycle, and is nobody suspect or without torque?
         woke: Has somebody answered the last cycle whose Bus Watchdog may have fired?
     """
 
@@ -53,13 +54,11 @@ class TorqueCheck:
         self._missed = np.zeros(servos, dtype=np.int64)
         self._heard: Array = np.full(servos, np.inf)
         self._bits: Bits = np.zeros(servos, dtype=np.uint8)
-        self._calm, self._then, self._waited = True, np.inf, 0
+        self.calm, self._then, self._waited = True, np.inf, 0
         self.line.slack[:] = False
 
-    def update(self, error: Bits, now: float, watchdog: float) -> bool:
+    def update(self, error: Bits, now: float, watchdog: float) -> None:
         """Take in the line's last cycle, and read back the suspects that have answered it.
-
-        Returns whether nothing was to be seen to.
 
         Args:
             error: (n,) error bytes of all joints of the robot.
@@ -67,14 +66,13 @@ class TorqueCheck:
             watchdog: Silence after which the servos' Bus Watchdog fires, s; 0 where none runs.
         """
         late = now - self._then > SILENCE
-        if self._calm and self.line.calm and not late:
+        if self.calm and self.line.calm and not late:
             self._then, self.woke = now, False
-            return True
+            return
         self._look(self.line.errors(error), now, late, watchdog)
         if (ask := self.suspects & self.line.answered).any() and self._is_time():
             self._read_back(np.flatnonzero(ask).tolist(), watchdog > 0.0)
         self._settle()
-        return False
 
     def lose_all(self, loss: Loss) -> None:
         """Take down that all servos have lost their torque."""
@@ -85,7 +83,7 @@ class TorqueCheck:
     def _look(self, errors: Bits, now: float, late: bool, watchdog: float) -> None:
         """Suspect who was silent, who newly signals an error, whose torque read as off."""
         answered = self.line.answered
-        if self._calm:
+        if self.calm:
             self._heard[:] = self._then
         self.woke = watchdog > 0.0 and bool((now - self._heard[answered] > 0.9 * watchdog).any())
         self._heard[answered], self._then = now, now
@@ -119,4 +117,4 @@ class TorqueCheck:
         wakes = self.line.bus.family.goal_wakes
         withheld = self.suspects | self._lost if wakes else self._lost.copy()
         self.withheld = withheld if withheld.any() else None
-        self._calm = not (self.suspects.any() or self._lost.any() or self._missed.any())
+        self.calm = not (self.suspects.any() or self._lost.any() or self._missed.any())

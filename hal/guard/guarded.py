@@ -28,6 +28,8 @@ from hal.torque_state import TorqueState
 
 CROUCH_SECONDS = 1.5
 TICK = 0.008
+LOOKS = 5
+"""Times that a joint that was silent is read again before a stop takes it for dead."""
 REPLUG_TIME = 2.0
 """What a port that was plugged in again may take until it can be opened, s."""
 
@@ -213,7 +215,7 @@ class GuardedBackend:
             return self._stop(policy or self.stop_policy, hurry)
 
     def _stop(self, policy: StopPolicy, hurry: Callable[[], bool]) -> TorqueState:
-        if self._crippled():
+        if policy != "limp" and self._crippled():
             policy = "limp"
         if policy == "hold":
             self._send(JointCommand.hold(self.joints, self._pose()))
@@ -248,9 +250,15 @@ class GuardedBackend:
             raise unwell
 
     def _crippled(self) -> bool:
-        """Return whether a joint has lost its torque, or may have."""
+        """Return whether a joint has lost its torque, or may have: a lost answer is no reason."""
         watched = self._watched
-        return watched is not None and bool(watched.lost_joints or watched.doubtful_joints)
+        if watched is None:
+            return False
+        for _ in range(LOOKS):
+            if watched.lost_joints or not watched.doubtful_joints:
+                break
+            self.backend.read()
+        return bool(watched.lost_joints or watched.doubtful_joints)
 
     def _pose(self) -> Array:
         last = self._last or self.read()
