@@ -21,6 +21,7 @@ from hal.guard import GuardedBackend
 from hal.guardian import Guardian, guardian_for
 from hal.joints import Mask
 from hal.observation import BaseState, Observation
+from hal.ranges import numbers_checked
 from hal.telemetry import TelemetryWriter
 from robots import RobotDescription
 from sim_twin.backend import TwinClock
@@ -95,6 +96,7 @@ class Session:
             raise UsageError("only a twin can do that; leave --port away")
         return self.stack.twin
 
+    @numbers_checked
     def push(
         self, impulse: float, direction: float = 0.0, *, duration: float = 0.1, delay: float = 0.0
     ) -> None:
@@ -109,6 +111,7 @@ class Session:
         start = self.twin.time + delay
         self.twin.push(Push.impulse(self.description.torso, impulse, direction, start, duration))
 
+    @numbers_checked
     def shove(self, speed: float, direction: float = 0.0, *, delay: float = 0.0) -> None:
         """Give a whole twin `speed` m/s toward `direction` rad, `delay` s from now."""
         mass = float(self.twin.model.body_mass.sum())
@@ -160,6 +163,7 @@ class Session:
         if not self.armed:
             self._release()
 
+    @numbers_checked
     def run(
         self,
         controller: Controller,

@@ -7,13 +7,14 @@ from typing import Annotated
 import tyro
 
 from robots import load_robot
+from tools.command import Command
 from tools.faults import with_faults
 from tools.output import console, write_json
-from tools.stack import limp
+from tools.stack import check_port, limp
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stop:
+class Stop(Command):
     """Switch all torque off."""
 
     robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
@@ -25,10 +26,19 @@ class Stop:
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        check_port(load_robot(self.robot), self._url)
+
+    @property
+    def _url(self) -> str:
+        return with_faults(self.port, self.faults) or self.port
+
     def run(self) -> int:
         """Stop; returns the exit status."""
         robot = load_robot(self.robot)
-        on = limp(robot, with_faults(self.port, self.faults) or self.port)
+        on = limp(robot, self._url)
         names = [name for name, still in zip(robot.joints.names, on, strict=True) if still]
         if names:
             console.print(

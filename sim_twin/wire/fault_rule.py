@@ -3,9 +3,11 @@
 import random
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import inf
 from typing import Final
 
 from hal.errors import UsageError, suggest
+from hal.ranges import Range, check_number
 
 # What befalls an answer on its way, and the seconds that some of them take by default.
 ANSWERS: Final = {
@@ -24,6 +26,10 @@ EVENTS: Final = {"dead": 0.0, "reset": 0.0, "brown_out": 0.1, "overload": 0.0, "
 SECONDS: Final = {**ANSWERS, **EVENTS}
 KINDS: Final = tuple(SECONDS)
 KEYS: Final = ("rate", "at", "ids", "bus", "seconds", "volts")
+LAST_ID: Final = 253  # 254 is everybody's
+SHARE: Final = Range(0.0, 1.0)
+TIME: Final = Range(0.0, 1e9, "s")
+VOLTS: Final = Range(0.0, 60.0, "V")
 RATE = 0.01  # where neither rate nor time is given
 EXAMPLE = "'drop:0.01,late:0.02:seconds=0.003:ids=1-6,unplug:at=2.5:seconds=0.5'"
 
@@ -106,16 +112,18 @@ def make_rule(
         raise UsageError(f"faults: unknown kind {kind!r}{suggest(kind, KINDS)}")
     if at is None:
         rate = RATE if rate is None else rate
-        if not 0.0 <= rate <= 1.0:
-            raise UsageError(f"faults: {kind}:{rate:g}: a rate from 0 to 1, as in '{kind}:0.01'")
+        check_number(f"faults: {kind}: rate", rate, SHARE)
         times: list[float] = []
     else:
         if rate is not None:
             raise UsageError(f"faults: {kind}: a rate or a time, not both")
         times = sorted(at) if isinstance(at, Sequence) else [at]
+    for time in times:
+        check_number(f"faults: {kind}: at", time, TIME)
     lasts = SECONDS[kind] if seconds is None else seconds
-    if not all(time >= 0.0 for time in (lasts, *times)):  # nor nan
-        raise UsageError(f"faults: {kind}: times are 0 s or later")
+    if not (kind == "unplug" and lasts == inf):  # an adapter may never come back
+        check_number(f"faults: {kind}: seconds", lasts, TIME)
+    check_number(f"faults: {kind}: volts", volts, VOLTS)
     if seconds is not None and not SECONDS[kind]:
         takers = ", ".join(other for other in KINDS if SECONDS[other])
         raise UsageError(f"faults: {kind}: takes no seconds; these do: {takers}")
@@ -163,7 +171,7 @@ def _parse(part: str) -> Rule:
         )
     except ValueError:
         raise UsageError(
-            f"faults: {part!r}: a rate from 0 to 1 and keys, as in {EXAMPLE}"
+            f"faults: {part!r}: a rate from 0 to 1, keys, ids up to {LAST_ID}, as in {EXAMPLE}"
         ) from None
 
 
@@ -176,7 +184,7 @@ def _ids(text: str) -> list[int]:
     for word in text.split(";"):
         first, _, last = word.partition("-")
         ids = range(int(first), int(last or first) + 1)
-        if not ids:
+        if not ids or ids[0] < 0 or ids[-1] > LAST_ID:
             raise ValueError(f"{word}: no ids")
         found += ids
     return found

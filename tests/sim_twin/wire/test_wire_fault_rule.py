@@ -18,8 +18,8 @@ BENCH = "twin://bench?servos=STS3215:1-4&faults="
         ("dead:id=7", "'dead:id=7': unknown key 'id'; did you mean 'ids'?"),
         ("drop:0.01:volts=3", "drop: takes no volts; only brown_out does"),
         ("drop:0.01:seconds=3", "drop: takes no seconds; these do: late, delay, glue"),
-        ("dead:ids=7-5", "'dead:ids=7-5': a rate from 0 to 1 and keys"),
-        ("reset:at=nan", "reset: times are 0 s or later"),
+        ("dead:ids=7-5", "'dead:ids=7-5': a rate from 0 to 1, keys, ids up to 253"),
+        ("reset:at=nan", "reset: at nan: give a finite number of s"),
     ],
 )
 def test_a_key_that_means_nothing_is_refused_by_name(text: str, message: str) -> None:
