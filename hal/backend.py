@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from typing import Protocol, runtime_checkable
 
 from hal.command import JointCommand
-from hal.joints import Joints, Mask
+from hal.joints import Joints
 from hal.observation import Observation
+from hal.torque_state import TorqueState
 
 
 class Clock(Protocol):
@@ -62,8 +63,8 @@ class Backend(Protocol):
         """Send a command and return what the joints really got."""
         ...
 
-    def set_torque(self, on: bool) -> Mask:
-        """Switch the torque of all joints and return (n,) bool, read back."""
+    def set_torque(self, on: bool) -> TorqueState:
+        """Switch the torque of all joints and return what was read back."""
         ...
 
     def disconnect(self) -> None:
@@ -75,8 +76,8 @@ class Backend(Protocol):
 class Rearmable(Protocol):
     """A backend whose port may go and come back."""
 
-    def rearm(self) -> Mask:
-        """Switch torque on at the present pose after a port was gone; (n,) bool read back.
+    def rearm(self) -> TorqueState:
+        """Switch torque on at the present pose after a port was gone; return what was read back.
 
         Raises:
             PortError: A port is still gone.

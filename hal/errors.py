@@ -88,6 +88,14 @@ class CorruptAnswerError(HardwareError):
     """Bytes came, but no frame with a good checksum: noise, a wrong baud rate, an id twice."""
 
 
+class TorqueOnError(HardwareError):
+    """Torque was told to go off, and a joint read back as on."""
+
+
+class TorqueUnknownError(HardwareError):
+    """Torque was told to go off, and a joint could not be read back: it may be on or off."""
+
+
 class RefusedError(HardwareError):
     """A servo answered that it will not do what it was told."""
 

@@ -179,7 +179,7 @@ def _obeys(torque: ServoTorque, policy: StopPolicy) -> bool:
     if policy == "hold":
         torque.stay()
         return True
-    return not torque.off(attempts=1).any()
+    return torque.off(attempts=1).all_off
 
 
 def main() -> None:

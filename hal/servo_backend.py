@@ -22,6 +22,7 @@ from hal.servo_line import ServoLine
 from hal.servo_link import BusPort, ImuLink, ServoLink
 from hal.servo_model import ServoMount
 from hal.servo_setup import lines_of, names_of, open_links, read_health, set_up
+from hal.torque_state import TorqueState
 from hal.units import Units
 from hal.wiring import check_mounts
 
@@ -47,14 +48,14 @@ class ServoBackend:
         board: The OpenCR, read with the servos of its bus.
         imu: An IMU on a port of its own.
         couplings: Joints that two servos move together.
-        watchdog: Silence after which servos that can stop by themselves, s; 0 for none.
+        watchdog: Silence after which a bus watchdog freezes the pose, torque on, s; 0 for none.
         contacts: Number of contact sensors that observations have room for; none is measured.
         opener: Opens a port.
 
     Attributes:
         links: The buses, from `connect` to `disconnect`.
         clamps: Clamp name to the number of commands it changed; "unarmed" are goals withheld.
-        watchdog_trips: Servos that had stopped for silence, and were cleared.
+        watchdog_trips: Servos that had frozen for silence, and were cleared.
     """
 
     def __init__(
@@ -197,10 +198,8 @@ class ServoBackend:
         """Return kind of error to how often it has happened, over all buses."""
         return count_errors(self.links, self.watchdog_trips)
 
-    def set_torque(self, on: bool) -> Mask:
-        """Switch all torque, on at the present pose only; (n,) bool read back.
-
-        A joint that does not answer counts as on.
+    def set_torque(self, on: bool) -> TorqueState:
+        """Switch all torque, on at the present pose only, and return what was read back.
 
         Raises:
             HardwareError: Torque on, and a servo cannot be read, or a port was gone since the
@@ -213,15 +212,12 @@ class ServoBackend:
             except HardwareError:
                 self.set_torque(False)
                 raise
-        state: Mask = np.zeros(len(self.joints), dtype=bool)
-        for link in self.links:
-            state[link.line.rows] = link.switch_off()
-        return self._couplings.any(state)
+        return self._joined([link.switch_off() for link in self.links])
 
-    def rearm(self) -> Mask:
+    def rearm(self) -> TorqueState:
         """Check and set every servo again, then switch torque on at the present pose.
 
-        After a port was gone servos may have been without power. Returns (n,) bool read back.
+        After a port was gone servos may have been without power. Returns what was read back.
 
         Raises:
             PortError: A port is still gone.
@@ -237,14 +233,14 @@ class ServoBackend:
         return self.set_torque(True)
 
     def disconnect(self) -> None:
-        """Close the ports. Torque that is on stays on until the servos' watchdog fires."""
+        """Close the ports. Torque that is on stays on, also when the servos' watchdog trips."""
         for link in self.links:
             link.close()
         if self._imu_link is not None:
             self._imu_link.close()
         self.links, self._imu_link = [], None
 
-    def _switch_on(self) -> Mask:
+    def _switch_on(self) -> TorqueState:
         if barred := [link.bus.port.url for link in self.links if link.barred]:
             raise HardwareError(
                 f"{', '.join(barred)} went away since the robot was armed; torque stays off "
@@ -252,10 +248,19 @@ class ServoBackend:
             )
         wanted = self._couplings.servo_gains(self.joints.stiffness)
         gains, _ = self.units.p_registers(wanted)
-        state: Mask = np.zeros(len(self.joints), dtype=bool)
-        for link in self.links:
-            state[link.line.rows] = link.torque.on(gains[link.line.rows])
-        return self._couplings.any(state)
+        return self._joined([link.torque.on(gains[link.line.rows]) for link in self.links])
+
+    def _joined(self, states: list[TorqueState]) -> TorqueState:
+        """Return the torque of the joints from that of the servos of each bus.
+
+        A joint that two servos move is on, or unknown, if one of them is.
+        """
+        on: Mask = np.zeros(len(self.joints), dtype=bool)
+        unknown: Mask = np.zeros_like(on)
+        for link, state in zip(self.links, states, strict=True):
+            on[link.line.rows], unknown[link.line.rows] = state.on, state.unknown
+        on, unknown = self._couplings.any(on), self._couplings.any(unknown)
+        return TorqueState(on, unknown & ~on)
 
     def _note_answers(self, line: ServoLine, valid: Mask, armed: bool) -> bool:
         """Date the answers that came; return whether a watchdog may have fired before them."""

@@ -15,6 +15,7 @@ from hal.port import Port
 from hal.replug import RETRY, Opener, Replug
 from hal.servo_line import ServoLine
 from hal.servo_torque import ServoTorque
+from hal.torque_state import TorqueState
 
 
 @dataclass(frozen=True)
@@ -96,14 +97,14 @@ class ServoLink:
             write.values[:] = gain.counts(registers[rows])
             self._send(write.frames())
 
-    def switch_off(self) -> Mask:
-        """Switch torque off; (servos,) bool read back. Who cannot be asked counts as on."""
+    def switch_off(self) -> TorqueState:
+        """Switch torque off and return what was read back of the servos."""
         if self.lost is None:
             try:
                 return self.torque.off()
             except PortError as error:
                 self._lose(error)
-        return np.ones(len(self.line.ids), dtype=bool)
+        return TorqueState.unread(len(self.line.ids))
 
     def clear_watchdogs(self) -> int:
         """Clear watchdogs that have fired; return how many had."""
@@ -149,7 +150,7 @@ class ServoLink:
         if now >= self._look_again:
             self._look_again = now + RETRY
             try:
-                self._unsure = bool(self.torque.off(attempts=1).any())
+                self._unsure = not self.torque.off(attempts=1).all_off
             except PortError as error:
                 self._lose(error)
             except HardwareError:

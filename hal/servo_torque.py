@@ -5,21 +5,26 @@ from collections.abc import Sequence
 import numpy as np
 
 from hal.errors import HardwareError
-from hal.joints import Array, Mask
+from hal.joints import Array
 from hal.plausibility import MARGIN
 from hal.registers import Register
 from hal.servo_line import Rows, ServoLine
+from hal.torque_state import TorqueState
 
 ATTEMPTS = 5
 TRIPPED = -1
-"""What a Bus Watchdog reads that has fired; goals are refused until it is set to 0."""
+"""What a Bus Watchdog reads that has fired.
+
+In position mode the servo holds the place where it was then, and refuses goals until the register
+is set to 0: the pose is frozen, the torque is not off.
+"""
 
 
 class ServoTorque:
     """The torque switch of one line, and the Bus Watchdog where its servos have one.
 
     Attributes:
-        watchdog: Silence after which a servo stops, s; 0 for none.
+        watchdog: Silence after which a servo freezes its pose, with torque on, s; 0 for none.
         armed: Is the watchdog running?
         powered: Has torque been switched on?
     """
@@ -31,11 +36,11 @@ class ServoTorque:
         self._watch = self._registers.get("bus_watchdog")
         self._last = np.array([mount.model.last_count for mount in line.mounts], dtype=np.float64)
 
-    def on(self, gains: Array) -> Mask:
+    def on(self, gains: Array) -> TorqueState:
         """Switch torque on where the joints are now; their P registers are `gains`.
 
         The goal is the present position before the torque comes on, so that nothing moves.
-        Returns (servos,) bool, read back.
+        Returns what was read back of the servos.
 
         Raises:
             HardwareError: A servo cannot be read, or does not take its goal; no torque comes on.
@@ -52,8 +57,8 @@ class ServoTorque:
             self.armed = True
         return self._switch(True)
 
-    def off(self, attempts: int = ATTEMPTS) -> Mask:
-        """Switch torque off and return (servos,) bool, read back."""
+    def off(self, attempts: int = ATTEMPTS) -> TorqueState:
+        """Switch torque off and return what was read back of the servos."""
         state = self._switch(False, attempts)
         self.armed = self.powered = False
         if self._watch is not None:
@@ -66,7 +71,7 @@ class ServoTorque:
         Raises:
             HardwareError: A servo cannot be read, or does not take its goal.
         """
-        here, on = np.clip(self._here(), 0, self._last), np.flatnonzero(self.state())
+        here, on = np.clip(self._here(), 0, self._last), np.flatnonzero(~self.state().off)
         if on.size:
             self._set(self._registers["goal_position"], here[on], on)
 
@@ -85,32 +90,33 @@ class ServoTorque:
             "hold the robot still and check the wiring"
         )
 
-    def _switch(self, on: bool, attempts: int = ATTEMPTS) -> Mask:
+    def _switch(self, on: bool, attempts: int = ATTEMPTS) -> TorqueState:
         """Write and read back until all servos obey; a lost frame is sent again."""
         for _ in range(attempts):
             self._write(self._registers["torque_enable"], int(on))
             state = self.state(attempts)
-            if (state == on).all():
+            if state.all_on if on else state.all_off:
                 break
         return state
 
-    def state(self, attempts: int = ATTEMPTS) -> Mask:
-        """Return (servos,) bool read back; a servo that does not answer counts as on."""
+    def state(self, attempts: int = ATTEMPTS) -> TorqueState:
+        """Return what can be read of the servos' torque now."""
         register = self._registers["torque_enable"]
-        on = np.ones(len(self.line.ids), dtype=bool)
-        unread = on.copy()
+        on = np.zeros(len(self.line.ids), dtype=bool)
+        unread = np.ones_like(on)
         for _ in range(attempts):
             counts, valid = self.line.bus.sync_read(self.line.ids, register)
             on[valid & unread] = counts[valid & unread] != 0
             unread &= ~valid
             if not unread.any():
                 break
-        return on
+        return TorqueState(on, unread)
 
     def revive(self) -> int:
         """Clear the watchdogs that have fired, at the present pose; return how many had.
 
-        Torque that a servo has switched off stays off until `on`.
+        The servos hold all the while, and then take goals again. Torque that a servo has switched
+        off stays off until `on`.
         """
         register = self._watch
         if register is None:

@@ -18,7 +18,7 @@ from hal.servos import servo_model
 from robots import mjcf
 from robots.checks import Checks, whole_steps
 from robots.mirror import mirror_map
-from robots.records import Bus, Drive, Fall, Foot, Imu, JointEntry, RobotFile, with_defaults
+from robots.records import Bus, Drive, Fall, Foot, Imu, JointEntry, RobotFile, Safety, with_defaults
 
 FOLDER = Path(__file__).parent
 FILE = "robot.toml"
@@ -52,6 +52,7 @@ class RobotDescription:
         stance: (n,) pose to stand in, rad.
         crouch: (n,) pose to crouch in, rad, or None.
         stop: What "stop" means.
+        safety: What keeps it safe when nobody commands it.
         fall: When the robot counts as fallen.
     """
 
@@ -78,6 +79,7 @@ class RobotDescription:
     stance: Array
     crouch: Array | None
     stop: StopPolicy
+    safety: Safety
     fall: Fall
 
     @cached_property
@@ -178,6 +180,7 @@ def _describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDes
         stance=poses[robot.stance],
         crouch=poses[robot.crouch] if robot.crouch else None,
         stop=robot.stop,
+        safety=robot.safety,
         fall=robot.fall,
     )
 

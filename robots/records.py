@@ -133,6 +133,19 @@ class Fall(Record, frozen=True):
     way: tuple[FallWay, ...] = ()
 
 
+class Safety(Record, frozen=True):
+    """What keeps an armed robot safe when nobody commands it.
+
+    Attributes:
+        idle: How long it is held between two calls of a program before its torque goes off, s.
+        hold: How long the guardian holds a robot whose `stop` is "hold" once its program is gone,
+            before its torque goes off, s.
+    """
+
+    idle: Positive = 10.0
+    hold: Positive = 60.0
+
+
 INHERITED = ("servo", "bus", "stiffness", "damping")
 
 
@@ -182,3 +195,4 @@ class RobotFile(Record, frozen=True):
     model_latency: Delay = 0.06
     contact_threshold: Positive = 1.0
     imu: Imu | None = None
+    safety: Safety = Safety()

@@ -7,8 +7,9 @@ import numpy as np
 
 from hal.clock import sleep_until
 from hal.command import JointCommand
-from hal.joints import Joints, Mask
+from hal.joints import Joints
 from hal.observation import Observation
+from hal.torque_state import TorqueState
 from sim_twin.imu_errors import ImuErrors
 from sim_twin.sensors import Sensors
 from sim_twin.servo_motor import ServoDrive, TorqueDrive
@@ -109,7 +110,7 @@ class TwinBackend:
         """Send a command; it acts after the twin's delay. Returns what the joints really got."""
         return self._drive.write(command, self._ctrl)
 
-    def set_torque(self, on: bool) -> Mask:
-        """Switch all actuators; (n,) bool read back."""
+    def set_torque(self, on: bool) -> TorqueState:
+        """Switch all actuators and return what became of it."""
         self.twin.powered = on
-        return np.full(len(self.joints), self.twin.powered)
+        return TorqueState.known(np.full(len(self.joints), self.twin.powered))

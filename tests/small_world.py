@@ -13,6 +13,7 @@ from hal.controller import PolicyInput
 from hal.joints import Array, Joint, Joints, Mask
 from hal.mirror import Mirror
 from hal.observation import BaseState, JointState, Observation
+from hal.torque_state import TorqueState
 
 JOINTS = Joints(
     (
@@ -96,6 +97,7 @@ class FakeBackend:
     age: Array = field(default_factory=lambda: np.zeros(N))
     written: list[JointCommand] = field(default_factory=list)
     stuck: Mask = field(default_factory=lambda: np.zeros(N, dtype=bool))
+    silent: Mask = field(default_factory=lambda: np.zeros(N, dtype=bool))
     powered: bool = True
 
     def connect(self) -> None: ...
@@ -117,6 +119,6 @@ class FakeBackend:
         self.position = command.position.copy()
         return command
 
-    def set_torque(self, on: bool) -> Mask:
+    def set_torque(self, on: bool) -> TorqueState:
         self.powered = on
-        return np.full(N, on) | self.stuck
+        return TorqueState((np.full(N, on) | self.stuck) & ~self.silent, self.silent)

@@ -119,7 +119,7 @@ def watch(backend: ServoBackend, times: int) -> Times:
                     _examine(backend, hold, seen)
             elif link.barred and not gone:
                 with suppress(PortError, HardwareError):  # it may be pulled out meanwhile
-                    seen.armed += bool(backend.rearm().all())
+                    seen.armed += bool(backend.rearm().all_on)
                     since = due
             backend.write(hold)
             if due - since > PATIENCE:
@@ -134,7 +134,7 @@ def _examine(backend: ServoBackend, hold: JointCommand, seen: Times) -> None:
     backend.write(hold)
     seen.withheld += backend.clamps["unarmed"] > withheld
     with suppress(PortError):
-        seen.off += not backend.links[0].torque.state().any()
+        seen.off += backend.links[0].torque.state().all_off
     gc.collect()
     seen.descriptors.append(len(os.listdir("/dev/fd")))
     seen.memory.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)

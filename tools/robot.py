@@ -256,7 +256,7 @@ class Robot(Session):
         return report
 
     def _when_ready(self, planner: ProcessPlanner) -> ProcessPlanner:
-        """Wait for a planner; hold the pose meanwhile, or the servos' watchdogs would let it go."""
+        """Wait for a planner; hold the pose meanwhile, or the servos' watchdogs would trip."""
         if self.armed:
             pose = self.backend.read().joints.position
             holder = PoseHolder(self.description.joints, pose, ramp=0.0)

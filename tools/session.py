@@ -19,10 +19,10 @@ from hal.errors import (
 )
 from hal.guard import GuardedBackend
 from hal.guardian import Guardian, guardian_for
-from hal.joints import Mask
 from hal.observation import BaseState, Observation
 from hal.ranges import numbers_checked
 from hal.telemetry import TelemetryWriter
+from hal.torque_state import TorqueState
 from robots import RobotDescription
 from sim_twin.backend import TwinClock
 from sim_twin.push import Push
@@ -141,16 +141,16 @@ class Session:
         if self.stack.wired:
             self._arm(self.backend.rearm)
 
-    def _arm(self, switch_on: Callable[[], Mask]) -> None:
+    def _arm(self, switch_on: Callable[[], TorqueState]) -> None:
         if not self.stack.may_arm:
             raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
         if self.guardian is None or not self.guardian.alive:
             self.guardian = guardian_for(self.backend.backend, self.backend.stop_policy)
         self.armed = True
-        on = switch_on()
-        if not on.all():
-            names = ", ".join(np.array(self.description.joints.names)[~on])
-            raise HardwareError(f"torque does not come on at {names}; run `windup scan`")
+        state = switch_on()
+        if not state.all_on:
+            where = state.names(self.description.joints, ~state.on)
+            raise HardwareError(f"torque does not come on at {where}; run `windup scan`")
 
     def stop(self, *, limp: bool = False) -> None:
         """Carry out the stop policy at once; with `limp`, just switch the torque off.
@@ -158,8 +158,7 @@ class Session:
         Raises:
             HardwareError: Torque was told to go off and a joint read back on.
         """
-        on = self.backend.stop("limp" if limp else None)
-        self.armed = bool(on.any())
+        self.armed = not self.backend.stop("limp" if limp else None).all_off
         if not self.armed:
             self._release()
 

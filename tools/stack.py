@@ -10,9 +10,9 @@ from hal.errors import UsageError
 from hal.guard import GuardedBackend, SafetyLimits
 from hal.imu.bno08x_rvc import Bno08xRvc
 from hal.imu.opencr import OpenCr
-from hal.joints import Mask
 from hal.observation import Observation
 from hal.servo_backend import BusPort, ServoBackend
+from hal.torque_state import TorqueState
 from robots import RobotDescription
 from sim_twin.backend import TwinBackend
 from sim_twin.imu_errors import OPENCR, ImuErrors
@@ -155,8 +155,8 @@ def _estimator(robot: RobotDescription, twin: Twin | None, state: State) -> Esti
     return Truth(Sensors(twin))
 
 
-def limp(robot: RobotDescription, port: str) -> Mask:
-    """Switch all torque of `robot` off, whatever state it is in; (n,) bool of what is still on."""
+def limp(robot: RobotDescription, port: str) -> TorqueState:
+    """Switch all torque of `robot` off, whatever state it is in; return what was read back."""
     if port.startswith(TWIN):
         port, _ = _in_a_world(robot, port)
     backend = servo_backend(robot, port)

@@ -6,7 +6,9 @@ from typing import Annotated
 
 import tyro
 
-from robots import load_robot
+from hal.joints import Mask
+from hal.torque_state import TorqueState
+from robots import RobotDescription, load_robot
 from tools.command import Command
 from tools.faults import with_faults
 from tools.output import console, write_json
@@ -38,15 +40,32 @@ class Stop(Command):
     def run(self) -> int:
         """Stop; returns the exit status."""
         robot = load_robot(self.robot)
-        on = limp(robot, self._url)
-        names = [name for name, still in zip(robot.joints.names, on, strict=True) if still]
-        if names:
-            console.print(
-                f"torque is still on, or unknown, at {', '.join(names)}; cut the servo power"
-            )
-        else:
-            console.print(f"all {len(on)} joints of {robot.name} are limp, read back")
+        state = limp(robot, self._url)
+        console.print(_said(robot, state))
         write_json(
-            self.json, "stop", {"robot": robot.name, "stopped": not names, "still_on": names}
+            self.json,
+            "stop",
+            {
+                "robot": robot.name,
+                "stopped": state.all_off,
+                "still_on": _names(robot, state.on),
+                "unknown": _names(robot, state.unknown),
+            },
         )
-        return 3 if names else 0
+        return 0 if state.all_off else 3
+
+
+def _said(robot: RobotDescription, state: TorqueState) -> str:
+    """Return what is known of the torque, for people."""
+    joints, parts = robot.joints, []
+    if state.all_off:
+        return f"all {len(joints)} joints of {robot.name} are limp, read back"
+    if state.on.any():
+        parts.append(f"torque is still on at {state.names(joints, state.on)}")
+    if state.unknown.any():
+        parts.append(f"torque is unknown at {state.names(joints, state.unknown)}: no answer")
+    return f"{'; '.join(parts)}; cut the servo power"
+
+
+def _names(robot: RobotDescription, which: Mask) -> list[str]:
+    return [name for name, there in zip(robot.joints.names, which, strict=True) if there]

@@ -17,6 +17,7 @@ GOAL_LIMITS = {
     "goal_current": "current_limit",
     "goal_velocity": "velocity_limit",
 }
+OPEN_LOOP = {CURRENT: "goal_current", PWM: "goal_pwm"}  # modes that hold nothing, their goals
 GOALS = frozenset((*GOAL_LIMITS, "goal_position"))
 RETUNE = frozenset(("position_p_gain", "pwm_limit", "velocity_i_gain", "velocity_p_gain"))
 MODE_DEFAULTS = range(76, 120)  # RAM that a change of mode resets
@@ -32,8 +33,8 @@ class Firmware:
         present: The sample of the shaft that reads report.
         health: Hardware errors.
         powered: Whether there is a supply voltage.
-        stopped: The bus watchdog has put the output to zero; a new goal ends that, once the
-            watchdog register has been cleared.
+        stopped: The bus watchdog has taken the output away, in current or PWM mode; a new goal
+            ends that, once the watchdog register has been cleared.
     """
 
     def __init__(self, model: Model, servo: ServoModel, shaft: Shaft, supply: float) -> None:
@@ -53,7 +54,7 @@ class Firmware:
 
     @property
     def driving(self) -> bool:
-        """Whether the motor is really driven: torque is on and the watchdog has not stopped it."""
+        """Whether the motor is really driven; it is while the watchdog has it hold or brake."""
         return self.torque_on and not self.stopped and self.powered
 
     @property
@@ -103,13 +104,28 @@ class Firmware:
             return
         timeout = self.registers.memory[98]
         if 0 < timeout < 128 and self.driving and now - heard > timeout * WATCHDOG_UNIT:
-            self.registers.set("bus_watchdog", -1)
-            self.stopped = True
-            self.loop.release()
+            self._trip(now)
         before = self.health.errors
         self.health.watch(dt, self.loop.shaft.torque, self.driving)
         if self.health.errors != before:
             self.protect(now)
+
+    def _trip(self, now: float) -> None:
+        """Stop as the bus watchdog does: hold here, brake, or in a mode without a loop let go.
+
+        The motor stays on in position and velocity mode. The manual, Bus Watchdog(98), only says
+        "stop" (without a profile) and that goals are refused; what that is in each mode say
+        crane_x7_ros pull request 11 and DynamixelSDK issue 584.
+        """
+        self.registers.set("bus_watchdog", -1)
+        freed = OPEN_LOOP.get(self.loop.mode)
+        if freed is None:
+            self.hold_here()
+            self.loop.update(now)
+            return
+        self.registers.set(freed, 0)
+        self.stopped = True
+        self.loop.release()
 
     def protect(self, now: float) -> None:
         """Show hardware errors, and let go where Shutdown says so."""

@@ -180,10 +180,11 @@ def test_what_was_realised_does_not_change_afterwards(backend: Backend) -> None:
 def test_torque_that_is_switched_is_read_back(backend: Backend) -> None:
     n = len(backend.joints)
     off = backend.set_torque(False)
-    assert off.shape == (n,)
-    assert off.dtype == np.bool_
-    assert not off.any()
-    assert backend.set_torque(True).all()
+    for mask in (off.on, off.unknown, off.off):
+        assert mask.shape == (n,)
+        assert mask.dtype == np.bool_
+    assert off.all_off
+    assert backend.set_torque(True).all_on
 
 
 def test_joints_without_torque_do_not_go_where_they_are_told(backend: Backend) -> None:
@@ -257,10 +258,10 @@ def test_a_guard_before_it_refuses_what_has_another_shape(backend: Backend, extr
 def test_a_guard_before_it_stops_it(backend: Backend) -> None:
     guard = GuardedBackend(backend, SafetyLimits.of(backend.joints), "limp")
     guard.read()
-    assert not guard.stop().any()
+    assert guard.stop().all_off
     guard.stop_policy = "hold"
     backend.set_torque(True)
-    assert guard.stop().all()
+    assert guard.stop().all_on
 
 
 def way(backend: Backend, swing: float) -> Array:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hal.command import FIELDS, JointCommand
-from hal.errors import HardwareError, StaleStateError, UnsafeCommandError
+from hal.errors import HardwareError, StaleStateError, TorqueUnknownError, UnsafeCommandError
 from hal.guard import GuardedBackend, SafetyLimits, StopPolicy
 from hal.joints import Joint, Joints
 from tests.small_world import JOINTS, FakeBackend, N
@@ -109,7 +109,7 @@ def test_stop_hold_keeps_the_pose_last_read_with_the_torque_on() -> None:
     guard = guarded("hold")
     fake(guard).position = np.full(N, 0.7)
     guard.read()
-    assert guard.stop().all()
+    assert guard.stop().all_on
     last = fake(guard).written[-1]
     np.testing.assert_array_equal(last.position, np.full(N, 0.7))
     np.testing.assert_array_equal(last.stiffness, JOINTS.stiffness)
@@ -125,7 +125,7 @@ def test_stop_hold_does_not_ask_for_a_pose_outside_the_limits() -> None:
 
 def test_stop_limp_switches_the_torque_off_at_once() -> None:
     guard = guarded("limp")
-    assert not guard.stop().any()
+    assert guard.stop().all_off
     assert not fake(guard).powered
     assert fake(guard).written == []
     assert fake(guard).clock.now() == 0.0
@@ -134,7 +134,7 @@ def test_stop_limp_switches_the_torque_off_at_once() -> None:
 def test_stop_crouch_glides_there_and_then_goes_limp() -> None:
     guard = guarded("crouch", crouch=0.8)
     guard.read()
-    assert not guard.stop().any()
+    assert guard.stop().all_off
     way = np.array([command.position[0] for command in fake(guard).written])
     assert way[0] == 0.0
     assert way[-1] == pytest.approx(0.8, abs=1e-3)
@@ -146,7 +146,7 @@ def test_stop_crouch_glides_there_and_then_goes_limp() -> None:
 
 def test_a_stop_may_be_told_another_policy_than_the_robots_own() -> None:
     guard = guarded("hold")
-    assert not guard.stop("limp").any()
+    assert guard.stop("limp").all_off
     assert not fake(guard).powered
 
 
@@ -156,3 +156,10 @@ def test_stop_names_the_joints_whose_torque_stays_on() -> None:
     with pytest.raises(HardwareError) as error:
         guard.stop()
     assert str(error.value) == "torque is still on at l_hip, r_knee; cut the servo power"
+
+
+def test_torque_that_cannot_be_read_back_is_called_unknown_not_on() -> None:
+    guard = guarded("limp")
+    fake(guard).silent[:] = True
+    with pytest.raises(TorqueUnknownError, match="torque is unknown at all joints: no answer"):
+        guard.stop()

@@ -42,11 +42,11 @@ def test_counts_become_si_and_goals_become_counts(model: ServoModel) -> None:
     assert state.velocity == pytest.approx([-7 * unit, 7 * unit])
     assert np.isnan(state.torque).all() and state.age.tolist() == [0.0, 0.0]
     assert state.voltage == pytest.approx([7.4] * 2) and state.temperature.tolist() == [35.0] * 2
-    assert backend.set_torque(True).all()
+    assert backend.set_torque(True).all_on
     backend.write(JointCommand.hold(backend.joints, np.full(2, 0.5)))
     goals = [wires["body"].show(id, "goal_position") for id in (1, 2)]
     assert goals == [model.middle + s * round(0.5 / count) for s in (1, -1)]
-    assert not backend.set_torque(False).any()
+    assert backend.set_torque(False).all_off
 
 
 @pytest.mark.parametrize("model", FAMILIES, ids=names)
@@ -225,7 +225,7 @@ def test_four_makes_move_in_one_robot_with_a_linkage_ratio() -> None:
     backend = robot(wires, mounts, reach=0.5, supply=12.0)
     backend.connect()
     backend.configure()
-    assert backend.set_torque(True).all()
+    assert backend.set_torque(True).all_on
     wires["legs"].set(2, "present_position", 2048 + 60)
     wires["head"].set(1, "present_position", 520)
     state = backend.read().joints

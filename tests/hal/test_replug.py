@@ -57,7 +57,7 @@ def test_when_it_is_back_torque_is_off_and_goals_wait_for_rearm() -> None:
     with pytest.raises(HardwareError, match="legs went away since the robot was armed"):
         backend.set_torque(True)
     wires["legs"].set(1, "position_d_gain", 32)  # the servo had no power meanwhile
-    assert backend.rearm().all()
+    assert backend.rearm().all_on
     assert wires["legs"].show(1, "position_d_gain") == 0
     hold(backend)
     assert wires["legs"].show(1, "goal_position") != before
@@ -82,7 +82,7 @@ def test_arming_again_without_the_port_is_refused_with_what_was_seen() -> None:
     ticks(backend, 3)
     with pytest.raises(HardwareError, match="cannot arm again: port arms went away"):
         backend.rearm()
-    assert backend.set_torque(False).tolist() == [False, False, True]
+    assert backend.set_torque(False).unknown.tolist() == [False, False, True]
 
 
 def test_a_hundred_times_at_any_moment_leave_one_open_port_each() -> None:
@@ -100,7 +100,7 @@ def test_a_hundred_times_at_any_moment_leave_one_open_port_each() -> None:
         wires.unplugged.clear()
         ticks(backend, 40)
         assert backend.lost == {} and wires.open == 2
-        assert backend.rearm().all()
+        assert backend.rearm().all_on
     backend.disconnect()
     assert wires.open == 0
 

@@ -216,12 +216,12 @@ def test_torque_comes_on_at_the_present_pose_with_the_watchdog_armed() -> None:
     for id in range(1, 5):
         robot.serial.put(id, 132, 1000 + id, 4)
     robot.serial.written.clear()
-    assert robot.backend.set_torque(True).all()
+    assert robot.backend.set_torque(True).all_on
     order = [start for _, start, _ in robot.serial.written]
     assert order.index(116) < order.index(64)
     assert [robot.serial.get(id, 116, 4) for id in range(1, 5)] == [1001, 1002, 1003, 1004]
     assert [robot.serial.get(id, 98, 1) for id in range(1, 5)] == [10] * 4
-    assert not robot.backend.set_torque(False).any()
+    assert robot.backend.set_torque(False).all_off
     assert [robot.serial.get(id, 98, 1) for id in range(1, 5)] == [0] * 4
 
 
@@ -237,7 +237,7 @@ def test_a_silent_servo_counts_as_powered() -> None:
     robot = Robot().up()
     robot.backend.set_torque(True)
     robot.serial.silent.add(2)
-    assert robot.backend.set_torque(False).tolist() == [False, True, False, False]
+    assert robot.backend.set_torque(False).unknown.tolist() == [False, True, False, False]
 
 
 def test_a_watchdog_that_fired_is_cleared_at_the_present_pose() -> None:

@@ -11,10 +11,11 @@ from hal.command import JointCommand
 from hal.contacts import ContactSensors
 from hal.errors import TelemetryError
 from hal.guard import GuardedBackend, SafetyLimits
-from hal.joints import Joint, Joints, Mask
+from hal.joints import Joint, Joints
 from hal.observation import BaseState, ImuState, JointState, Observation
 from hal.telemetry import TelemetryReader, TelemetryWriter
 from hal.telemetry_layout import FIXED, ring_path
+from hal.torque_state import TorqueState
 
 JOINTS = Joints(tuple(Joint(name, -1.0, 1.0, 10.0, 1.0) for name in ("hip", "knee")))
 CONTACTS = ContactSensors(("heel", "toe"), {"foot": ("heel", "toe")})
@@ -58,8 +59,8 @@ class Servos:
     def write(self, command: JointCommand) -> JointCommand:
         return command
 
-    def set_torque(self, on: bool) -> Mask:
-        return np.full(2, on)
+    def set_torque(self, on: bool) -> TorqueState:
+        return TorqueState.known(np.full(2, on))
 
 
 def observation(time: float = 0.0, whole: bool = True) -> Observation:

@@ -208,12 +208,12 @@ def test_a_robot_without_torque_is_limp(robot: RobotDescription) -> None:
     backend = TwinBackend(twin)
     twin.step(20)
     assert np.abs(twin.data.qfrc_actuator).max() > 0.01
-    assert not backend.set_torque(False).any()
+    assert backend.set_torque(False).all_off
     twin.step(1)
     assert not twin.data.qfrc_actuator.any()
     twin.step(round(3.0 / twin.timestep))
     assert twin.fallen
-    assert backend.set_torque(True).all()
+    assert backend.set_torque(True).all_on
     twin.step(1)
     assert np.abs(twin.data.qfrc_actuator).max() > 0.01
 

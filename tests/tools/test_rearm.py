@@ -22,7 +22,7 @@ def test_a_duck_that_was_unplugged_stays_limp_until_it_is_armed_again() -> None:
     duck.backend.clock.wait_until(duck.backend.clock.now() + 1.0)
     for _ in range(5):  # opened, switched off, believed
         servos.read()
-    assert servos.lost == {} and not servos.links[0].torque.state().any()
+    assert servos.lost == {} and servos.links[0].torque.state().all_off
     here = duck.backend.read().joints.position
     duck.rearm()
     assert duck.armed

@@ -24,7 +24,7 @@ def test_the_duck_stands_on_its_wire(faults: str) -> None:
         backend = ServoBackend(robot.joints, mounts, {"body": port}, supply=robot.drive.supply)
         backend.connect()
         backend.configure()
-        assert backend.set_torque(True).all()
+        assert backend.set_torque(True).all_on
         block = np.zeros((5, len(mounts)))
         block[0], block[3] = robot.stance, robot.joints.stiffness
         oldest = 0.0
@@ -38,7 +38,7 @@ def test_the_duck_stands_on_its_wire(faults: str) -> None:
         assert not twin.fallen
         assert oldest < 4 * PERIOD
         assert np.abs(seen.position - robot.stance).max() < 0.1
-        assert not backend.set_torque(False).any()
+        assert backend.set_torque(False).all_off
         backend.disconnect()
 
 

@@ -4,8 +4,6 @@ from collections.abc import Iterator
 
 import pytest
 
-from sim_twin.wire.firmware import ALERT
-from sim_twin.wire.health import ENCODER, INPUT_VOLTAGE, OVERHEATING, OVERLOAD
 from sim_twin.wire.register_file import (
     BAD_ACCESS,
     BAD_INSTRUCTION,
@@ -214,78 +212,6 @@ def test_torque_on_by_goal_update(host: Host) -> None:
     assert host.read(XM, "torque_enable") == 1
     host.wait(2.0)
     assert host.read(XM, "present_position") == pytest.approx(2500, abs=2)
-
-
-def test_the_bus_watchdog_stops_a_servo_whose_host_is_silent(host: Host) -> None:
-    turn_on(host, VELOCITY)
-    host.write(XM, "goal_velocity", 100)
-    host.write(XM, "bus_watchdog", 5)  # 100 ms
-    for _ in range(20):
-        host.wait(0.09)
-        assert host.read(XM, "bus_watchdog") == 5
-    host.wait(0.12)
-    assert not host.servo(XM).driving
-    assert host.read(XM, "bus_watchdog") == -1
-    assert host.read(XM, "torque_enable") == 1
-    assert host.write(XM, "goal_velocity", 150) == BAD_RANGE
-    assert host.write(XM, "bus_watchdog", 5) == BAD_RANGE
-    assert host.write(XM, "bus_watchdog", 0) == OK
-    host.wait(1.0)
-    assert host.shaft(XM).torque == 0.0  # until a new goal
-    assert host.write(XM, "goal_velocity", 150) == OK
-    host.wait(2.0)
-    assert host.read(XM, "present_velocity") == pytest.approx(150, abs=3)
-
-
-def test_the_bus_watchdog_sleeps_while_torque_is_off(host: Host) -> None:
-    host.write(XM, "bus_watchdog", 1)
-    host.wait(1.0)
-    assert host.read(XM, "bus_watchdog") == 1
-
-
-def test_an_overload_shuts_down_until_a_reboot(host: Host) -> None:
-    turn_on(host, POSITION)
-    host.shaft(XM).blocked = True
-    host.write(XM, "goal_position", 4000)
-    host.wait(1.5)
-    assert host.read(XM, "hardware_error_status") == OVERLOAD
-    assert host.read(XM, "torque_enable") == 0
-    assert host.write(XM, "torque_enable", 1) == ALERT | BAD_ACCESS
-    assert host.ask(XM, 0x01)[0].parameters[0] == ALERT
-    assert host.ask(XM, 0x08)[0].parameters == b"\0"
-    assert host.ask(XM, 0x01) == []  # it boots
-    host.wait(0.5)
-    assert host.read(XM, "hardware_error_status") == 0
-    assert host.write(XM, "torque_enable", 1) == OK
-
-
-@pytest.mark.parametrize("error", [OVERHEATING, INPUT_VOLTAGE, ENCODER])
-def test_only_errors_that_shutdown_names_take_the_torque(host: Host, error: int) -> None:
-    turn_on(host, POSITION)
-    health = host.servo(XM).firmware.health
-    if error == OVERHEATING:
-        health.temperature = 95.0
-    elif error == INPUT_VOLTAGE:
-        host.world.set_supply(9.0)
-    else:
-        health.inject(error)
-        host.servo(XM).firmware.protect(host.now)
-    host.wait(0.05)
-    assert host.read(XM, "hardware_error_status") == error
-    assert host.read(XM, "torque_enable") == int(error != OVERHEATING)
-
-
-def test_heat_comes_from_current_and_goes(host: Host) -> None:
-    host.write(XM, "shutdown", 0)
-    turn_on(host, PWM)
-    host.shaft(XM).blocked = True
-    host.write(XM, "goal_pwm", 600)
-    host.wait(20.0)
-    warm = host.read(XM, "present_temperature")
-    assert 28 < warm < 80
-    host.write(XM, "goal_pwm", 0)
-    host.wait(100.0)
-    assert host.read(XM, "present_temperature") < warm
 
 
 def test_a_reboot_keeps_the_eeprom_and_resets_the_ram(host: Host) -> None:

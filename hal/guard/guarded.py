@@ -3,53 +3,27 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import isfinite
-from typing import Literal
 
 import numpy as np
 
 from hal.backend import Backend, Clock, Rearmable
 from hal.command import FIELDS, JointCommand
-from hal.errors import HardwareError, PortError, StaleStateError, UnsafeCommandError
-from hal.joints import Array, Joints, Mask
+from hal.errors import (
+    PortError,
+    StaleStateError,
+    TorqueOnError,
+    TorqueUnknownError,
+    UnsafeCommandError,
+)
+from hal.guard.limits import SafetyLimits, StopPolicy
+from hal.joints import Array, Joints
 from hal.observation import Observation
-
-StopPolicy = Literal["hold", "crouch", "limp"]
+from hal.torque_state import TorqueState
 
 CROUCH_SECONDS = 1.5
 TICK = 0.008
 REPLUG_TIME = 2.0
 """What a port that was plugged in again may take until it can be opened, s."""
-
-
-@dataclass(frozen=True)
-class SafetyLimits:
-    """What a command may ask for, and how old a state may be.
-
-    Attributes:
-        lower: (5, n) smallest values of the rows of a `JointCommand`.
-        upper: (5, n) largest values of the same rows.
-        max_age: Age of a joint's state above which the guard refuses to go on, s.
-    """
-
-    lower: Array
-    upper: Array
-    max_age: float = 0.25
-
-    @classmethod
-    def of(cls, joints: Joints, max_age: float = 0.25) -> "SafetyLimits":
-        """Return the limits that the joints themselves state; gains up to four times default."""
-        zero = np.zeros(len(joints))
-        lower = np.stack([joints.lower, -joints.velocity, -joints.torque, zero, zero])
-        upper = np.stack(
-            [
-                joints.upper,
-                joints.velocity,
-                joints.torque,
-                4.0 * joints.stiffness,
-                4.0 * joints.damping,
-            ]
-        )
-        return cls(lower, upper, max_age)
 
 
 @dataclass
@@ -104,12 +78,12 @@ class GuardedBackend:
         """Close the backend."""
         self.backend.disconnect()
 
-    def set_torque(self, on: bool) -> Mask:
-        """Switch the torque of all joints; (n,) bool read back."""
+    def set_torque(self, on: bool) -> TorqueState:
+        """Switch the torque of all joints and return what was read back."""
         return self.backend.set_torque(on)
 
-    def rearm(self) -> Mask:
-        """Switch torque on at the present pose after a port was gone; (n,) bool read back.
+    def rearm(self) -> TorqueState:
+        """Switch torque on at the present pose after a port was gone; return what was read back.
 
         Raises:
             PortError: A port is still gone.
@@ -176,27 +150,33 @@ class GuardedBackend:
         self._count(block)
         return self._write(JointCommand(self._buffer.copy()))
 
-    def stop(self, policy: StopPolicy | None = None) -> Mask:
-        """Carry out the stop policy and return (n,) bool: joints whose torque is still on.
+    def stop(self, policy: StopPolicy | None = None) -> TorqueState:
+        """Carry out the stop policy and return the torque as it was read back.
 
         Args:
             policy: What to do instead of the robot's own policy.
 
         Raises:
-            HardwareError: Torque was told to go off and a joint read back on.
+            TorqueOnError: Torque was told to go off and a joint read back as on.
+            TorqueUnknownError: A joint could not be read back.
         """
         policy = policy or self.stop_policy
         if policy == "hold":
-            pose = self._pose()
-            self._write(JointCommand.hold(self.joints, pose))
-            return np.ones(len(self.joints), dtype=bool)
+            self._write(JointCommand.hold(self.joints, self._pose()))
+            return TorqueState.known(np.ones(len(self.joints), dtype=bool))
         if policy == "crouch" and self.crouch is not None:
             self._glide(self._pose(), self.crouch, CROUCH_SECONDS)
-        on = self.backend.set_torque(False)
-        if on.any():
-            stuck = ", ".join(np.array(self.joints.names)[on])
-            raise HardwareError(f"torque is still on at {stuck}; cut the servo power")
-        return on
+        state = self.backend.set_torque(False)
+        if state.on.any():
+            where = state.names(self.joints, state.on)
+            raise TorqueOnError(f"torque is still on at {where}; cut the servo power")
+        if state.unknown.any():
+            where = state.names(self.joints, state.unknown)
+            raise TorqueUnknownError(
+                f"torque is unknown at {where}: no answer; it may be on: cut the servo power, "
+                "or give the port back"
+            )
+        return state
 
     def _pose(self) -> Array:
         last = self._last or self.read()
