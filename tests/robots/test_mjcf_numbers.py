@@ -33,7 +33,7 @@ def test_a_model_with_sound_numbers_is_compiled(tmp_path: Path) -> None:
         ('mass="2"', 'mass="1e300"', "body 'trunk', "),
         ('range="-1', 'range="-inf', "joint 'hip', range: -inf is not finite"),
         ('damping="0.5"', 'damping="-1"', "joint 'hip', damping: -1 is negative"),
-        ('armature="0.25"', 'armature="-1"', "joint 'hip', armature: -1 is negative"),
+        ('armature="0.25"', 'armature="nan"', "joint 'hip', armature: nan is not finite"),
         ('friction="0.75"', 'friction="-1"', "geom 'shin', friction: -1 is negative"),
     ],
 )

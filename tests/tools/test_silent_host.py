@@ -18,7 +18,7 @@ def test_op3_freezes_with_torque_on_and_goes_on_when_its_host_is_back() -> None:
         registers = link.line.bus.family.registers
         counts, valid = link.line.bus.sync_read(link.line.ids, registers["bus_watchdog"])
         assert valid.all() and (counts == -1).all()
-        assert link.torque.state().all()
+        assert link.torque.state().all_on
 
         assert robot.stand(1.0).reason == "done"
         assert servos.watchdog_trips == 20 and not robot.fallen
