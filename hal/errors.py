@@ -96,6 +96,10 @@ class TorqueUnknownError(HardwareError):
     """Torque was told to go off, and a joint could not be read back: it may be on or off."""
 
 
+class GuardianError(HardwareError):
+    """The process that stops the robot when this one dies has died itself, or does not react."""
+
+
 class RefusedError(HardwareError):
     """A servo answered that it will not do what it was told."""
 

@@ -56,6 +56,7 @@ class ServoBackend:
         links: The buses, from `connect` to `disconnect`.
         clamps: Clamp name to the number of commands it changed; "unarmed" are goals withheld.
         watchdog_trips: Servos that had frozen for silence, and were cleared.
+        heartbeat: Called again and again while torque is switched, which takes a while.
     """
 
     def __init__(
@@ -93,6 +94,7 @@ class ServoBackend:
         self._realised = np.empty((2, n))
         self._realised[1] = self._couplings.joint_gains(self.units.damping)
         self._gains = b""
+        self.heartbeat: Callable[[], None] = lambda: None
 
     @property
     def lines(self) -> list[ServoLine]:
@@ -193,6 +195,12 @@ class ServoBackend:
         real[0] = self._couplings.joints(angle) if self._couplings else angle
         real[3:] = self._realised
         return JointCommand(real)
+
+    def goal_counts(self, pose: Array) -> Array:
+        """Return the servos' goals (n,) for a pose of the joints (n,) rad, counts."""
+        goal = self._couplings.servos(pose) if self._couplings else pose
+        counts: Array = np.clip(np.rint(self.units.counts(goal)), 0.0, self.units.last)
+        return counts
 
     def bus_errors(self) -> Mapping[str, int]:
         """Return kind of error to how often it has happened, over all buses."""

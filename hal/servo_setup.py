@@ -9,6 +9,7 @@ from hal.bus import Bus
 from hal.clock import WallClock
 from hal.errors import UsageError
 from hal.families import family_of
+from hal.guardian.lock import wait_while_guarded
 from hal.imu.opencr import POWER, POWER_UP_TIME, OpenCr
 from hal.imu.source import ImuSource
 from hal.joints import Array, Joints, Mask
@@ -72,6 +73,7 @@ def open_links(
     beside: ImuLink | None = None
     try:
         for name, build in lines.items():
+            wait_while_guarded(ports[name].url)
             links.append(ServoLink(ports[name], opener, build, watchdog))
         if imu is not None:
             beside = ImuLink(imu, opener)

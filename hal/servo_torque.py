@@ -65,15 +65,19 @@ class ServoTorque:
             self._write(self._watch, 0)
         return state
 
-    def stay(self) -> None:
-        """Send the servos that are on to where they are now; the others stay off.
+    def stay(self) -> Array:
+        """Have the servos stay where they are, watching no host, and return (servos,) counts.
 
         Raises:
-            HardwareError: A servo cannot be read, or does not take its goal.
+            HardwareError: A servo has no torque, cannot be read, or does not take its goal.
         """
-        here, on = np.clip(self._here(), 0, self._last), np.flatnonzero(~self.state().off)
-        if on.size:
-            self._set(self._registers["goal_position"], here[on], on)
+        if not self.state().all_on:
+            raise HardwareError(f"{self.line.bus.port.url}: a servo has no torque, or is silent")
+        if self._watch is not None:
+            self._set(self._watch, np.zeros(len(self.line.ids)))
+        here: Array = np.clip(self._here(), 0, self._last)
+        self._set(self._registers["goal_position"], here)
+        return here
 
     def _here(self) -> Array:
         """Return (servos,) present positions; behind a weak checksum two readings must agree."""

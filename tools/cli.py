@@ -3,7 +3,6 @@
 import io
 import logging
 import os
-import signal
 import sys
 from contextlib import redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
@@ -18,6 +17,7 @@ from tools.emulate import Emulate
 from tools.estimate import Estimate
 from tools.footprints import Footprints
 from tools.health import Health
+from tools.interrupts import end_on_signals
 from tools.output import check_writable, console, error_record, write_json
 from tools.parse_errors import wrong_number
 from tools.play import Play
@@ -63,14 +63,13 @@ def main(arguments: list[str] | None = None) -> None:
 
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line and return the exit status."""
-    logging.basicConfig(level=logging.WARNING)
+    logging.basicConfig(level=logging.WARNING, format="windup: %(message)s")
     # MuJoCo would write its warnings into a file in the present folder; a twin that diverges says
     # so itself.
     mujoco.set_mju_user_warning(logging.getLogger("mujoco").debug)
     command = None
     words = list(sys.argv[1:] if arguments is None else arguments)
-    # A robot has to be let go on SIGTERM as on Ctrl-C.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    end_on_signals()
     try:
         command = parse(separate(words))
         command.check()

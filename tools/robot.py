@@ -5,9 +5,8 @@ with Robot.open("op3") as robot:              # its twin
 """
 
 from collections.abc import Callable
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
-from types import TracebackType
 from typing import Self
 
 from control.loop import LoopReport, Until
@@ -26,6 +25,7 @@ from sim_twin.world import World
 from tools.build import build_walk
 from tools.gaits import find_gait
 from tools.gauges import Gauges
+from tools.interrupts import RunInterruptedError
 from tools.load_gauge import LoadGauge
 from tools.plan_process import ProcessPlanner, plan_aside
 from tools.quantities import Count, Delay, Noise, Rate, Seconds, Seed, Speed
@@ -37,7 +37,6 @@ from tools.walk_end import OnStep, WalkEnd
 from tools.walk_options import WalkOptions
 
 START_SECONDS = 1.0
-REST_SECONDS = 1.5
 PLAY_SECONDS = 5.0
 
 
@@ -139,30 +138,6 @@ class Robot(Session):
             protect=protect,
         )
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        try:
-            if self.armed and error is None and not self.fallen:
-                self.rest()
-            elif self.armed:
-                self.stop()
-        finally:
-            self.close()
-
-    def rest(self) -> None:
-        """Crouch, if the robot has a pose for it, and switch the torque off."""
-        crouch = self.description.crouch
-        if crouch is not None:
-            self.run(PoseHolder(self.description.joints, crouch, REST_SECONDS), REST_SECONDS + 0.3)
-        self.stop(limp=True)
-
     @numbers_checked
     def stand(self, seconds: Seconds = 2.0) -> LoopReport:
         """Hold the stance for `seconds` s of the robot's time."""
@@ -225,6 +200,7 @@ class Robot(Session):
 
         Raises:
             UsageError: The options do not fit the gait; nothing has moved.
+            RunInterruptedError: By a signal; the robot has stopped, and the report is attached.
         """
         options = options or WalkOptions()
         check_numbers(options)
@@ -246,12 +222,16 @@ class Robot(Session):
             if disturb is not None:
                 disturb(self)
             report = WalkReport(self, walker, options, steps)
-            with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far
+            try:
                 walking = self.supervisor or walker
                 walked = self.run(walking, until=self._looking(end), rollouts=stopwatch)
                 if stand > 0.0 and walked.reason == "done":
                     walked.reason = self.stand(stand).reason
                     self.loop = walked
+            except RunInterruptedError as stopped:
+                report.loop = self.loop
+                stopped.report = report
+                raise
         report.loop = self.loop
         return report
 

@@ -1,166 +1,88 @@
-"""A session on a backend: arm, run controllers in the loop, and stop whatever happens."""
+"""A session on a robot: run controllers in the loop, and stop whatever happens."""
 
 import logging
 from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass, field
-
-import numpy as np
+from types import TracebackType
+from typing import Self
 
 from control.loop import LoopReport, Until, run_loop
+from control.play import PoseHolder
 from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
-from hal.errors import (
-    ControllerError,
-    HardwareError,
-    TelemetryError,
-    UsageError,
-    WindupError,
-)
-from hal.guard import GuardedBackend
-from hal.guardian import Guardian, guardian_for
-from hal.observation import BaseState, Observation
+from hal.errors import ControllerError, TelemetryError, WindupError
+from hal.observation import Observation
 from hal.ranges import numbers_checked
 from hal.telemetry import TelemetryWriter
-from hal.torque_state import TorqueState
-from robots import RobotDescription
 from sim_twin.backend import TwinClock
-from sim_twin.push import Push
-from sim_twin.twin import Twin
-from tools.interrupts import asked_to_end
+from tools.armed import Armed
+from tools.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
 from tools.protect import Protection
-from tools.stack import Stack
 
 INTERRUPTED = "interrupted"
+REST_SECONDS = 1.5
 # Called once a tick with the observation.
 Watch = Callable[[Observation], None]
 
 
 @dataclass
-class Session:
-    """A stack that controllers run on.
+class Session(Armed):
+    """A robot that controllers run on.
 
     Attributes:
-        description: What robot it is.
-        stack: Its backend and what belongs to it.
         period: Period of the control loop, s.
         paced: Its time is real time.
         protect: A fall that cannot be prevented is softened, where the robot's file says how.
-        loop: Report of the last run.
         watch: Called with every observation, for whoever draws or logs.
-        base: Base state last seen: the truth on a twin, an estimate on a robot.
         telemetry: Where everybody else can read how it goes, once it runs.
-        guardian: Stops servos without a watchdog of their own should this process die.
     """
 
-    description: RobotDescription
-    stack: Stack
-    period: float
+    period: float = field(kw_only=True)
     paced: bool = False
     protect: bool = True
-    loop: LoopReport = field(default_factory=LoopReport, init=False)
     watch: Watch | None = field(default=None, init=False)
-    base: BaseState | None = field(default=None, init=False)
     telemetry: TelemetryWriter | None = field(default=None, init=False)
-    armed: bool = field(default=False, init=False)
-    guardian: Guardian | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         self._protection = Protection(self.description)
 
-    @property
-    def backend(self) -> GuardedBackend:
-        """The guarded backend."""
-        return self.stack.backend
+    def __enter__(self) -> Self:
+        return self
 
-    @property
-    def fallen(self) -> bool:
-        """True when the robot has fallen."""
-        if self.stack.twin is not None:
-            return self.stack.twin.fallen
-        if self.base is None:
-            return False
-        fall = self.description.fall
-        _, x, y, _ = self.base.orientation
-        tilted = 1.0 - 2.0 * (x * x + y * y) < np.cos(fall.tilt)
-        return bool(self.base.position[2] < fall.height or tilted)
-
-    @property
-    def twin(self) -> Twin:
-        """The twin behind the backend.
-
-        Raises:
-            UsageError: This is a robot, not a twin.
-        """
-        if self.stack.twin is None:
-            raise UsageError("only a twin can do that; leave --port away")
-        return self.stack.twin
-
-    @numbers_checked
-    def push(
-        self, impulse: float, direction: float = 0.0, *, duration: float = 0.1, delay: float = 0.0
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
     ) -> None:
-        """Push the torso of a twin.
+        with counted_signals(self.stack.wired) as asked:
+            try:
+                self._let_go(error)
+            finally:
+                self.close()
+        if asked() and error is None:
+            raise RunInterruptedError(self.loop, asked.by)
 
-        Args:
-            impulse: N s.
-            direction: rad; 0 pushes forward, positive to the left.
-            duration: s.
-            delay: s from now.
-        """
-        start = self.twin.time + delay
-        self.twin.push(Push.impulse(self.description.torso, impulse, direction, start, duration))
+    def _let_go(self, error: BaseException | None) -> None:
+        """Rest after a run that went well, else stop; an error is never replaced by the stop's."""
+        if self.armed and error is None and not self.fallen:
+            self.rest()
+        elif self.armed:
+            try:
+                self.stop()
+            except WindupError as failed:
+                if error is None:
+                    raise
+                logging.getLogger(__name__).warning("%s", failed)
 
-    @numbers_checked
-    def shove(self, speed: float, direction: float = 0.0, *, delay: float = 0.0) -> None:
-        """Give a whole twin `speed` m/s toward `direction` rad, `delay` s from now."""
-        mass = float(self.twin.model.body_mass.sum())
-        self.twin.push(Push.velocity_step(speed, mass, direction, self.twin.time + delay))
-
-    def arm(self) -> None:
-        """Switch the torque on at the present pose, where there are servos to switch.
-
-        Raises:
-            UsageError: The port is real and `arm` was not given; nothing has moved.
-            HardwareError: A servo did not take it, or the guardian does not start; all torque is
-                off again.
-        """
-        if not self.armed and self.stack.wired:
-            self._arm(lambda: self.backend.set_torque(True))
-
-    def rearm(self) -> None:
-        """Switch the torque on again after a port was unplugged, at the pose of now.
-
-        The servos are checked and set as when the robot was opened: some may have had no power.
-
-        Raises:
-            UsageError: As of `arm`.
-            PortError: The port is still gone; torque is off wherever it can be reached.
-            HardwareError: As of `arm`.
-        """
-        if self.stack.wired:
-            self._arm(self.backend.rearm)
-
-    def _arm(self, switch_on: Callable[[], TorqueState]) -> None:
-        if not self.stack.may_arm:
-            raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
-        if self.guardian is None or not self.guardian.alive:
-            self.guardian = guardian_for(self.backend.backend, self.backend.stop_policy)
-        self.armed = True
-        state = switch_on()
-        if not state.all_on:
-            where = state.names(self.description.joints, ~state.on)
-            raise HardwareError(f"torque does not come on at {where}; run `windup scan`")
-
-    def stop(self, *, limp: bool = False) -> None:
-        """Carry out the stop policy at once; with `limp`, just switch the torque off.
-
-        Raises:
-            HardwareError: Torque was told to go off and a joint read back on.
-        """
-        self.armed = not self.backend.stop("limp" if limp else None).all_off
-        if not self.armed:
-            self._release()
+    def rest(self) -> None:
+        """Crouch, if the robot has a pose for it, and switch the torque off."""
+        crouch = self.description.crouch
+        if crouch is not None:
+            self.run(PoseHolder(self.description.joints, crouch, REST_SECONDS), REST_SECONDS + 0.3)
+        self.stop(limp=True)
 
     @numbers_checked
     def run(
@@ -189,15 +111,15 @@ class Session:
         protected = None
         if self.protect and self._protection.possible and not down:
             controller = protected = self._protection.around(controller)
-        with asked_to_end() as asked:
-            self.arm()
+        with counted_signals(self.stack.wired) as asked, self._running, self._held_afterwards():
+            self._arm_once()
             begin = self.backend.clock.now()
 
             def end(observation: Observation) -> str | None:
                 self.base = observation.base
                 if self.watch is not None:
                     self.watch(observation)
-                if asked():
+                if asked() or self._running.asked:
                     return INTERRUPTED
                 if protected is not None and protected.active:
                     return self._landed() if protected.finished else None
@@ -208,16 +130,18 @@ class Session:
                 over = seconds is not None and observation.time >= begin + seconds - 1e-9
                 return "done" if over else None
 
-            self._run(controller, end, rollouts)
+            self._run(controller, end, rollouts, asked)
         if self.loop.reason == INTERRUPTED:
-            raise KeyboardInterrupt
+            raise RunInterruptedError(self.loop, asked.by or "robot.stop()")
         return self.loop
 
     def _landed(self) -> str:
         """Return why a run ends whose fall is over."""
         return "fell" if self.fallen else "braced for a fall that did not come"
 
-    def _run(self, controller: Controller, end: Until, rollouts: Stopwatch | None) -> None:
+    def _run(
+        self, controller: Controller, end: Until, rollouts: Stopwatch | None, asked: Asked
+    ) -> None:
         """Run the loop; stop the robot if it ends by an error or a wish."""
         self.loop = LoopReport()
         self._publish()
@@ -236,27 +160,24 @@ class Session:
                     recorder=self.telemetry,
                 )
             if self.loop.reason == INTERRUPTED:
-                self._stop_after_error()
+                if self.stack.wired:
+                    note_interruption(asked.by or "robot.stop()")
+                self._stop_after_error(asked)
         except WindupError as error:
             self.loop.reason = str(error)
-            self._stop_after_error()
+            self._stop_after_error(asked)
             raise
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, SystemExit) as ended:  # raised by a controller of one's own
+            asked.by = asked.by or type(ended).__name__
             self.loop.reason = INTERRUPTED
-            self._stop_after_error()
-            raise
+            self._stop_after_error(asked)
         except Exception as error:
             self.loop.reason = f"the controller failed: {type(error).__name__}: {error}"
-            self._stop_after_error()
+            self._stop_after_error(asked)
             raise ControllerError(self.loop.reason) from error
         finally:
             if self.telemetry is not None:
                 self.telemetry.end(self.loop.reason)
-
-    def _release(self) -> None:
-        if self.guardian is not None:
-            self.guardian.release()
-            self.guardian = None
 
     def _publish(self) -> None:
         """Say to everybody that a run begins; a robot runs without them all the same."""
@@ -272,16 +193,15 @@ class Session:
         except TelemetryError as error:
             logging.getLogger(__name__).warning("no telemetry: %s", error)
 
-    def _stop_after_error(self) -> None:
+    def _stop_after_error(self, asked: Asked) -> None:
         """Carry out the stop policy; a twin that has diverged can no longer do it."""
         try:
-            self.stop()
+            self._stop(None, asked)
         except WindupError as error:
             self.loop.reason += f"; and the stop failed: {error}"
 
     def close(self) -> None:
-        """Disconnect; call it when the torque is off."""
-        self.stack.close()
-        self._release()
+        """Disconnect; torque that has not been read back as off is left to the guardian."""
+        super().close()
         if self.telemetry is not None:
             self.telemetry.close()

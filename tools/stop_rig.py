@@ -202,7 +202,7 @@ def _move(name: str, port: str, moment: Moment, tell: Connection) -> None:
 
 def _keep_moving(robot: Robot, seed: int, begin: Callable[[str], None]) -> None:
     """Walk if the servos watch over their host, else stand and play; return if it falls."""
-    if robot.guardian is None:
+    if robot.description.buses[0].protocol == "dynamixel2":
         robot.walk(steps=1000, on_step=lambda number, _: begin("walking") if number == 1 else None)
         return
     for graph in cycle(np.random.default_rng(seed).permutation(_graphs(robot))):

@@ -12,6 +12,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from robots import load_robot
 from tools.build import build_walk
+from tools.interrupts import RunInterruptedError
 from tools.options import Common
 from tools.output import console, write_json
 from tools.plot import Trace, plot_walk
@@ -127,13 +128,17 @@ class Walk(TwinOptions, Common):
 
     def _walk(self, robot: Robot, progress: Progress) -> WalkReport:
         bar = progress.add_task("walking", total=self._most, speed="", lean="")
-        return robot.walk(
-            steps=self._most,
-            options=self._options(),
-            on_step=_update(progress, bar, robot),
-            disturb=self.disturb(),
-            stand=self.stand,
-        )
+        try:
+            return robot.walk(
+                steps=self._most,
+                options=self._options(),
+                on_step=_update(progress, bar, robot),
+                disturb=self.disturb(),
+                stand=self.stand,
+            )
+        except RunInterruptedError as stopped:
+            walked: WalkReport = stopped.report
+            return walked
 
     def _options(self) -> WalkOptions:
         return WalkOptions(

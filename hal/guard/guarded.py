@@ -1,14 +1,17 @@
 """The guard: the only holder of a write handle, between every controller and every backend."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from math import isfinite
+from threading import RLock
 
 import numpy as np
 
 from hal.backend import Backend, Clock, Rearmable
 from hal.command import FIELDS, JointCommand
 from hal.errors import (
+    GuardianError,
     PortError,
     StaleStateError,
     TorqueOnError,
@@ -26,6 +29,10 @@ REPLUG_TIME = 2.0
 """What a port that was plugged in again may take until it can be opened, s."""
 
 
+def no_heartbeat() -> None:
+    """Nobody watches whether commands come."""
+
+
 @dataclass
 class GuardedBackend:
     """A backend whose commands are checked, clamped and counted on their way through.
@@ -37,6 +44,8 @@ class GuardedBackend:
         crouch: (n,) pose of the crouch, rad.
         clamps: Clamp name to the number of commands it changed.
         clamped_joints: (n,) number of commands in which each joint was clamped.
+        heartbeat: Called with every command, for whoever watches that commands come.
+        lock: Held while the backend is used: a thread holds an idle robot between two runs.
     """
 
     backend: Backend
@@ -45,15 +54,18 @@ class GuardedBackend:
     crouch: Array | None = None
     clamps: dict[str, int] = field(default_factory=lambda: dict.fromkeys(FIELDS, 0))
     clamped_joints: Array = field(init=False)
+    heartbeat: Callable[[], None] = field(init=False, repr=False)
+    lock: RLock = field(default_factory=RLock, init=False, repr=False)
     _last: Observation | None = field(default=None, init=False, repr=False)
 
     def __post_init__(self) -> None:
         self.clamped_joints = np.zeros(len(self.backend.joints))
+        self.heartbeat = no_heartbeat
         self._buffer = np.empty_like(self.limits.lower)
         # Where a limit is infinite, clamping does not show that a value is.
         self._unlimited = not np.isfinite([self.limits.lower, self.limits.upper]).all()
         # Bound once: these run on every tick.
-        self._write: Callable[[JointCommand], JointCommand] = self.backend.write
+        self._send: Callable[[JointCommand], JointCommand] = self.backend.write
         self._collect: Callable[[], Observation] = self.backend.collect
 
     @property
@@ -80,7 +92,8 @@ class GuardedBackend:
 
     def set_torque(self, on: bool) -> TorqueState:
         """Switch the torque of all joints and return what was read back."""
-        return self.backend.set_torque(on)
+        with self.lock:
+            return self.backend.set_torque(on)
 
     def rearm(self) -> TorqueState:
         """Switch torque on at the present pose after a port was gone; return what was read back.
@@ -90,13 +103,17 @@ class GuardedBackend:
             HardwareError: Something is not as wired; torque stays off.
         """
         if not isinstance(self.backend, Rearmable):
-            return self.backend.set_torque(True)
+            return self.set_torque(True)
+        with self.lock:
+            return self._rearm(self.backend)
+
+    def _rearm(self, backend: Rearmable) -> TorqueState:
         self._last = None
         until = self.clock.now() + REPLUG_TIME
         while True:
             self.backend.read()  # which opens what has come back
             try:
-                return self.backend.rearm()
+                return backend.rearm()
             except PortError:
                 if self.clock.now() >= until:
                     raise
@@ -108,8 +125,9 @@ class GuardedBackend:
 
     def read(self) -> Observation:
         """Return the present state (see `collect`)."""
-        self.backend.request()
-        return self.collect()
+        with self.lock:
+            self.backend.request()
+            return self.collect()
 
     def collect(self) -> Observation:
         """Return the state last asked for.
@@ -133,8 +151,10 @@ class GuardedBackend:
         """Clamp `command` into the limits, send it, and return what the joints really got.
 
         Raises:
+            GuardianError: The process that would stop the robot is gone; nothing was sent.
             UnsafeCommandError: A value is not a number, or the shape is wrong.
         """
+        self.heartbeat()
         block = command.block
         if block.shape != self._buffer.shape:
             raise UnsafeCommandError(
@@ -150,22 +170,28 @@ class GuardedBackend:
         self._count(block)
         return self._write(JointCommand(self._buffer.copy()))
 
-    def stop(self, policy: StopPolicy | None = None) -> TorqueState:
+    def stop(
+        self, policy: StopPolicy | None = None, hurry: Callable[[], bool] = lambda: False
+    ) -> TorqueState:
         """Carry out the stop policy and return the torque as it was read back.
 
         Args:
             policy: What to do instead of the robot's own policy.
+            hurry: Asked during a crouch: if true, torque goes off at once.
 
         Raises:
             TorqueOnError: Torque was told to go off and a joint read back as on.
             TorqueUnknownError: A joint could not be read back.
         """
-        policy = policy or self.stop_policy
+        with self.lock:
+            return self._stop(policy or self.stop_policy, hurry)
+
+    def _stop(self, policy: StopPolicy, hurry: Callable[[], bool]) -> TorqueState:
         if policy == "hold":
-            self._write(JointCommand.hold(self.joints, self._pose()))
+            self._send(JointCommand.hold(self.joints, self._pose()))
             return TorqueState.known(np.ones(len(self.joints), dtype=bool))
         if policy == "crouch" and self.crouch is not None:
-            self._glide(self._pose(), self.crouch, CROUCH_SECONDS)
+            self._glide(self._pose(), self.crouch, CROUCH_SECONDS, hurry)
         state = self.backend.set_torque(False)
         if state.on.any():
             where = state.names(self.joints, state.on)
@@ -182,14 +208,20 @@ class GuardedBackend:
         last = self._last or self.read()
         return np.clip(last.joints.position, self.limits.lower[0], self.limits.upper[0])
 
-    def _glide(self, start: Array, end: Array, seconds: float) -> None:
+    def _glide(self, start: Array, end: Array, seconds: float, hurry: Callable[[], bool]) -> None:
         """Move the targets from `start` to `end` (n,) rad along a smooth step."""
         began = self.clock.now()
-        while (now := self.clock.now()) < began + seconds:
+        while (now := self.clock.now()) < began + seconds and not hurry():
+            with suppress(GuardianError):  # a stop goes on without a guardian
+                self.heartbeat()
             s = (now - began) / seconds
             pose = start + (end - start) * s * s * (3.0 - 2.0 * s)
-            self._write(JointCommand.hold(self.joints, pose))
+            self._send(JointCommand.hold(self.joints, pose))
             self.clock.wait_until(now + TICK)
+
+    def _write(self, command: JointCommand) -> JointCommand:
+        with self.lock:
+            return self._send(command)
 
     def _refuse(self, block: Array) -> None:
         """Say which value is not a number; a sum that overflows is none of them."""

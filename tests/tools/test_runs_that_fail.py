@@ -13,6 +13,7 @@ from hal.observation import Observation
 from tests.tools.conftest import Windup
 from tools import Robot
 from tools.build import build_walk
+from tools.interrupts import RunInterruptedError
 
 
 class Trouble:
@@ -151,7 +152,9 @@ def test_an_interrupted_walk_reports_what_was_measured() -> None:
                 raise KeyboardInterrupt
 
         robot.watch = watch
-        result = robot.walk(steps=40).result()
+        with pytest.raises(RunInterruptedError) as stopped_by:
+            robot.walk(steps=40)
+        result = stopped_by.value.report.result()
         assert result["reason"] == "interrupted"
         assert result["fell"] is False
         assert 2 <= result["steps"] < 40
@@ -167,7 +170,9 @@ def test_a_walk_interrupted_before_its_first_step_has_all_its_keys() -> None:
             raise KeyboardInterrupt
 
         robot.watch = watch
-        result = robot.walk(steps=40).result()
+        with pytest.raises(RunInterruptedError) as stopped_by:
+            robot.walk(steps=40)
+        result = stopped_by.value.report.result()
         assert (result["steps"], result["reason"]) == (0, "interrupted")
         for row in result["regulation"]:
             assert set(row) == {"name", "unit", "target", "mean", "sd"}

@@ -1,0 +1,30 @@
+"""The guardian's crouch: only where every joint of the robot can be read and still has torque."""
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from hal.guard.guarded import CROUCH_SECONDS
+from hal.guardian.remote_bus import RemoteBus
+
+PERIOD = 0.02
+"""Between two goals, s."""
+
+
+def crouch(buses: Sequence[RemoteBus]) -> None:
+    """Move the servos of a robot from where they are to its crouch along a smooth step.
+
+    Raises:
+        HardwareError: A servo cannot be read or has lost its torque, before or on the way.
+    """
+    starts = [bus.stay() for bus in buses]
+    ends = [np.array([bus.charge.crouch[id] for id in bus.charge.servos]) for bus in buses]
+    began = time.monotonic()
+    s = 0.0
+    while s < 1.0:
+        s = min((time.monotonic() - began) / CROUCH_SECONDS, 1.0)
+        blend = s * s * (3.0 - 2.0 * s)
+        for bus, start, end in zip(buses, starts, ends, strict=True):
+            bus.send_goals(start + (end - start) * blend)
+        time.sleep(PERIOD)

@@ -1,0 +1,51 @@
+"""The process that a guardian watches: is it gone, where does it hang, and its end by force."""
+
+import os
+import select
+import signal
+from contextlib import suppress
+
+from hal.guardian.traceback_signal import WHERE
+
+TRACEBACK_TIME = 0.02
+"""What the host gets for printing where it hangs, s."""
+
+
+class Host:
+    """A process, by a descriptor that no other process can inherit the number of.
+
+    Args:
+        number: Its process number.
+
+    Attributes:
+        descriptors: What becomes readable when it has ended; empty if it had ended before.
+    """
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        self.descriptors: list[int] = []
+        with suppress(OSError):
+            self.descriptors = [os.pidfd_open(number)]
+
+    @property
+    def gone(self) -> bool:
+        """True when it has ended."""
+        return self.wait(0.0)
+
+    def wait(self, seconds: float) -> bool:
+        """Wait for its end for some time, s, and return whether it has ended."""
+        if not self.descriptors:
+            return True
+        return bool(select.select(self.descriptors, [], [], seconds)[0])
+
+    def kill(self) -> None:
+        """Let it print where it hangs, then end it by force and wait for that a moment."""
+        self._send(WHERE)
+        self.wait(TRACEBACK_TIME)
+        self._send(signal.SIGKILL)
+        self.wait(TRACEBACK_TIME)
+
+    def _send(self, number: int) -> None:
+        for descriptor in self.descriptors:
+            with suppress(OSError):
+                signal.pidfd_send_signal(descriptor, number)

@@ -1,0 +1,125 @@
+"""One armed run an adapter: a lock that host and guardian hold together.
+
+The guardian keeps it until torque has been read back as off, so a new run waits for that. The file
+says who holds it and what he does.
+"""
+
+import fcntl
+import logging
+import os
+import time
+import zlib
+from contextlib import suppress
+from pathlib import Path
+
+import msgspec
+
+from hal.errors import PortError
+from hal.open_port import stable_url
+from hal.telemetry_layout import runtime_folder
+
+LOOK_AGAIN = 0.05
+"""Between two looks at a lock that somebody holds, s."""
+SAY_AGAIN = 10.0
+"""Between two lines that say what is waited for, s."""
+EMULATED = "twin://"
+"""Ports in this process, which no guardian looks after."""
+NOTE_SIZE = 512
+"""More than a note is long, bytes."""
+
+
+class Note(msgspec.Struct, frozen=True):
+    """Who holds a lock.
+
+    Attributes:
+        pid: The guardian, or the host before there is one.
+        doing: What the guardian does about servos whose program is gone; "" while it watches.
+    """
+
+    pid: int = 0
+    doing: str = ""
+
+
+class AdapterLock:
+    """The lock on the adapter of one bus.
+
+    Args:
+        url: Of its port.
+    """
+
+    def __init__(self, url: str) -> None:
+        self.url = url
+        self._descriptor = os.open(_path(url), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+
+    def take(self) -> int:
+        """Take the lock and return its descriptor, for the guardian to inherit.
+
+        Raises:
+            PortError: Somebody else has it.
+        """
+        if not self.free():
+            note = self.note()
+            self.close()
+            raise PortError(
+                f"{self.url} belongs to another armed run (process {note.pid}); stop that first"
+            )
+        write_note(self._descriptor, Note(os.getpid()))
+        return self._descriptor
+
+    def free(self) -> bool:
+        """Take the lock if nobody has it, and return whether it is ours."""
+        try:
+            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            return False
+        return True
+
+    def note(self) -> Note:
+        """Return what its holder says."""
+        try:
+            return msgspec.json.decode(os.pread(self._descriptor, NOTE_SIZE, 0), type=Note)
+        except msgspec.DecodeError:  # nobody has written yet
+            return Note()
+
+    def close(self) -> None:
+        """Let it go; a guardian that has inherited it keeps it."""
+        with suppress(OSError):
+            os.close(self._descriptor)
+
+
+def write_note(descriptor: int, note: Note) -> None:
+    """Say in a lock's file who holds it and what he does."""
+    with suppress(OSError):
+        text = msgspec.json.encode(note)
+        os.ftruncate(descriptor, 0)
+        os.pwrite(descriptor, text, 0)
+
+
+def wait_while_guarded(url: str) -> None:
+    """Return when no guardian is busy stopping the servos on a port; say what is waited for."""
+    if url.startswith(EMULATED) or not _path(url).exists():
+        return
+    lock, said = AdapterLock(url), -SAY_AGAIN
+    try:
+        while not lock.free():
+            note = lock.note()
+            if not note.doing:
+                return  # an armed run; opening the port will say so
+            if (now := time.monotonic()) - said >= SAY_AGAIN:
+                said = now
+                logging.getLogger(__name__).warning(
+                    "waiting for the guardian of an earlier run (process %d) on %s: %s",
+                    note.pid, url, note.doing,
+                )  # fmt: skip
+            time.sleep(LOOK_AGAIN)
+    finally:
+        lock.close()
+
+
+def _path(url: str) -> Path:
+    """Return the file of the lock on the adapter behind a URL."""
+    if "://" not in url and not url.startswith("usb:"):
+        real = os.path.realpath(url)
+        # A pseudo-terminal that is served again has another number, but the link to it stays.
+        url = os.path.abspath(url) if real.startswith("/dev/pts/") else stable_url(real)
+    return runtime_folder() / f"adapter-{zlib.crc32(url.encode()):08x}.lock"

@@ -1,0 +1,62 @@
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from hal.errors import PortError
+from hal.guardian.lock import AdapterLock, Note, wait_while_guarded, write_note
+from tests.hal.guardian.two_servos import ENVIRONMENT
+
+ACTING = """
+import sys, time
+from hal.guardian.lock import AdapterLock, Note, write_note
+number = AdapterLock(sys.argv[1]).take()
+write_note(number, Note(1234, "switching the torque off"))
+print("taken", flush=True)
+time.sleep(0.3)
+"""
+
+
+@pytest.fixture
+def device(tmp_path: Path) -> str:
+    return str(tmp_path / "tty")
+
+
+def test_one_lock_an_adapter(device: str) -> None:
+    first = AdapterLock(device)
+    first.take()
+    with pytest.raises(PortError, match=f"another armed run \\(process {os.getpid()}\\)"):
+        AdapterLock(device).take()
+    first.close()
+    second = AdapterLock(device)
+    second.take()
+    second.close()
+
+
+def test_a_new_run_waits_while_a_guardian_acts_and_says_so(
+    device: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    with subprocess.Popen(
+        [sys.executable, "-c", ACTING, device], stdout=subprocess.PIPE, env=ENVIRONMENT
+    ) as guardian:
+        assert guardian.stdout is not None and guardian.stdout.readline() == b"taken\n"
+        wait_while_guarded(device)
+        assert AdapterLock(device).free()
+    assert "waiting for the guardian of an earlier run (process 1234)" in caplog.text
+    assert "switching the torque off" in caplog.text
+
+
+def test_a_run_that_is_only_armed_is_not_waited_for(device: str) -> None:
+    lock = AdapterLock(device)
+    write_note(lock.take(), Note(1, ""))
+    began = time.monotonic()
+    wait_while_guarded(device)
+    assert time.monotonic() - began < 5.0
+    lock.close()
+
+
+def test_ports_of_this_process_have_no_lock() -> None:
+    wait_while_guarded("twin://op3")

@@ -1,0 +1,102 @@
+"""A guardian and its host against an emulated bus in a process of its own."""
+
+import os
+import signal
+from pathlib import Path
+
+import pytest
+
+from hal.errors import UnknownNameError
+from hal.guardian.handle import Guardian
+from hal.guardian.host import Host
+from hal.guardian.order import Charge, Order
+from hal.guardian.takeover import Takeover
+from tests.hal.guardian.two_servos import GOAL, TORQUE, charge, host, runs, show, switch_on
+
+
+def wait_for_end(number: int) -> None:
+    while runs(number):
+        pass
+
+
+def test_the_servos_of_a_host_that_was_killed_go_off(sts_bus: Path) -> None:
+    with host(sts_bus, "limp") as (program, guardian):
+        program.kill()
+        wait_for_end(guardian)
+    assert show(sts_bus, TORQUE) == [0, 0]
+
+
+def test_a_host_that_hangs_says_where_is_killed_and_its_servos_go_off(sts_bus: Path) -> None:
+    with host(sts_bus, "limp") as (program, guardian):
+        os.kill(program.pid, signal.SIGSTOP)
+        wait_for_end(guardian)
+        assert program.wait() == -signal.SIGKILL
+        assert program.stderr is not None
+        assert "its program hangs" in program.stderr.read()
+    assert show(sts_bus, TORQUE) == [0, 0]
+
+
+def test_a_robot_whose_policy_is_a_crouch_crouches_before_it_goes_off(sts_bus: Path) -> None:
+    with host(sts_bus, "crouch") as (program, guardian):
+        program.kill()
+        wait_for_end(guardian)
+    assert show(sts_bus, TORQUE) == [0, 0]
+    assert show(sts_bus, GOAL) == pytest.approx([1800, 2300], abs=20)
+
+
+def test_a_robot_that_shall_hold_is_held_for_its_time_and_goes_off_then(sts_bus: Path) -> None:
+    with host(sts_bus, "hold", 1.0) as (program, guardian):
+        program.kill()
+        program.wait()
+        assert program.stderr is not None
+        for line in program.stderr:
+            if "holds its pose" in line:
+                break
+        assert show(sts_bus, TORQUE) == [1, 1]
+        wait_for_end(guardian)
+    assert show(sts_bus, TORQUE) == [0, 0]
+
+
+def test_a_host_that_gives_up_its_ports_lives_on_and_its_servos_go_off(sts_bus: Path) -> None:
+    guardian = Guardian([charge(sts_bus)], "limp")
+    switch_on(sts_bus)
+    guardian.hand_over()
+    guardian._process.wait()
+    assert show(sts_bus, TORQUE) == [0, 0]
+
+
+def test_a_port_that_is_not_there_is_tried_until_it_is(sts_bus: Path, tmp_path: Path) -> None:
+    later = tmp_path / "later"
+    switch_on(sts_bus)
+    guardian = Guardian([charge(later)], "limp")
+    guardian.hand_over()
+    assert runs(guardian.pid)
+    later.symlink_to(sts_bus)
+    guardian._process.wait()
+    assert show(sts_bus, TORQUE) == [0, 0]
+
+
+def test_a_bus_that_stays_away_does_not_keep_another_from_its_stop(
+    sts_bus: Path, tmp_path: Path
+) -> None:
+    switch_on(sts_bus)
+    order = Order(
+        host=os.getpid(), policy="limp", charges=(charge(tmp_path / "no"), charge(sts_bus))
+    )
+    takeover = Takeover(order)
+    assert takeover.switch_off_once() == [str(tmp_path / "no")]
+    assert show(sts_bus, TORQUE) == [0, 0]
+
+
+def test_a_host_that_has_been_gone_for_long_is_known_to_be_gone() -> None:
+    child = os.fork()
+    if child == 0:
+        os._exit(0)
+    os.waitpid(child, 0)
+    assert Host(child).gone and not Host(os.getpid()).gone
+
+
+def test_servos_that_nobody_knows_are_refused_before_torque() -> None:
+    strange = Charge(url="x", baud=1, servos={1: "XX"})
+    with pytest.raises(UnknownNameError, match="servo"):
+        Takeover(Order(host=1, policy="limp", charges=(strange,)))

@@ -1,0 +1,64 @@
+import os
+import subprocess
+from collections.abc import Iterator
+
+import pytest
+
+from hal.guardian.host import Host
+from hal.guardian.order import HAND_OVER, IDLE, RELEASE, SILENCE, TICK
+from hal.guardian.process import Ending, watch
+
+Pipe = tuple[int, int]
+
+
+@pytest.fixture
+def program() -> "Iterator[subprocess.Popen[bytes]]":
+    with subprocess.Popen(["sleep", "60"]) as process:
+        yield process
+        process.kill()
+
+
+@pytest.fixture
+def pipe() -> Iterator[Pipe]:
+    reading, writing = os.pipe()
+    yield reading, writing
+    os.close(reading)
+
+
+@pytest.mark.parametrize(
+    ("said", "ending"),
+    [
+        (RELEASE, Ending.RELEASED),
+        (HAND_OVER, Ending.HANDED_OVER),
+        (TICK + RELEASE, Ending.RELEASED),
+        (TICK, Ending.SILENT),
+        (IDLE, Ending.SILENT),
+    ],
+)
+def test_what_is_heard_last_says_how_it_ends(
+    program: "subprocess.Popen[bytes]", pipe: Pipe, said: bytes, ending: Ending
+) -> None:
+    os.write(pipe[1], said)
+    assert watch(pipe[0], Host(program.pid)) is ending
+    os.close(pipe[1])
+
+
+def test_a_host_that_dies_is_seen_though_its_pipe_is_open(
+    program: "subprocess.Popen[bytes]", pipe: Pipe
+) -> None:
+    host = Host(program.pid)
+    program.kill()
+    assert watch(pipe[0], host) is Ending.DIED
+    os.close(pipe[1])
+
+
+def test_a_pipe_that_closes_while_the_host_lives_is_no_release(
+    program: "subprocess.Popen[bytes]", pipe: Pipe
+) -> None:
+    os.write(pipe[1], TICK)
+    os.close(pipe[1])
+    assert watch(pipe[0], Host(program.pid)) is Ending.CLOSED
+
+
+def test_a_robot_that_moves_is_given_less_time_than_one_that_is_held() -> None:
+    assert SILENCE[TICK] == 0.15 < SILENCE[IDLE]

@@ -1,0 +1,106 @@
+"""Two STS3215 on a pseudo-terminal, emulated in a process of their own, and their host."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from functools import partial
+from pathlib import Path
+from typing import TypeVar
+
+from hal.bus import Bus
+from hal.errors import HardwareError
+from hal.families import FEETECH_STS
+from hal.guardian.order import Charge
+from hal.open_port import open_port
+from hal.registers import Register
+
+IDS = {1: "STS3215-7.4V", 2: "STS3215-7.4V"}
+TORQUE = FEETECH_STS.registers["torque_enable"]
+GOAL = FEETECH_STS.registers["goal_position"]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+EMULATE = [sys.executable, "-c", "from tools.cli import main; main()", "emulate"]
+T = TypeVar("T")
+
+
+@contextmanager
+def emulated(*arguments: str) -> "Iterator[subprocess.Popen[str]]":
+    with subprocess.Popen([*EMULATE, *arguments], stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        for line in process.stderr:
+            if line.startswith("Ctrl-C"):
+                break
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def charge(path: Path) -> Charge:
+    return Charge(url=str(path), baud=1_000_000, servos=IDS)
+
+
+def patiently(ask: Callable[[], T]) -> T:
+    """Ask again where a busy machine has kept a servo from its answer."""
+    for _ in range(20):
+        with suppress(HardwareError):
+            return ask()
+    return ask()
+
+
+def show(path: Path, register: Register) -> list[int]:
+    with open_port(str(path), 1_000_000, exclusive=False) as port:
+        bus = Bus(port, FEETECH_STS)
+        return [patiently(partial(bus.read, id, register)) for id in IDS]
+
+
+def switch_on(path: Path) -> None:
+    with open_port(str(path), 1_000_000, exclusive=False) as port:
+        bus = Bus(port, FEETECH_STS)
+        for id in IDS:
+            patiently(partial(bus.write, id, TORQUE, 1))
+
+
+def runs(number: int) -> bool:
+    """Does the process still run?"""
+    try:
+        return Path(f"/proc/{number}/stat").read_text().split(") ")[1][0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+HOST = """
+import sys, time
+from hal.guardian.handle import Guardian
+from hal.guardian.order import Charge
+from tests.hal.guardian.two_servos import IDS, switch_on
+path, policy, hold = sys.argv[1:]
+crouch = {1: 1800, 2: 2300}
+charge = Charge(url=path, baud=1_000_000, servos=IDS, crouch=crouch)
+guardian = Guardian([charge], policy, float(hold))
+switch_on(path)
+print(guardian.pid, flush=True)
+while True:
+    guardian.tick()
+    time.sleep(0.005)
+"""
+
+
+@contextmanager
+def host(
+    path: Path, policy: str, hold: float = 60.0
+) -> "Iterator[tuple[subprocess.Popen[str], int]]":
+    """Start a program with two servos on; yield its process and the number of its guardian."""
+    with subprocess.Popen(
+        [sys.executable, "-c", HOST, str(path), policy, str(hold)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env=ENVIRONMENT,
+        text=True,
+    ) as process:
+        assert process.stdout is not None
+        try:
+            yield process, int(process.stdout.readline())
+        finally:
+            process.kill()
