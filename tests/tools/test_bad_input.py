@@ -146,7 +146,7 @@ def test_calls_with_bad_numbers_are_refused_before_anything_moves() -> None:
             (lambda: robot.walk(options=WalkOptions(turn=bad)), "turn nan: give a finite number"),
             (lambda: robot.walk(steps=0), "steps 0: give 1 .. 1000000"),
             (lambda: robot.stand(bad), "seconds nan: give a finite number of s"),
-            (lambda: robot.play("wave", -1.0), "seconds -1: give 0 .. 86400 s"),
+            (lambda: robot.play("wave", -1.0), "seconds -1: give 0 .. 10000000 s"),
             (lambda: robot.push(float("inf")), "impulse inf: give a finite number"),
         ):
             with pytest.raises(UsageError, match=said):
