@@ -11,7 +11,7 @@ from hal.ranges import Range
 from sim_twin.wire import Address, parse_address
 from sim_twin.wire.address import SCHEME
 from sim_twin.wire.emulate import Emulator, Outlet, emulate
-from sim_twin.wire.fault_rule import parse_rules
+from sim_twin.wire.fault_text import parse_rules
 from tools.command import Command
 from tools.output import console
 from tools.quantities import Seed

@@ -15,8 +15,8 @@ from hal.guardian.remote_bus import RemoteBus
 
 PAUSES = 2e-3, 1.0
 """Between two attempts, s: the first, and the longest."""
-QUICK = 0.5
-"""How long attempts follow each other at the shortest pause, s."""
+QUICK, SLOWER = 0.5, 0.03
+"""How long attempts follow each other at the shortest pause, s, and how it grows then, s/s."""
 SAY_AGAIN = 5.0
 """Between two lines about servos that do not obey, s."""
 
@@ -91,7 +91,7 @@ class Takeover:
         while self.switch_off_once():
             now = time.monotonic()
             self._complain(now)
-            time.sleep(min(PAUSES[0] + 0.1 * max(now - began - QUICK, 0.0), PAUSES[1]))
+            time.sleep(min(PAUSES[0] + SLOWER * max(now - began - QUICK, 0.0), PAUSES[1]))
         self._say("torque is off at all servos, read back")
 
     def _complain(self, now: float) -> None:

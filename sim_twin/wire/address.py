@@ -10,7 +10,8 @@ from urllib.parse import parse_qsl, urlsplit
 
 from hal.errors import UsageError, suggest
 from hal.ranges import Range, check_numbers
-from sim_twin.wire.fault_rule import LAST_ID, parse_rules
+from sim_twin.wire.fault_rule import LAST_ID
+from sim_twin.wire.fault_text import parse_rules
 
 SCHEME = "twin"
 BENCH = "bench"
