@@ -9,10 +9,11 @@ import numpy as np
 
 from hal.joints import Array, Mask
 from hal.plausibility import FASTER, MARGIN
-from sim_twin.wire.fault_rule import ANSWERS, EVENTS, SECONDS, make_rule
+from sim_twin.wire.fault_rule import ANSWERS, SECONDS, make_rule
 from tools.soak_rig import SoakRig
 
 PERIOD = 0.008  # s between two cycles, as in a loop of 125 Hz
+BREAKDOWNS: Final = ("dead", "reset", "brown_out", "overload", "unplug")
 OUTAGE: Final = {"brown_out": 0.05, "unplug": 0.1}  # s
 DEAD_FOR = 5  # cycles until a dead servo is given its power back
 # Faults after which a frame is garbled, so that only chance lets it through its checksum.
@@ -98,7 +99,7 @@ class Soak:
 
     def _events(self, cycle: int) -> None:
         """Let servos, supply and adapter fail, each kind in its share of the cycles."""
-        for kind in EVENTS:
+        for kind in BREAKDOWNS:
             if self._dice.random() < self.rate:
                 servo = int(self._dice.integers(1, self.rig.servos + 1))
                 if kind == "dead":

@@ -13,7 +13,9 @@ from sim_twin.wire.bus import Bus, Language, Timing
 from sim_twin.wire.device import Device
 from sim_twin.wire.families import PROTOCOLS, full_name, make_language, make_servo
 from sim_twin.wire.faults import Faults
-from sim_twin.wire.opencr import ImuSource, OpenCr, RestingImu
+from sim_twin.wire.imu import ImuSource, RestingImu
+from sim_twin.wire.imu_faults import FaultyImu
+from sim_twin.wire.opencr import OpenCr
 from sim_twin.wire.rvc import BAUD as RVC_BAUD
 from sim_twin.wire.rvc import Mute, start_rvc
 from sim_twin.wire.schedule import Schedule
@@ -51,7 +53,9 @@ class Workshop:
 
     def imu(self, source: ImuSource) -> None:
         """Add the port of an IMU that talks by itself."""
-        start_rvc(self.bus(IMU, [], Mute(), RVC_BAUD), source)
+        bus = self.bus(IMU, [], Mute(), RVC_BAUD)
+        bus.imu = FaultyImu(source, self.schedule)
+        start_rvc(bus, bus.imu)
 
     def world(self, physics: Physics, supply: float, owned: tuple[object, ...] = ()) -> World:
         """Return the world with its buses."""
@@ -96,39 +100,25 @@ def _bench(address: Address) -> World:
 
 
 def _robot(address: Address, robot: RobotDescription, around: Surroundings) -> World:
-    mounts = [(joint, mount) for joint, mount in enumerate(robot.servos) if mount is not None]
-    if not mounts:
+    if not any(robot.servos):
         raise UsageError(f"robot {robot.name!r} has no servos on a wire; 'windup walk' takes it")
     shop = Workshop(address)
     supply = address.supply or around.plant.supply or robot.drive.supply
     twin = None
     if address.physics == "mujoco":
         twin = Twin(robot, delay=0.0, supply=supply, world=_behind_a_wire(around, robot, supply))
-    bauds = {bus.name: address.baud or bus.baud for bus in robot.buses}
-    protocols = {bus.name: bus.protocol for bus in robot.buses}
-    hung: dict[str, list[Device]] = {name: [] for name in bauds}
-    shafts: list[InertiaShaft] = []
-    for joint, mount in mounts:
-        shaft: Shaft
-        if twin is None:
-            shafts.append(_posed_shaft(robot, joint, mount, supply))
-            shaft = shafts[-1]
-        else:
-            shaft = TwinShaft(twin, joint, mount)
-        hung[mount.bus].append(
-            make_servo(
-                mount.model.name, shaft, mount.id, bauds[mount.bus], supply,
-                address.return_delay, protocols[mount.bus],
-            )
-        )  # fmt: skip
+    hung, shafts = _hang_servos(address, robot, twin, supply)
     source: ImuSource = RestingImu() if twin is None or robot.imu is None else TwinImu(twin)
-    first = robot.buses[0].name
-    board = robot.imu is not None and protocols[first] == "dynamixel2"
+    first = robot.buses[0]
+    board = robot.imu is not None and first.protocol == "dynamixel2"
+    felt = FaultyImu(source, shop.schedule)
     if board:
-        on = address.power == "on"
-        hung[first].append(OpenCr(source, [*hung[first]], bauds[first], supply, powered=on))
-    for name, devices in hung.items():
-        shop.bus(name, devices, make_language(protocols[name]), bauds[name])
+        servos, on = hung[first.name], address.power == "on"
+        servos.append(OpenCr(felt, [*servos], address.baud or first.baud, supply, powered=on))
+    for bus in robot.buses:
+        shop.bus(bus.name, hung[bus.name], make_language(bus.protocol), address.baud or bus.baud)
+    if board:
+        shop.buses[first.name].imu = felt
     if address.imu == "rvc" or (address.imu == "auto" and robot.imu is not None and not board):
         shop.imu(source)
     if twin is None:
@@ -137,6 +127,32 @@ def _robot(address: Address, robot: RobotDescription, around: Surroundings) -> W
     if isinstance(source, TwinImu):
         source.held = lambda: physics.held
     return shop.world(physics, supply, (twin,))
+
+
+def _hang_servos(
+    address: Address, robot: RobotDescription, twin: Twin | None, supply: float
+) -> tuple[dict[str, list[Device]], list[InertiaShaft]]:
+    """Return the servos of each bus, and their shafts where these are not the twin's."""
+    buses = {bus.name: bus for bus in robot.buses}
+    hung: dict[str, list[Device]] = {name: [] for name in buses}
+    shafts: list[InertiaShaft] = []
+    for joint, mount in enumerate(robot.servos):
+        if mount is None:
+            continue
+        shaft: Shaft
+        if twin is None:
+            shafts.append(_posed_shaft(robot, joint, mount, supply))
+            shaft = shafts[-1]
+        else:
+            shaft = TwinShaft(twin, joint, mount)
+        bus = buses[mount.bus]
+        hung[mount.bus].append(
+            make_servo(
+                mount.model.name, shaft, mount.id, address.baud or bus.baud, supply,
+                address.return_delay, bus.protocol,
+            )
+        )  # fmt: skip
+    return hung, shafts
 
 
 def _behind_a_wire(around: Surroundings, robot: RobotDescription, supply: float) -> Surroundings:

@@ -11,6 +11,7 @@ from typing import NamedTuple, Protocol
 
 from sim_twin.wire.device import Device
 from sim_twin.wire.faults import Faults
+from sim_twin.wire.imu_faults import FaultyImu
 from sim_twin.wire.inbox import Burst, Inbox
 from sim_twin.wire.schedule import Schedule
 
@@ -87,6 +88,7 @@ class Bus:
         counts: "frames" executed, "dropped", "collisions".
         plugged: Whether the host's adapter is there.
         plugs: How often it has been pulled out or put in.
+        imu: The IMU that a board on it reports, or that sends on it by itself.
         tap: Called with the direction (">" from the host), the baud rate and each burst of bytes.
     """
 
@@ -106,9 +108,11 @@ class Bus:
         self.heard = self.began = 0.0
         self.counts = {"frames": 0, "dropped": 0, "collisions": 0}
         self.plugged, self.plugs = True, 0
+        self.imu: FaultyImu | None = None
         self.tap: Callable[[str, int, Burst], None] | None = None
         self._baud = baud
         self._sent = -math.inf  # when the host's last byte ends
+        self._out = -math.inf  # until when the adapter is pulled out
         self._air: list[Burst] = []  # on the wire now or soon
         self.inbox = Inbox(self.timing.latency)
         self._by_id: dict[int, list[Device]] = {}
@@ -177,6 +181,18 @@ class Bus:
             self.plugs += 1
             self.inbox.clear()
             self.language.reset()
+
+    def unplug(self, seconds: float) -> None:
+        """Pull the adapter out, and put it in again after some seconds (infinity: never)."""
+        self.plug(False)
+        back = self.schedule.now + seconds
+        self._out = max(self._out, back)
+        if back < math.inf:
+            self.schedule.at(back, self._plug_in)
+
+    def _plug_in(self) -> None:
+        if self.schedule.now >= self._out:  # it was not pulled out for longer since
+            self.plug(True)
 
     # The devices' side
 

@@ -1,5 +1,6 @@
 """A protocol 1 servo on a bus: what AX, MX and Feetech servos have in common."""
 
+import math
 from abc import ABC, abstractmethod
 
 from sim_twin.wire.byte_table import ByteTable, Writes
@@ -39,6 +40,7 @@ class ByteServo(ABC):
         torque_on: Whether its motor is switched on.
         powered: Whether it has a supply voltage.
         temperature: Of its motor, degrees C.
+        floor: Heat from outside, degrees C: the motor is no cooler.
         errors: Bits of the error byte of its answers.
     """
 
@@ -60,7 +62,7 @@ class ByteServo(ABC):
         self.model, self.table, self.loop = name, table, loop
         self.torque_on = False
         self.powered = True
-        self.temperature = AMBIENT
+        self.temperature, self.floor = AMBIENT, -math.inf
         self.errors = 0
         self._ready = 0.0
         self._strained = 0.0
@@ -196,8 +198,14 @@ class ByteServo(ABC):
         loop = self.loop
         loop.sample()
         current = loop.effort / loop.constant if self.driving else 0.0
-        self.temperature = warmed(self.temperature, current, loop.resistance, dt)
+        warm = warmed(self.temperature, current, loop.resistance, dt)
+        self.temperature = max(warm, self.floor)
         self.protect(now, dt)
+
+    def heat(self, degrees: float) -> None:
+        """Have a motor that is this hot, degrees C, and stays so; -inf: it may cool again."""
+        self.floor = degrees
+        self.temperature = max(self.temperature, degrees)
 
     def voltage_is_wrong(self) -> bool:
         """Whether the supply is outside of its limits."""

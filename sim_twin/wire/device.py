@@ -103,6 +103,10 @@ class Device(Protocol):
         """Take itself for overloaded, as with a horn that is held."""
         ...
 
+    def heat(self, degrees: float) -> None:
+        """Have a motor that is this hot, degrees C, and stays so; -inf: it may cool again."""
+        ...
+
     def control(self, now: float, dt: float) -> None:
         """Do one step of the control loop."""
         ...

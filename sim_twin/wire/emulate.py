@@ -15,14 +15,19 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from queue import SimpleQueue
 
 from hal.errors import UsageError
 from sim_twin.wire.address import Address
 from sim_twin.wire.build import build_world
 from sim_twin.wire.bus import Bus
+from sim_twin.wire.fault_rule import Rule
+from sim_twin.wire.fault_text import parse_rules
+from sim_twin.wire.journal import Event, Journal, Watcher
 from sim_twin.wire.link import Link, Pty, Tcp, free_port
 from sim_twin.wire.world import World
 
+CHUNK = 4096
 AHEAD = 0.002  # s by which replies may be worked out before their time
 MARGIN = 0.0005  # s before its time that the next reply has to be worked out at the latest
 CHUNK_TIME = 0.0006  # s of bytes that go out together in the middle of an answer
@@ -33,8 +38,6 @@ SLIP = 0.1  # s behind the wall, from which time stands still instead
 IDLE = 0.002  # s; the longest sleep
 PR_SET_TIMERSLACK = 29
 PRIORITY = 10  # among real-time processes; servos do not wait for other programs
-
-Journal = Callable[[float, int], None]
 
 
 @dataclass
@@ -101,19 +104,26 @@ class Emulator:
     Args:
         world: The world.
         journal: Called with the time and the number of driven motors whenever that changes.
+        events: Called with every `Event`: driven motors, adapters, supply.
 
     Attributes:
         outlets: The plugs.
         slipped: By how much time has stood still because the machine was too slow, s.
     """
 
-    def __init__(self, world: World, journal: Journal | None = None) -> None:
-        self.world, self.journal = world, journal
+    def __init__(
+        self,
+        world: World,
+        journal: Journal | None = None,
+        events: Callable[[Event], None] | None = None,
+    ) -> None:
+        self.world = world
         self.outlets: list[Outlet] = []
         self.slipped = 0.0
         self._wake_read, self._wake_write = os.pipe()
         self._running = True
-        self._driven = -1
+        self._watcher = Watcher(world, journal, events)
+        self._orders: SimpleQueue[list[Rule]] = SimpleQueue()
 
     def plug(self, bus: str, make: Callable[[], Link]) -> None:
         """Connect a bus to the link that `make` makes, now and whenever it is plugged in again."""
@@ -124,6 +134,22 @@ class Emulator:
         """End `run`; signal handlers and threads may call this."""
         self._running = False
         os.write(self._wake_write, b"x")
+
+    def inject(self, text: str) -> None:
+        """Let faults happen while `run` serves; any thread may call this.
+
+        An event without a rate and a time (``unplug:seconds=1``) happens now, times count from now,
+        and everything else goes wrong from now on.
+
+        Raises:
+            UsageError: The text is wrong, says what cannot happen in this world, or comes too late.
+        """
+        if not self._running:
+            raise UsageError("the emulator has ended; nothing can be injected any more")
+        rules = parse_rules(text, live=True)
+        self.world.bus().faults.check(rules)
+        self._orders.put(rules)
+        os.write(self._wake_write, b"i")
 
     def run(self) -> None:
         """Serve until `stop`."""
@@ -180,11 +206,7 @@ class Emulator:
         for outlet in self.outlets:
             if outlet.bus.plugged is (outlet.link is None):
                 outlet.settle()
-        if self.journal is not None:
-            driven = sum(device.driving for device in world.devices)
-            if driven != self._driven:
-                self._driven = driven
-                self.journal(now, driven)
+        self._watcher.look(now)
         return True
 
     def _slip(self, now: float) -> float:
@@ -208,6 +230,14 @@ class Emulator:
         for place in ready:
             if place in places:
                 places[place].receive()
+            else:
+                self._take_orders()
+
+    def _take_orders(self) -> None:
+        """Let begin what was injected."""
+        os.read(self._wake_read, CHUNK)
+        while not self._orders.empty():
+            self.world.bus().faults.inject(self._orders.get(), self.world.now)
 
 
 def emulate(
@@ -216,6 +246,7 @@ def emulate(
     tcp: int | None = None,
     on_ready: Callable[[Emulator], None] | None = None,
     journal: Journal | None = None,
+    events: Callable[[Event], None] | None = None,
 ) -> None:
     """Serve the world of an address, each of its buses on a plug, until `Emulator.stop`.
 
@@ -225,10 +256,11 @@ def emulate(
         tcp: TCP port, of the first bus; the next has the next port. 0: any.
         on_ready: Called before serving; `Emulator.outlets` know their links' names.
         journal: See `Emulator`.
+        events: See `Emulator`.
     """
     if (pty is None) == (tcp is None):
         raise UsageError("an emulated bus needs a --pty PATH or a --tcp PORT, one of them")
-    emulator = Emulator(build_world(address), journal)
+    emulator = Emulator(build_world(address), journal, events)
     with contextlib.closing(emulator):
         for k, bus in enumerate(emulator.world.buses):
             if pty is not None:

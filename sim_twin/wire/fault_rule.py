@@ -1,5 +1,6 @@
-"""One fault: what goes wrong, how often or when, and for whom; and how a URL says so."""
+"""One fault: what goes wrong, how often or when, and for whom."""
 
+import math
 import random
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -19,13 +20,28 @@ ANSWERS: Final = {
     "wrong_length": 0.0,
     "glue": 0.004,
 }
-# What befalls servos, supply or adapter.
-EVENTS: Final = {"dead": 0.0, "reset": 0.0, "brown_out": 0.1, "overload": 0.0, "unplug": 0.5}
+# What befalls servos, supply, adapter, IMU or board.
+EVENTS: Final = {
+    "dead": 0.0,
+    "reset": 0.0,
+    "brown_out": 0.1,
+    "overload": 0.0,
+    "unplug": 0.5,
+    "heat": math.inf,
+    "imu_silent": math.inf,
+    "imu_frozen": math.inf,
+    "imu_spin": math.inf,
+    "button": 0.2,
+}
 SECONDS: Final = {**ANSWERS, **EVENTS}
 KINDS: Final = tuple(SECONDS)
-KEYS: Final = ("rate", "at", "ids", "bus", "seconds", "volts")
+# Keys that only one kind takes, with their defaults.
+EXTRA: Final = {
+    "volts": ("brown_out", 0.0),
+    "degrees": ("heat", 75.0),
+    "speed": ("imu_spin", 3.0),
+}
 RATE = 0.01  # where neither rate nor time is given
-EXAMPLE = "'drop:0.01,late:0.02:seconds=0.003:ids=1-6,unplug:at=2.5:seconds=0.5'"
 
 Times = float | Sequence[float]
 
@@ -42,6 +58,8 @@ class Rule:
         bus: On which bus; None: on all.
         seconds: How late, or how long.
         volts: Supply in a brown-out, V.
+        degrees: How hot a motor gets at least, degrees C.
+        speed: What a spinning gyroscope reads about x, rad/s.
     """
 
     kind: str
@@ -51,6 +69,8 @@ class Rule:
     bus: str | None = None
     seconds: float = 0.0
     volts: float = 0.0
+    degrees: float = 0.0
+    speed: float = 0.0
 
     def __post_init__(self) -> None:
         self._scripted = bool(self.at)
@@ -95,15 +115,23 @@ def make_rule(
     ids: Iterable[int] | None = None,
     bus: str | None = None,
     seconds: float | None = None,
-    volts: float = 0.0,
+    **extra: float | None,
 ) -> Rule:
-    """Return a checked rule; what is left out has its default.
+    """Return a checked rule; what is left out, or None, has its default.
+
+    Args:
+        kind: One of `KINDS`.
+        rate: Share of the answers that it hits.
+        at: Instead of a rate the time, s, or several.
+        ids: Whom it hits.
+        bus: On which bus.
+        seconds: How late, or how long; infinity: for ever.
+        **extra: The keys of `EXTRA`.
 
     Raises:
         UsageError: A value that cannot be.
     """
-    if kind not in KINDS:
-        raise UsageError(f"faults: unknown kind {kind!r}{suggest(kind, KINDS)}")
+    check_kind(kind)
     if at is None:
         rate = RATE if rate is None else rate
         if not 0.0 <= rate <= 1.0:
@@ -119,64 +147,28 @@ def make_rule(
     if seconds is not None and not SECONDS[kind]:
         takers = ", ".join(other for other in KINDS if SECONDS[other])
         raise UsageError(f"faults: {kind}: takes no seconds; these do: {takers}")
-    if volts and kind != "brown_out":
-        raise UsageError(f"faults: {kind}: takes no volts; only brown_out does")
     who = None if ids is None else frozenset(ids)
-    return Rule(kind, rate or 0.0, times, who, bus, lasts, volts)
+    return Rule(kind, rate or 0.0, times, who, bus, lasts, **_extra(kind, extra))
 
 
-def parse_rules(text: str) -> list[Rule]:
-    """Return the faults of a URL: ``KIND[:RATE][:KEY=VALUE...]``, joined by commas.
-
-    Keys are rate (may stand alone), at (s; several joined by ';'), ids ("1-6;9"), bus, seconds and
-    volts. Spaces around commas and colons do not count.
-
-    >>> parse_rules("drop:0.02:ids=1-2;7")[0].ids == {1, 2, 7}
-    True
+def check_kind(kind: str) -> None:
+    """Raise if there is no such kind of fault.
 
     Raises:
-        UsageError: The text says something else.
+        UsageError: There is none.
     """
-    return [_parse(part.strip()) for part in text.split(",") if part.strip()]
-
-
-def _parse(part: str) -> Rule:
-    kind, *words = (word.strip() for word in part.split(":"))
     if kind not in KINDS:
         raise UsageError(f"faults: unknown kind {kind!r}{suggest(kind, KINDS)}")
-    values: dict[str, str] = {}
-    for word in words:
-        key, equals, value = word.partition("=")
-        key, value = (key, value) if equals else ("rate", key)
-        if key not in KEYS:
-            raise UsageError(f"faults: {part!r}: unknown key {key!r}{suggest(key, KEYS)}")
-        values[key] = value
-    try:
-        return make_rule(
-            kind,
-            float(values.pop("rate")) if "rate" in values else None,
-            at=_numbers(values.pop("at")) if "at" in values else None,
-            ids=_ids(values.pop("ids")) if "ids" in values else None,
-            bus=values.pop("bus", None),
-            seconds=float(values.pop("seconds")) if "seconds" in values else None,
-            volts=float(values.pop("volts", "0")),
-        )
-    except ValueError:
-        raise UsageError(
-            f"faults: {part!r}: a rate from 0 to 1 and keys, as in {EXAMPLE}"
-        ) from None
 
 
-def _numbers(text: str) -> list[float]:
-    return [float(word) for word in text.split(";")]
-
-
-def _ids(text: str) -> list[int]:
-    found: list[int] = []
-    for word in text.split(";"):
-        first, _, last = word.partition("-")
-        ids = range(int(first), int(last or first) + 1)
-        if not ids:
-            raise ValueError(f"{word}: no ids")
-        found += ids
-    return found
+def _extra(kind: str, given: Mapping[str, float | None]) -> dict[str, float]:
+    """Return the keys of `EXTRA` that `kind` takes, with their values."""
+    for key, value in given.items():
+        taker = EXTRA[key][0]
+        if value is not None and kind != taker:
+            raise UsageError(f"faults: {kind}: takes no {key}; only {taker} does")
+        if value is not None and (not math.isfinite(value) or (key == "volts" and value < 0.0)):
+            raise UsageError(f"faults: {kind}: {key}={value:g} cannot be")
+    taken = {key: default for key, (taker, default) in EXTRA.items() if taker == kind}
+    return {key: default if (value := given.get(key)) is None else value
+            for key, default in taken.items()}  # fmt: skip

@@ -1,21 +1,22 @@
 """Faults of answers, servos, supply and adapter, seeded, so that a run can be had again."""
 
-import math
 import random
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, Self, TypedDict, Unpack
 
-from sim_twin.wire.fault_rule import EVENTS, KINDS, Rule, Times, make_rule, parse_rules
+from hal.errors import UsageError
+from sim_twin.wire.answer_faults import Fate, Sender
+from sim_twin.wire.fault_events import EVERYBODY, OF_IMU, SILENCING, befall, victims
+from sim_twin.wire.fault_rule import EVENTS, KINDS, Rule, Times, make_rule
+from sim_twin.wire.fault_text import parse_rules
 
 if TYPE_CHECKING:
     from sim_twin.wire.bus import Bus
-    from sim_twin.wire.inbox import Burst
     from sim_twin.wire.world import World
 
-EVERYBODY = -1
-IDS = 253
 REMEMBERED = 10_000  # hits
 
 
@@ -75,7 +76,7 @@ class Faults:
         self._rules: list[Rule] = []
         self._dice = random.Random(seed)
         self._world: World | None = None
-        self._glued: dict[str, Burst] = {}
+        self._sender = Sender()
 
     @classmethod
     def parse(cls, text: str, seed: int = 0) -> "Faults":
@@ -147,12 +148,39 @@ class Faults:
         """Pull the adapter out, and put it in again after some seconds (`math.inf`: never)."""
         return self.add(make_rule("unplug", seconds=seconds, **when))
 
+    def heat(self, degrees: float = 75.0, seconds: float | None = None, **who: Unpack[Who]) -> Self:
+        """Let motors be `degrees` C hot at once, and no cooler for some seconds, or for ever."""
+        return self.add(make_rule("heat", degrees=degrees, seconds=seconds, **who))
+
+    def imu_silent(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
+        """Let the IMU, and a board that it is on, say nothing for some seconds, or for ever."""
+        return self.add(make_rule("imu_silent", seconds=seconds, **who))
+
+    def imu_frozen(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
+        """Let the IMU repeat one sample for some seconds, or for ever."""
+        return self.add(make_rule("imu_frozen", seconds=seconds, **who))
+
+    def imu_spin(
+        self, speed: float = 3.0, seconds: float | None = None, **who: Unpack[Who]
+    ) -> Self:
+        """Let the gyroscope read `speed` rad/s about x for some seconds, or for ever."""
+        return self.add(make_rule("imu_spin", speed=speed, seconds=seconds, **who))
+
+    def button(self, seconds: float | None = None, **when: Unpack[When]) -> Self:
+        """Press the user button of an OpenCR for some seconds."""
+        return self.add(make_rule("button", seconds=seconds, **when))
+
     def add(self, rule: Rule) -> Self:
         """Add a fault."""
         self._rules.append(rule)
         self.active = True
         self._script(rule)
         return self
+
+    def inject(self, rules: Sequence[Rule], now: float) -> None:
+        """Add faults whose times count from `now` s; see `parse_rules`."""
+        for rule in rules:
+            self.add(replace(rule, at=[now + time for time in rule.at]))
 
     def clear(self) -> Self:
         """Let nothing go wrong any more; what is broken stays broken."""
@@ -164,16 +192,29 @@ class Faults:
         """Take the world into which scripted faults go.
 
         Raises:
-            UsageError: A fault concerns a bus or servos that are not in it.
+            UsageError: A fault concerns a bus, servos or an IMU that are not in it.
         """
         if self._world is None:
-            for rule in self._rules:
-                rule.check_target(
-                    {b.name: [d.identifier for d in b.devices] for b in world.buses.values()}
-                )
             self._world = world
+            self.check(self._rules)
             for rule in self._rules:
                 self._script(rule)
+
+    def check(self, rules: Sequence[Rule]) -> None:
+        """Raise what could never happen in the world.
+
+        Raises:
+            UsageError: A fault concerns a bus, servos or an IMU that are not in it.
+        """
+        buses = self._world.buses.values() if self._world is not None else ()
+        there = {bus.name: [device.identifier for device in bus.devices] for bus in buses}
+        for rule in rules:
+            rule.check_target(there)
+            if rule.kind in EVENTS and not any(victims(rule, bus) for bus in buses):
+                what = (
+                    "IMU" if rule.kind in OF_IMU else "OpenCR" if rule.kind == "button" else "servo"
+                )
+                raise UsageError(f"faults: {rule.kind}: there is no {what} that it could hit")
 
     def noise(self, count: int) -> bytes:
         """Return bytes as of a collision or a wrong baud rate."""
@@ -181,63 +222,25 @@ class Faults:
 
     def answer(self, bus: "Bus", data: bytes, baud: int, identifier: int) -> float:
         """Put an answer on the wire with what goes wrong now; return when it ends, s."""
-        now, got, late, held, glued = bus.schedule.now, data, 0.0, 0.0, 0.0
+        now, fate = bus.schedule.now, Fate(data)
         for rule in [*self._rules]:
-            if not rule.strikes(self._dice, bus.name, identifier, now) or not got:
+            if not rule.strikes(self._dice, bus.name, identifier, now) or not fate.got:
                 continue  # what is lost already has nothing more to fear
             if rule.kind in EVENTS:
-                self._happen(rule, bus, identifier)
-                got = got if rule.kind == "overload" else b""
+                self._begin(rule, bus, identifier, fate)
                 continue
             self._note(rule.kind, bus.name, identifier)
-            if rule.kind == "late":
-                late += rule.seconds
-            elif rule.kind == "delay":
-                held = max(held, now + rule.seconds)
-            elif rule.kind == "glue":
-                glued = rule.seconds
-            else:
-                got = self._spoil(rule.kind, got, bus)
-        put = partial(self._put, bus, data, baud, got, held, glued)
-        if late <= 0.0:
-            return put()
-        bus.schedule.at(now + late, put)
-        return now + late + len(data) * 10.0 / baud
+            fate.suffer(rule.kind, rule.seconds, bus, self._dice)
+        return self._sender.send(bus, data, baud, fate)
 
-    def _put(
-        self, bus: "Bus", data: bytes, baud: int, got: bytes, held: float, glued: float
-    ) -> float:
-        """Put an answer on the wire; one that was glued to it comes with its last byte."""
-        end = bus.put(data, baud, got, math.inf if glued else held)
-        burst = bus.inbox.last
-        if not got or burst is None:
-            return end
-        waiting = self._glued.pop(bus.name, None)
-        if waiting is not None and waiting.held == math.inf:
-            waiting.held = end
-            burst.held = max(burst.held, end)
-        if glued:
-            self._glued[bus.name] = burst
-            bus.schedule.at(end + glued, partial(_release, burst, end + glued))
-        return end
-
-    def _spoil(self, kind: str, data: bytes, bus: "Bus") -> bytes:
-        """Return what the host gets of an answer."""
-        dice, language = self._dice, bus.language
-        if not data or kind == "drop":
-            return b""
-        if kind == "cut":
-            return data[: dice.randrange(len(data))]
-        if kind == "noise":
-            return dice.randbytes(dice.randint(1, 8)) + data
-        place = {"wrong_id": language.id_at, "wrong_length": language.length_at}.get(kind)
-        if place is None or place >= len(data):
-            place = dice.randrange(len(data))
-        changed = data[place] ^ dice.randrange(1, 256)
-        if kind == "wrong_id":
-            changed = (data[place] + dice.randrange(1, IDS)) % IDS
-        spoilt = data[:place] + bytes((changed,)) + data[place + 1 :]
-        return language.seal(spoilt) if kind == "wrong_id" else spoilt
+    def _begin(self, rule: Rule, bus: "Bus", identifier: int, fate: Fate) -> None:
+        """Let an event begin with an answer of whom it can befall."""
+        concerned = victims(rule, bus)
+        if EVERYBODY not in concerned and identifier not in concerned:
+            return
+        self._happen(rule, bus, identifier)
+        if rule.kind in SILENCING:
+            fate.got = b""
 
     def _script(self, rule: Rule) -> None:
         """Note in the world's schedule what happens by itself."""
@@ -246,53 +249,30 @@ class Faults:
                 self._world.schedule.at(time, partial(self._strike, rule))
 
     def _strike(self, rule: Rule) -> None:
-        """Let a scripted event happen, unless it has been cleared."""
-        if any(known is rule for known in self._rules):
-            self.happen(rule)
+        """Let a scripted event happen, unless it has been cleared; forget it after the last."""
+        if self._world is None or not any(known is rule for known in self._rules):
+            return
+        self.happen(rule)
+        if self._world.now >= rule.at[-1]:
+            self._rules = [known for known in self._rules if known is not rule]
+            self.active = bool(self._rules)
 
     def happen(self, rule: Rule) -> None:
         """Let an event happen now, to all whom it concerns; before `attach`, to nobody."""
         for bus in self._world.buses.values() if self._world is not None else ():
-            if rule.bus not in (None, bus.name):
-                continue
-            if rule.kind in ("unplug", "brown_out"):
-                self._happen(rule, bus, EVERYBODY)
-                if rule.kind == "brown_out":
-                    return
-                continue
-            for device in bus.devices:
-                if rule.concerns(bus.name, device.identifier):
-                    self._happen(rule, bus, device.identifier)
+            concerned = victims(rule, bus)
+            for identifier in concerned:
+                self._happen(rule, bus, identifier)
+            if concerned and rule.kind == "brown_out":  # everything has one supply
+                return
 
     def _happen(self, rule: Rule, bus: "Bus", identifier: int) -> None:
-        """Do an event to one servo, or to the bus."""
+        """Do an event to one device, or to the bus."""
         self._note(rule.kind, bus.name, identifier)
-        now, world = bus.schedule.now, self._world
-        if rule.kind == "unplug":
-            bus.plug(False)
-            if rule.seconds < math.inf:
-                bus.schedule.at(now + rule.seconds, partial(bus.plug, True))
-        elif rule.kind == "brown_out" and world is not None:
-            bus.schedule.at(now + rule.seconds, world.recover)
-            world.sag(rule.volts)
-        for device in [*bus.devices]:
-            if device.identifier != identifier:
-                continue
-            if rule.kind == "reset":
-                device.reboot(now)
-                bus.refresh()
-            elif rule.kind == "overload":
-                device.overload(now)
-            elif rule.kind == "dead" and world is not None:
-                world.kill(device)
+        if self._world is not None:
+            befall(rule, bus, identifier, self._world)
 
     def _note(self, kind: str, bus: str, identifier: int) -> None:
         self.counts[kind] += 1
         now = 0.0 if self._world is None else self._world.now
         self.hits.append(Hit(now, kind, bus, identifier))
-
-
-def _release(burst: "Burst", time: float) -> None:
-    """Stop waiting for an answer to glue to."""
-    if burst.held == math.inf:
-        burst.held = time

@@ -125,8 +125,7 @@ class FeetechServo(ByteServo):
         if names & MOVED:
             self.loop.hold_here()
         follows = {SPEED: "goal_speed", PWM: "goal_time"}.get(self.mode, "goal_position")
-        if follows in names:
-            self.errors &= ~OVERLOAD
+        if follows in names and not self._shut:
             self._switch(True, now)
             self._go(now)
         elif names & (RETUNED | GOALS) and self.torque_on:
@@ -167,15 +166,24 @@ class FeetechServo(ByteServo):
             self._overcurrent = self._overcurrent + dt if over else 0.0
             if self._overcurrent > get("overcurrent_time") * PROTECTION_UNIT:
                 self.errors |= CURRENT
-        if self.errors & ~OVERLOAD & get("unloading_condition") and self.torque_on:
+        if self._shut and self.torque_on:
             self._switch(False, now)
 
     def overload(self, now: float) -> None:
-        """Take itself for overloaded: push no harder than Protective Torque."""
+        """Take itself for overloaded: push no harder than Protective Torque, until torque is off.
+
+        No manual says what ends it. Users report that goals do not (lerobot's arms stay like that,
+        open-edge-platform/physical-ai-studio issue 955), and that switching the torque off does.
+        """
         self._strained = 0.0
         self.errors |= OVERLOAD
         if self.torque_on and OVERLOAD & self.table.get("unloading_condition"):
             self._drive(now)
+
+    @property
+    def _shut(self) -> bool:
+        """Whether Unloading Condition keeps the torque off for something that is wrong now."""
+        return bool(self.errors & ~OVERLOAD & self.table.get("unloading_condition"))
 
     @property
     def _speed_unit(self) -> int:
@@ -205,7 +213,9 @@ class FeetechServo(ByteServo):
             self.loop.hold_here()
             self.table.set("torque_enable", int(self.torque_on))
         else:
-            self._switch(value > 0, now)
+            if not value:
+                self.errors &= ~(OVERLOAD | CURRENT)
+            self._switch(value > 0 and not self._shut, now)
             if value and "goal_position" not in names:
                 self.loop.sample()
                 self.table.set("goal_position", self._shown_position())
@@ -218,7 +228,6 @@ class FeetechServo(ByteServo):
             self.loop.hold_here()
             self._drive(now)
         elif not on:
-            self.errors &= ~(OVERLOAD | CURRENT)
             self.loop.release()
 
     def _go(self, now: float) -> None:

@@ -71,6 +71,7 @@ class Firmware:
         self.registers.reset(self.registers.ram())
         self.health.reset()
         self.stopped = self._on = False
+        self.present.booted = now
         self.loop.release()
         self._change_mode()
         startup = "startup_configuration"

@@ -4,6 +4,7 @@ How hot a servo gets and how long an overload may last stand in no manual; the c
 assumptions of the right order: a stalled XM430 overheats within about a minute.
 """
 
+import math
 from dataclasses import dataclass, field
 
 from sim_twin.wire.control_loop import ControlLoop
@@ -31,11 +32,13 @@ class Health:
         loop: The servo's control loop: supply, torque, limits.
         temperature: Of the motor, degrees C.
         errors: Bits of the Hardware Error Status; they stay until a reboot.
+        floor: Heat from outside, degrees C: the motor is no cooler.
     """
 
     loop: ControlLoop
     temperature: float = AMBIENT
     errors: int = 0
+    floor: float = -math.inf
     _overloaded: float = field(default=0.0, repr=False)
 
     def reset(self) -> None:
@@ -47,13 +50,19 @@ class Health:
         """Raise error bits, as a broken encoder or an electrical shock would."""
         self.errors |= errors
 
+    def heat(self, degrees: float) -> None:
+        """Be this hot at least, degrees C, from now on; -inf: cool again."""
+        self.floor = degrees
+        self.temperature = max(self.temperature, degrees)
+
     def watch(self, dt: float, torque: float, driving: bool) -> None:
         """Look at the servo again after `dt` s; `torque` N m is what its motor makes."""
         loop = self.loop
         get = loop.registers.get
         torque = abs(torque) if driving else 0.0
         current = torque / loop.constant
-        self.temperature = warmed(self.temperature, current, loop.resistance, dt)
+        warm = warmed(self.temperature, current, loop.resistance, dt)
+        self.temperature = max(warm, self.floor)
         stall = loop.constant / loop.resistance * loop.supply
         strained = driving and torque >= OVERLOAD_LEVEL * stall
         self._overloaded = self._overloaded + dt if strained else 0.0

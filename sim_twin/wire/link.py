@@ -108,7 +108,11 @@ def free_port(host: str = "127.0.0.1") -> int:
 
 
 class Tcp:
-    """A TCP port on this machine, for one program at a time; the bus keeps its baud rate."""
+    """A TCP port on this machine; the bus keeps its baud rate.
+
+    It is for one program at a time: the connection of a second one is closed at once while that of
+    the first lives. A program that was killed, or has closed its connection, makes room.
+    """
 
     def __init__(self, port: int, host: str = "127.0.0.1") -> None:
         self._server = socket.create_server((host, port))
@@ -127,23 +131,31 @@ class Tcp:
         return [self._server.fileno(), *client]
 
     def receive(self) -> bytes:
-        """Return what the program has sent; take a new program in."""
+        """Return what the program has sent; take a new program in, or refuse it."""
+        data = self._read()
         with contextlib.suppress(BlockingIOError):
             client, _ = self._server.accept()
+            if self._client is not None:
+                client.close()
+                return data
             client.setblocking(False)
             client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            self._drop()
             self._client = client
-        if self._client is None:
-            return b""
-        try:
-            data = self._client.recv(CHUNK)
-        except BlockingIOError:
-            return b""
-        except OSError:
-            data = b""
-        if not data:
-            self._drop()
+        return data
+
+    def _read(self) -> bytes:
+        """Return all that the program has sent; drop it if it is gone."""
+        data = b""
+        while self._client is not None:
+            try:
+                chunk = self._client.recv(CHUNK)
+            except BlockingIOError:
+                break
+            except OSError:
+                chunk = b""
+            data += chunk
+            if not chunk:
+                self._drop()
         return data
 
     def send(self, data: bytes) -> None:

@@ -1,17 +1,19 @@
 """The OpenCR board of the OP3: IMU, voltage, buttons and the switch of the servo power.
 
-A Dynamixel protocol 2 device, id 200. Its registers are those of the OP3's firmware; roll, pitch
-and yaw are signed tenths of a degree, whatever the device file of the ROBOTIS framework says.
+A Dynamixel protocol 2 device, id 200. Its registers are those of the OP3's firmware
+(`dxl_node_op3.cpp` of ROBOTIS' OpenCR); roll, pitch and yaw are signed tenths of a degree, whatever
+the device file of the ROBOTIS framework says. The fourth button, reset (bit 3), which switches the
+servo power off when it is held for 0.1 s, is not emulated.
 """
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Protocol
 
 import numpy as np
 
 from hal.joints import Array
 from sim_twin.wire.device import Device
+from sim_twin.wire.imu import GRAVITY, ImuSource
 from sim_twin.wire.register_file import (
     BAD_ACCESS,
     BAD_INSTRUCTION,
@@ -22,7 +24,6 @@ from sim_twin.wire.register_file import (
 )
 from sim_twin.wire.x_series import BAUD_RATES
 
-GRAVITY = 9.80665  # m/s2
 GYRO_UNIT = math.radians(2000.0 / 32800.0)  # rad/s a count
 ACCELERATION_UNIT = 2.0 / 32768.0 * GRAVITY  # m/s2 a count
 BODY_TO_CHIP = np.array([-1.0, -1.0, 1.0])  # signs, gyro and accelerometer alike
@@ -55,33 +56,6 @@ REGISTERS = (
 )
 
 
-class ImuSource(Protocol):
-    """Where the board's IMU gets its motion from, in the body frame."""
-
-    @property
-    def angular_velocity(self) -> Array:
-        """(3,) rad/s."""
-        ...
-
-    @property
-    def acceleration(self) -> Array:
-        """(3,) m/s2; a robot at rest reads +9.81 up."""
-        ...
-
-    @property
-    def orientation(self) -> Array:
-        """(4,) wxyz, body to world."""
-        ...
-
-
-class RestingImu:
-    """An IMU that lies on the bench."""
-
-    angular_velocity: Array = np.zeros(3)
-    acceleration: Array = np.array([0.0, 0.0, GRAVITY])
-    orientation: Array = np.array([1.0, 0.0, 0.0, 0.0])
-
-
 class OpenCr:
     """The board.
 
@@ -94,6 +68,7 @@ class OpenCr:
 
     Attributes:
         buttons: The buttons that are pressed.
+        dead: Servos that work no more, whatever power they get.
         on_power: Called when the servo power is switched.
     """
 
@@ -107,6 +82,7 @@ class OpenCr:
     ) -> None:
         self.imu, self.servos, self.supply = imu, tuple(servos), supply
         self.buttons = 0
+        self.dead: list[Device] = []
         self.on_power: Callable[[bool], None] | None = None
         self.registers = RegisterFile(REGISTERS)
         self.registers.set("baud_rate", BAUD_RATES.index(baud))
@@ -160,8 +136,8 @@ class OpenCr:
         return False
 
     def listens(self, now: float) -> bool:
-        """Whether it has power."""
-        return self.supply > 0.0
+        """Whether it has power; with its IMU all of it is silent."""
+        return self.supply > 0.0 and not self.imu.silent
 
     def ping(self) -> bytes:
         """Return model number and firmware version."""
@@ -223,6 +199,17 @@ class OpenCr:
     def overload(self, now: float) -> None:
         """It drives nothing that could be too heavy."""
 
+    def heat(self, degrees: float) -> None:
+        """It has no motor."""
+
+    def press(self, buttons: int) -> None:
+        """Press buttons, bits of `MODE_BUTTON` and the others."""
+        self.buttons |= buttons
+
+    def release(self, buttons: int) -> None:
+        """Release buttons."""
+        self.buttons &= ~buttons
+
     def control(self, now: float, dt: float) -> None:
         """It controls nothing."""
 
@@ -238,7 +225,7 @@ class OpenCr:
         """Switch the servo power; servos that get it boot."""
         self.registers.set("dynamixel_power", int(on))
         for servo in self.servos:
-            servo.set_supply(self.supply if on else 0.0, now)
+            servo.set_supply(self.supply if on and servo not in self.dead else 0.0, now)
         if self.on_power is not None:
             self.on_power(on)
 

@@ -6,6 +6,7 @@ from sim_twin.wire.control_loop import POSITION_MODES, ControlLoop
 from sim_twin.wire.x_series import PRESENT, PWM_FULL, VELOCITY, VELOCITY_UNIT
 
 IN_POSITION, IN_PROGRESS, NOT_FOLLOWING = 0x01, 0x02, 0x08  # bits of Moving Status
+TICKS = 0x7FFF  # of Realtime Tick, ms, which begins anew behind that
 CLOSE = 20  # counts; nearer than this counts as arrived
 
 _MOTION = struct.Struct("<hii")  # at 126: current or load, velocity, position
@@ -15,10 +16,14 @@ MOTION = range(126, 136)
 
 
 class Present:
-    """Samples a shaft, and writes the sample into the registers when somebody reads them."""
+    """Samples a shaft, and writes the sample into the registers when somebody reads them.
+
+    Attributes:
+        booted: When the servo started, s; Realtime Tick counts from there.
+    """
 
     def __init__(self, loop: ControlLoop) -> None:
-        self.loop = loop
+        self.loop, self.booted = loop, 0.0
         self.position = self.velocity = self.torque = 0.0
 
     def sample(self) -> None:
@@ -48,7 +53,7 @@ class Present:
         trajectory, rate = loop.trajectory(now)
         going = driving and loop.mode != VELOCITY and loop.in_progress(now)
         status = self._status(counts, trajectory, now) if driving else 0
-        tick, pwm = int(now * 1e3) & 0x7FFF, self._pwm(driving)
+        tick, pwm = int((now - self.booted) * 1e3) & TICKS, self._pwm(driving)
         _BEFORE.pack_into(memory, PRESENT[0], tick, self.moving or going, status, pwm)
         volts, warmth = round(loop.supply * 10.0), max(0, min(255, round(temperature)))
         _BEHIND.pack_into(memory, MOTION.stop, round(rate), round(trajectory), volts, warmth)

@@ -13,7 +13,7 @@ from typing import Final
 
 from hal.joints import Array
 from sim_twin.wire.bus import Bus, Heard
-from sim_twin.wire.opencr import GRAVITY, ImuSource
+from sim_twin.wire.imu import GRAVITY, ImuSource
 
 HEADER: Final = b"\xaa\xaa"
 BAUD: Final = 115_200
@@ -71,6 +71,7 @@ def start_rvc(bus: Bus, imu: ImuSource, start: float = PERIOD) -> None:
 def _send(bus: Bus, imu: ImuSource, count: int, start: float) -> None:
     if bus.queued > BUFFER:
         bus.discard()
-    bus.answer(encode_rvc(count, imu), BAUD, count & 0xFF)
+    if not imu.silent:
+        bus.answer(encode_rvc(count, imu), BAUD, count & 0xFF)
     count += 1
     bus.schedule.at(start + count * PERIOD, partial(_send, bus, imu, count, start))

@@ -181,6 +181,10 @@ class Servo:
         self.firmware.health.inject(OVERLOAD)
         self.firmware.protect(now)
 
+    def heat(self, degrees: float) -> None:
+        """Have a motor that is this hot, degrees C, and stays so; -inf: it may cool again."""
+        self.firmware.health.heat(degrees)
+
     def control(self, now: float, dt: float) -> None:
         """Do one step of the control loop; needed while `busy`."""
         self.firmware.control(now, dt)

@@ -115,6 +115,8 @@ class TwinImu:
             limp joints before the hands put them back.
     """
 
+    silent = False
+
     def __init__(self, twin: Twin) -> None:
         imu = twin.robot.imu
         if imu is None:

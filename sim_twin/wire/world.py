@@ -6,6 +6,7 @@ from typing import Protocol
 
 from sim_twin.wire.bus import Bus
 from sim_twin.wire.device import Device
+from sim_twin.wire.opencr import OpenCr
 from sim_twin.wire.schedule import Schedule
 from sim_twin.wire.shaft import InertiaShaft
 
@@ -67,11 +68,15 @@ class World:
     ) -> None:
         self.physics, self.schedule, self.buses, self.supply = physics, schedule, buses, supply
         self.owned = tuple(owned)  # such as the twin, for whoever wants the truth
-        self._full: list[float] | None = None  # supplies before a brown-out
+        self._full: list[float] = []  # supplies before the brown-outs that go on now
+        self._sags: list[float] = []  # to what they let everything sink, V
         self.dead: list[Device] = []
         self._steps = 0
         self._watched = 0.0
         self._devices = [(bus, device) for bus in buses.values() for device in bus.devices]
+        for device in self.devices:
+            if isinstance(device, OpenCr):
+                device.dead = self.dead
         for bus in buses.values():
             bus.faults.attach(self)
 
@@ -128,17 +133,22 @@ class World:
         self.supply = volts
         self._supply([volts] * len(self._devices))
 
+    @property
+    def volts(self) -> float:
+        """The supply as it is now, during a brown-out too, V."""
+        return min([self.supply, *self._sags])
+
     def sag(self, volts: float) -> None:
         """Let the supply of everything sink to `volts` V, until `recover`."""
-        if self._full is None:
+        if not self._sags:
             self._full = [device.supply for _, device in self._devices]
-        self._supply([min(volts, full) for full in self._full])
+        self._sags.append(volts)
+        self._supply([min(full, *self._sags) for full in self._full])
 
-    def recover(self) -> None:
-        """Give everything the supply that it had before it sank."""
-        if self._full is not None:
-            full, self._full = self._full, None
-            self._supply(full)
+    def recover(self, volts: float) -> None:
+        """Undo a `sag` to `volts` V; other sags go on."""
+        self._sags.remove(volts)
+        self._supply([min([full, *self._sags]) for full in self._full])
 
     def _supply(self, volts: list[float]) -> None:
         for (_, device), supply in zip(self._devices, volts, strict=True):

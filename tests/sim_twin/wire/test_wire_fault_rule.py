@@ -1,5 +1,6 @@
 """Faults that could never happen are refused before anything runs, and spaces do no harm."""
 
+import math
 import re
 
 import pytest
@@ -7,7 +8,7 @@ import pytest
 from hal.errors import UsageError
 from sim_twin.wire import parse_address
 from sim_twin.wire.build import build_world
-from sim_twin.wire.fault_rule import parse_rules
+from sim_twin.wire.fault_text import parse_rules
 
 BENCH = "twin://bench?servos=STS3215:1-4&faults="
 
@@ -20,6 +21,12 @@ BENCH = "twin://bench?servos=STS3215:1-4&faults="
         ("drop:0.01:seconds=3", "drop: takes no seconds; these do: late, delay, glue"),
         ("dead:ids=7-5", "'dead:ids=7-5': a rate from 0 to 1 and keys"),
         ("reset:at=nan", "reset: times are 0 s or later"),
+        ("unplug:seconds=nan", "unplug: times are 0 s or later"),
+        ("brown_out:volts=nan", "brown_out: volts=nan cannot be"),
+        ("brown_out:volts=-1", "brown_out: volts=-1 cannot be"),
+        ("heat:degrees=inf", "heat: degrees=inf cannot be"),
+        ("imu_spin:degrees=3", "imu_spin: takes no degrees; only heat does"),
+        ("drop:speed=3", "drop: takes no speed; only imu_spin does"),
     ],
 )
 def test_a_key_that_means_nothing_is_refused_by_name(text: str, message: str) -> None:
@@ -32,6 +39,8 @@ def test_a_key_that_means_nothing_is_refused_by_name(text: str, message: str) ->
     [
         ("drop:ids=99", "drop: nobody has id 99; there are 1, 2, 3, 4"),
         ("drop:bus=legs", "drop: unknown bus 'legs'; known: bench"),
+        ("imu_frozen", "imu_frozen: there is no IMU that it could hit"),
+        ("button", "button: there is no OpenCR that it could hit"),
     ],
 )
 def test_a_fault_of_nobody_is_refused_when_the_world_is_built(text: str, message: str) -> None:
@@ -46,3 +55,21 @@ def test_a_range_of_ids_may_reach_beyond_the_servos() -> None:
 
 def test_spaces_do_not_count() -> None:
     assert parse_rules(" drop: 0.02, cut:ids=1 ") == parse_rules("drop:0.02,cut:ids=1")
+
+
+def test_what_has_an_end_can_last_for_ever() -> None:
+    for rule in parse_rules("brown_out:volts=9:seconds=inf,unplug:seconds=inf"):
+        assert rule.seconds == math.inf
+
+
+def test_keys_that_are_left_out_have_their_defaults() -> None:
+    heat, spin, button, frozen = parse_rules("heat,imu_spin,button,imu_frozen")
+    assert (heat.degrees, heat.seconds) == (75.0, math.inf)
+    assert (spin.speed, spin.seconds) == (3.0, math.inf)
+    assert (button.seconds, frozen.seconds) == (0.2, math.inf)
+
+
+def test_a_text_for_a_world_that_runs_means_its_events_now() -> None:
+    unplug, later, share, drop = parse_rules("unplug,reset:at=2,overload:0.1,drop", live=True)
+    assert (unplug.at, later.at, share.at, drop.at) == ([0.0], [2.0], [], [])
+    assert (share.rate, drop.rate) == (0.1, 0.01)

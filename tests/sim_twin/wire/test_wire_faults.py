@@ -8,7 +8,8 @@ import serial
 
 from hal.errors import UsageError
 from sim_twin.wire import drop_world
-from sim_twin.wire.fault_rule import KINDS, make_rule, parse_rules
+from sim_twin.wire.fault_rule import KINDS, make_rule
+from sim_twin.wire.fault_text import parse_rules
 from sim_twin.wire.faults import Faults
 from sim_twin.wire.frames import Frame, Parser
 from sim_twin.wire.frames import encode as encode2
@@ -213,10 +214,10 @@ def test_an_adapter_that_never_comes_back() -> None:
     drop_world("gone")
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "button"])
 def test_the_same_seed_brings_the_same_bytes(kind: str) -> None:
     def run() -> list[bytes]:
-        with open_host1(f"{BUS}&faults={kind}:0.05&world=again") as host:
+        with open_host1(f"{BUS}&faults={kind}:0.05&imu=rvc&world=again") as host:
             got = []
             try:
                 for _ in range(60):

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import pytest
 
-from sim_twin.wire.feetech_servo import OVERLOAD, TEMPERATURE, VOLTAGE
 from sim_twin.wire.frames1 import encode
 from tests.sim_twin.wire.wire_host1 import (
     ACTION,
@@ -21,19 +20,13 @@ from tests.sim_twin.wire.wire_host1 import (
 )
 
 ALL = 254
-STS, BIG, SCS = 1, 2, 9
+STS, BIG = 1, 2
 SPEED, PWM, STEP = 1, 2, 3
 
 
 @pytest.fixture
 def host() -> Iterator[Host1]:
     with open_host1("twin://bench?servos=STS3215-12V:1,STS3250:2,STS3215:3") as host:
-        yield host
-
-
-@pytest.fixture
-def scs() -> Iterator[Host1]:
-    with open_host1("twin://bench?servos=SCS0009:9") as host:
         yield host
 
 
@@ -254,66 +247,6 @@ def test_step_mode_goes_on_from_where_it_is(host: Host1) -> None:
     assert host.read(1, "present_position") == pytest.approx(2048 + 3000, abs=3)
 
 
-def test_load_and_current_follow_the_torque(host: Host1) -> None:
-    shaft = host.shaft(1)
-    host.write(1, "torque_enable", 1)
-    shaft.load = 0.5
-    host.wait(1.0)
-    servo = host.servo(1).loop
-    assert host.read(1, "present_current") == pytest.approx(-0.5 / 1.0889 / 6.5e-3, rel=0.15)
-    assert host.read(1, "present_load") == pytest.approx(-1000 * 0.5 / 2.94, rel=0.15)
-    # duty = P e / 4000 of servos.toml
-    error = shaft.position * servo.per_rad
-    assert host.read(1, "present_load") == pytest.approx(-1000 * 32 * error / 4000, abs=3)
-
-
-def test_the_torque_limit_caps_the_duty(host: Host1) -> None:
-    host.write(1, "torque_limit", 200)
-    host.shaft(1).load = 1.0
-    host.write(1, "torque_enable", 1)
-    host.wait(0.5)
-    assert host.read(1, "present_load") == pytest.approx(-200, abs=3)
-
-
-def test_an_overload_leaves_the_protective_torque_until_a_new_goal(host: Host1) -> None:
-    host.shaft(1).blocked = True
-    host.write(1, "goal_position", 3500)
-    host.wait(1.0)
-    assert host.read(1, "present_load") > 900
-    host.wait(1.5)
-    assert host.ask(1, PING)[0].instruction == OVERLOAD
-    assert host.read(1, "status") == OVERLOAD
-    assert host.read(1, "present_load") == pytest.approx(200, abs=8)
-    host.write(1, "goal_position", 2100)
-    host.wait(0.05)
-    assert host.ask(1, PING)[0].instruction == 0
-
-
-def test_heat_and_voltage_are_reported_and_heat_lets_go(host: Host1) -> None:
-    host.write(1, "torque_enable", 1)
-    host.servo(1).temperature = 75.0
-    host.wait(0.05)
-    assert host.ask(1, PING)[0].instruction == TEMPERATURE
-    assert host.read(1, "torque_enable") == 0
-    assert host.read(1, "present_temperature") == 75
-    host.world.set_supply(15.0)
-    host.wait(0.05)
-    assert host.ask(2, PING)[0].instruction == VOLTAGE
-    assert host.read(2, "present_voltage") == 150
-
-
-def test_torque_on_holds_the_present_pose_and_off_lets_go(host: Host1) -> None:
-    host.place(1, 2600)
-    host.write(1, "torque_enable", 1)
-    assert host.read(1, "goal_position") == 2600
-    host.wait(0.3)
-    assert host.read(1, "present_position") == 2600
-    host.write(1, "torque_enable", 0)
-    host.shaft(1).load = 1.0
-    host.wait(0.3)
-    assert host.read(1, "present_position") > 2700
-
-
 def test_half_a_field_can_be_written_and_what_is_read_only_is_skipped(host: Host1) -> None:
     host.ask(1, WRITE, bytes((12, 5)))
     assert host.read(1, "max_angle") == 4095 & 0xFF | 5 << 8
@@ -346,37 +279,3 @@ def test_reg_write_and_action_move_together(host: Host1) -> None:
     host.wait(1.0)
     for k in (1, 2, 3):
         assert host.read(k, "present_position") == pytest.approx(0x960, abs=3)
-
-
-def test_an_scs_has_the_high_byte_first_and_1024_steps(scs: Host1) -> None:
-    assert scs.ask(SCS, READ, bytes((3, 2)))[0].parameters == bytes((5, 4))
-    scs.place(SCS, 300)
-    assert scs.ask(SCS, READ, bytes((56, 2)))[0].parameters == (300).to_bytes(2, "big")
-    scs.ask(SCS, WRITE, bytes((42,)) + (700).to_bytes(2, "big"))
-    scs.wait(1.5)
-    assert scs.read(SCS, "present_position") == pytest.approx(700, abs=4)
-    assert scs.shaft(SCS).position == pytest.approx((700 - 512) * 300 / 1024 / 57.2958, abs=0.02)
-
-
-def test_an_scs_takes_the_time_it_is_told(scs: Host1) -> None:
-    goal = (612).to_bytes(2, "big") + (2000).to_bytes(2, "big")
-    scs.ask(SCS, WRITE, bytes((42,)) + goal)
-    scs.wait(1.0)
-    assert scs.read(SCS, "present_position") == pytest.approx(562, abs=6)
-
-
-def test_an_scs_lock_is_at_48(scs: Host1) -> None:
-    scs.ask(SCS, WRITE, bytes((48, 0)))
-    scs.write(SCS, "p_gain", 9)
-    scs.ask(SCS, REBOOT)
-    scs.wait(0.5)
-    assert scs.read(SCS, "p_gain") == 9
-
-
-def test_an_scs_without_angle_limits_is_a_wheel(scs: Host1) -> None:
-    scs.write(SCS, "min_angle", 0)
-    scs.write(SCS, "max_angle", 0)
-    scs.ask(SCS, WRITE, bytes((44,)) + (500 | 1 << 10).to_bytes(2, "big"))
-    scs.wait(0.5)
-    assert scs.shaft(SCS).velocity < -3.0
-    assert scs.read(SCS, "present_speed") < -500

@@ -7,7 +7,8 @@ from sim_twin.wire import drop_world, find_world, parse_address, put_world
 from sim_twin.wire.bus import Bus
 from sim_twin.wire.dynamixel2 import Dynamixel2
 from sim_twin.wire.frames import encode
-from sim_twin.wire.opencr import ACCELERATION_UNIT, GYRO_UNIT, OpenCr, RestingImu
+from sim_twin.wire.imu import RestingImu
+from sim_twin.wire.opencr import ACCELERATION_UNIT, GYRO_UNIT, OpenCr
 from sim_twin.wire.schedule import Schedule
 from sim_twin.wire.world import Bench, World
 from tests.sim_twin.wire.wire_host import open_host

@@ -8,7 +8,7 @@ from hal.imu.bno08x_rvc import decode
 from hal.imu.quaternion import euler_zxy
 from sim_twin.twin import Twin
 from sim_twin.wire import drop_world
-from sim_twin.wire.opencr import GRAVITY
+from sim_twin.wire.imu import GRAVITY
 from sim_twin.wire.rvc import encode_rvc
 from tests.sim_twin.wire.wire_host1 import open_host1
 
@@ -22,6 +22,7 @@ def turned(yaw: float, pitch: float, roll: float) -> np.ndarray:
 
 
 class Example:
+    silent = False
     angular_velocity = np.zeros(3)
     acceleration = np.array([-0.371, -0.020, 0.977]) * GRAVITY
     orientation = turned(0.01, -1.10, 20.85)

@@ -1,0 +1,42 @@
+"""Where an emulated IMU gets its motion from."""
+
+from typing import Protocol
+
+import numpy as np
+
+from hal.joints import Array
+
+GRAVITY = 9.80665  # m/s2
+
+
+class ImuSource(Protocol):
+    """The motion that an IMU reports, in the body frame."""
+
+    @property
+    def silent(self) -> bool:
+        """Whether it reports nothing now."""
+        ...
+
+    @property
+    def angular_velocity(self) -> Array:
+        """(3,) rad/s."""
+        ...
+
+    @property
+    def acceleration(self) -> Array:
+        """(3,) m/s2; a robot at rest reads +9.81 up."""
+        ...
+
+    @property
+    def orientation(self) -> Array:
+        """(4,) wxyz, body to world."""
+        ...
+
+
+class RestingImu:
+    """An IMU that lies on the bench."""
+
+    silent = False
+    angular_velocity: Array = np.zeros(3)
+    acceleration: Array = np.array([0.0, 0.0, GRAVITY])
+    orientation: Array = np.array([1.0, 0.0, 0.0, 0.0])
