@@ -21,7 +21,7 @@ from hal.servo_alerts import ServoAlerts, count_errors
 from hal.servo_line import ServoLine
 from hal.servo_link import BusPort, ImuLink, ServoLink
 from hal.servo_model import ServoMount
-from hal.servo_setup import lines_of, names_of, open_links, read_health, set_up
+from hal.servo_setup import lines_of, names_of, open_links, set_up
 from hal.torque_state import TorqueState
 from hal.units import Units
 from hal.wiring import check_mounts
@@ -86,7 +86,7 @@ class ServoBackend:
         self.watchdog_trips = 0
         n = len(joints)
         self._counts = np.full((3, n), np.nan)
-        self._health = np.full((2, n), np.nan)
+        self._health = np.full((3, n), np.nan)
         self._answered = np.full(n, -np.inf)
         self._imu_at = -np.inf
         self._patience = 0.9 * watchdog
@@ -149,8 +149,12 @@ class ServoBackend:
         else:
             silent = names_of(self.joints, self._answered <= began)
             raise HardwareError(f"no answer to cyclic reads from {silent}; run `windup scan`")
-        for line in self.lines:
-            read_health(line, self._health)
+        self.read_health()
+
+    def read_health(self) -> None:
+        """Read voltage and temperature of every servo now, where its port is there."""
+        for link in self.links:
+            link.read_health(self._health)
 
     def request(self) -> None:
         """Ask every joint for its state."""
@@ -283,13 +287,14 @@ class ServoBackend:
     def _observe(self) -> Observation:
         now = self.clock.now()
         position, velocity, torque = self.units.si(self._counts)
-        voltage, temperature = self._health.copy()
+        voltage, temperature, measured = self._health.copy()
         answered = self._answered
         if self._couplings:
             position, velocity = map(self._couplings.joints, (position, velocity))
             torque = self._couplings.torques(torque)
             answered = self._couplings.oldest(answered)
-        state = JointState(position, velocity, torque, voltage, temperature, now - answered)
+        age = now - answered
+        state = JointState(position, velocity, torque, voltage, temperature, age, now - measured)
         return Observation(now, state, self._imu_state(now), self._contacts, None)
 
     def _imu_state(self, now: float) -> ImuState | None:

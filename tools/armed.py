@@ -78,6 +78,7 @@ class Armed(OnStack):
     def _arm(self, switch_on: Callable[[], TorqueState]) -> None:
         if not self.stack.may_arm:
             raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
+        self.backend.admit()
         self.custody.begin()
         self.armed = True
         atexit.register(self._end_of_program)
