@@ -12,6 +12,7 @@ import tyro
 from hal.errors import UsageError
 from tools.bench_balance import measure_balance
 from tools.bench_faults import measure_faults
+from tools.bench_guardian import measure_takeovers
 from tools.bench_jitter import measure_jitter
 from tools.bench_loop import measure_tick, measure_twin
 from tools.bench_servo import measure_servos
@@ -20,7 +21,9 @@ from tools.bench_wire import Maker, measure_bus
 from tools.output import console, write_json
 from tools.safety.bench import ROBOTS, measure_safety
 
-What = Literal["tick", "twin", "balance", "servo", "bus", "safety", "loop", "faults", "unplug"]
+What = Literal[
+    "tick", "twin", "balance", "servo", "bus", "safety", "guardian", "loop", "faults", "unplug"
+]
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,7 @@ class Bench:
     balance: the rollouts of one step. servo: the twin's servo against its data sheet.
     bus: a cycle of 20 servos against the wire and other packages.
     safety: end a moving robot in every way there is, and see who switches it off (an hour).
+    guardian: does it leave a robot alone that walks beside a spinning process (give --minutes 30).
     loop: how late our loop wakes at 125 Hz, beside a C program that only sleeps.
     faults: what becomes of the readings of each family while everything goes wrong (3 minutes).
     unplug: what becomes of a robot whose adapter is pulled out and put in again (4 minutes)."""
@@ -50,7 +54,7 @@ class Bench:
     seed: int = 0
     """safety, faults, unplug: seed of the moments."""
     minutes: float = 10.0
-    """loop: how long."""
+    """loop, guardian: how long."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
@@ -69,6 +73,7 @@ class Bench:
             "servo": measure_servos,
             "bus": partial(measure_bus, maker=self.vendor),
             "loop": partial(measure_jitter, minutes=self.minutes),
+            "guardian": partial(measure_takeovers, minutes=self.minutes),
             "unplug": partial(measure_unplugs, times=self.times, seed=self.seed),
             "faults": partial(measure_faults, reads=self.reads, seed=self.seed),
         }
