@@ -22,7 +22,16 @@ from tools.output import console, write_json
 from tools.safety.bench import ROBOTS, measure_safety
 
 What = Literal[
-    "tick", "twin", "balance", "servo", "bus", "safety", "guardian", "loop", "faults", "unplug"
+    "tick",
+    "twin",
+    "balance",
+    "servo",
+    "bus",
+    "safety",
+    "guardian",
+    "loop",
+    "faults",
+    "unplug",
 ]
 
 
