@@ -12,6 +12,7 @@ from hal.ranges import Range
 from tools.bench_balance import measure_balance
 from tools.bench_faults import measure_faults
 from tools.bench_jitter import measure_jitter
+from tools.bench_leaks import measure_leaks
 from tools.bench_loop import measure_tick, measure_twin
 from tools.bench_servo import measure_servos
 from tools.bench_stop import ENDS, measure_stops
@@ -22,7 +23,9 @@ from tools.output import console, write_json
 from tools.quantities import Count, Seed
 from tools.stop_rig import End
 
-What = Literal["tick", "twin", "balance", "servo", "bus", "stop", "loop", "faults", "unplug"]
+What = Literal[
+    "tick", "twin", "balance", "servo", "bus", "stop", "loop", "faults", "unplug", "leaks"
+]
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,9 @@ class Bench(Command):
     stop: how soon the torque is off when the controller ends, crashes or dies (10 minutes).
     loop: how late our loop wakes at 125 Hz, beside a C program that only sleeps.
     faults: what becomes of the readings of each family while everything goes wrong (3 minutes).
-    unplug: what becomes of a robot whose adapter is pulled out and put in again (4 minutes)."""
+    unplug: what becomes of a robot whose adapter is pulled out and put in again (4 minutes).
+    leaks: what opening and closing a robot leaves behind; 1000 times (10 minutes), status 1 if that
+    is more than 5 MB, or any file, thread or process."""
     robot: str = "op3"
     """Name of the robot, or path of its folder."""
     vendor: Maker = "dynamixel2"
@@ -47,8 +52,8 @@ class Bench(Command):
     """stop: by what the run ends."""
     reads: Annotated[int, Range(1, 10**9)] = 1_000_000
     """faults: how often servos of each family are read."""
-    times: Count = 100
-    """unplug: how often."""
+    times: Count | None = None
+    """unplug and leaks: how often; 100, and 1000."""
     seed: Seed = 0
     """stop, faults, unplug: seed of the moments."""
     minutes: Annotated[float, Range(0.0, 10_000.0, "minutes", above=True)] = 10.0
@@ -65,7 +70,8 @@ class Bench(Command):
             "servo": measure_servos,
             "bus": partial(measure_bus, maker=self.vendor),
             "loop": partial(measure_jitter, minutes=self.minutes),
-            "unplug": partial(measure_unplugs, times=self.times, seed=self.seed),
+            "unplug": partial(measure_unplugs, times=self.times or 100, seed=self.seed),
+            "leaks": partial(measure_leaks, times=self.times or 1_000),
             "faults": partial(measure_faults, reads=self.reads, seed=self.seed),
             "stop": partial(
                 measure_stops,
@@ -78,4 +84,4 @@ class Bench(Command):
         for key, value in result.items():
             console.print(f"{key:28} {value}")
         write_json(self.json, f"bench {self.what}", {"robot": self.robot, **result})
-        return 0
+        return 0 if result.get("good", True) else 1

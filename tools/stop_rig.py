@@ -164,12 +164,12 @@ def serve(name: str, path: Path, pipe: Connection, faults: str = "") -> None:
     emulate(
         parse_address(f"twin://{name}?clock=real&faults={faults}"),
         pty=path,
-        on_ready=lambda emulator: pipe.send(_port(emulator)),
+        on_ready=lambda emulator: pipe.send(port_of(emulator)),
         journal=lambda _, driven: pipe.send((time.monotonic(), driven)),
     )
 
 
-def _port(emulator: Emulator) -> str:
+def port_of(emulator: Emulator) -> str:
     """Return what `--port` takes for the buses of an emulator."""
     if len(emulator.outlets) == 1:
         return emulator.outlets[0].name

@@ -47,8 +47,10 @@ def find_world(name: str) -> World:
 
 
 def drop_world(name: str) -> None:
-    """Forget a world; ports that are open keep theirs."""
-    _running.pop(name, None)
+    """Forget a world; ports that are open keep theirs, until they are closed."""
+    running = _running.pop(name, None)
+    if running is not None and not running.ports:
+        _end(running)
 
 
 def enter(address: Address) -> Running:
@@ -81,6 +83,13 @@ def leave(running: Running, lost: Address | None = None) -> None:
             del _running[name]
         if lost is not None:
             _running[_lost_name(lost)] = running
+    if running.ports == 0 and not any(other is running for other in _running.values()):
+        _end(running)
+
+
+def _end(running: Running) -> None:
+    """Forget what was to happen in a world that nobody can reach: it would keep the world."""
+    running.world.schedule.clear()
 
 
 def _lost_name(address: Address) -> str:
