@@ -86,6 +86,15 @@ class Rearmable(Protocol):
 
 
 @runtime_checkable
+class HealthReader(Protocol):
+    """A backend whose supply and temperature are read less often than its joints move."""
+
+    def read_health(self) -> None:
+        """Read supply and temperature of every joint now; the next observation has them."""
+        ...
+
+
+@runtime_checkable
 class BusHealth(Protocol):
     """What a backend on a bus can say about the bus and its servos; a twin has neither."""
 

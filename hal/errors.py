@@ -96,6 +96,14 @@ class TorqueUnknownError(HardwareError):
     """Torque was told to go off, and a joint could not be read back: it may be on or off."""
 
 
+class UnhealthyError(HardwareError):
+    """A joint is too hot, on the wrong supply, loaded for too long, or blocked."""
+
+
+class ImuError(HardwareError):
+    """The IMU is silent, frozen or wrong, and a robot that balances with it cannot go on."""
+
+
 class GuardianError(HardwareError):
     """The process that stops the robot when this one dies has died itself, or does not react."""
 

@@ -7,7 +7,7 @@ from hal.joints import Array
 
 @dataclass(frozen=True, slots=True)
 class JointState:
-    """State of the n joints in MJCF order; every attribute is an (n,) array.
+    """State of the n joints in MJCF order; every attribute but None is an (n,) array.
 
     Attributes:
         position: rad.
@@ -16,6 +16,8 @@ class JointState:
         voltage: Supply, V.
         temperature: Motor, degrees C.
         age: Seconds since the servo last answered.
+        health_age: Seconds since voltage and temperature were measured, which is less often; None
+            where they are as young as the rest.
     """
 
     position: Array
@@ -24,6 +26,7 @@ class JointState:
     voltage: Array
     temperature: Array
     age: Array
+    health_age: Array | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,8 @@ from hal.servo_alerts import ServoAlerts, count_errors
 from hal.servo_line import ServoLine
 from hal.servo_link import BusPort, ImuLink, ServoLink
 from hal.servo_model import ServoMount
-from hal.servo_setup import lines_of, names_of, open_links, read_health, set_up
+from hal.servo_setup import lines_of, names_of, open_links, set_up
+from hal.stop_button import StopButton
 from hal.torque_state import TorqueState
 from hal.units import Units
 from hal.wiring import check_mounts
@@ -55,6 +56,7 @@ class ServoBackend:
     Attributes:
         links: The buses, from `connect` to `disconnect`.
         clamps: Clamp name to the number of commands it changed; "unarmed" are goals withheld.
+        button: The buttons of the OpenCR: any of them is a stop.
         watchdog_trips: Servos that had frozen for silence, and were cleared.
         heartbeat: Called again and again while torque is switched, which takes a while.
     """
@@ -82,11 +84,12 @@ class ServoBackend:
         self.links: list[ServoLink] = []
         self._imu_link: ImuLink | None = None
         self._alerts = ServoAlerts(joints, self.mounts)
+        self.button = StopButton()
         self.clamps: Counter[str] = Counter({"goal": 0, "gain": 0})
         self.watchdog_trips = 0
         n = len(joints)
         self._counts = np.full((3, n), np.nan)
-        self._health = np.full((2, n), np.nan)
+        self._health = np.full((3, n), np.nan)
         self._answered = np.full(n, -np.inf)
         self._imu_at = -np.inf
         self._patience = 0.9 * watchdog
@@ -149,8 +152,12 @@ class ServoBackend:
         else:
             silent = names_of(self.joints, self._answered <= began)
             raise HardwareError(f"no answer to cyclic reads from {silent}; run `windup scan`")
-        for line in self.lines:
-            read_health(line, self._health)
+        self.read_health()
+
+    def read_health(self) -> None:
+        """Read voltage and temperature of every servo now, where its port is there."""
+        for link in self.links:
+            link.read_health(self._health)
 
     def request(self) -> None:
         """Ask every joint for its state."""
@@ -166,6 +173,8 @@ class ServoBackend:
         if late:
             self.watchdog_trips += sum(link.clear_watchdogs() for link in self.links)
         self._alerts.update(self.links)
+        if self.board is not None:
+            self.button.look(self.links)
         if self._imu_link is not None:
             self._imu_link.poll()
         return self._observe()
@@ -215,6 +224,7 @@ class ServoBackend:
         """
         self._gains = b""
         if on:
+            self.button.forget()
             try:
                 return self._switch_on()
             except HardwareError:
@@ -283,13 +293,14 @@ class ServoBackend:
     def _observe(self) -> Observation:
         now = self.clock.now()
         position, velocity, torque = self.units.si(self._counts)
-        voltage, temperature = self._health.copy()
+        voltage, temperature, measured = self._health.copy()
         answered = self._answered
         if self._couplings:
             position, velocity = map(self._couplings.joints, (position, velocity))
             torque = self._couplings.torques(torque)
             answered = self._couplings.oldest(answered)
-        state = JointState(position, velocity, torque, voltage, temperature, now - answered)
+        age = now - answered
+        state = JointState(position, velocity, torque, voltage, temperature, age, now - measured)
         return Observation(now, state, self._imu_state(now), self._contacts, None)
 
     def _imu_state(self, now: float) -> ImuState | None:

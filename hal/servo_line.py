@@ -18,6 +18,7 @@ from hal.units import gain_groups
 
 HEALTH_EVERY = 10
 """Voltage and temperature are read every so many cycles."""
+HEALTH = ("present_voltage", "present_temperature")
 
 Rows = slice | npt.NDArray[np.intp]
 
@@ -115,7 +116,7 @@ class ServoLine:
 
         Args:
             counts: (3, n) position, velocity and current of all joints; fresh ones are put there.
-            health: (2, n) voltage V and temperature degrees C; the same.
+            health: (3, n) voltage V, temperature degrees C, and when they were read, s; the same.
             error: (n,) error bytes; the same.
         """
         asked, servos = self._asked, len(self.ids)
@@ -132,6 +133,14 @@ class ServoLine:
         if asked.long is not None:
             self._take_health(asked, asked.long, believed, health)
         return believed
+
+    def read_health(self, health: Array) -> None:
+        """Read voltage and temperature of all servos into (3, n), as of `collect`, out of turn."""
+        for row, name in enumerate(HEALTH):
+            register = self.bus.family.registers[name]
+            counts, valid = self.bus.sync_read(self.ids, register)
+            health[row, self.rows[valid]] = counts[valid] * register.unit
+            health[-1, self.rows[valid]] = self.bus.port.clock.now()
 
     def forget(self) -> None:
         """Take nothing for granted: servos may have been turned by hand, or be missing."""
@@ -171,11 +180,12 @@ class ServoLine:
         """Put the voltage and temperature of the rows `long` where they belong."""
         fresh = valid[long]
         rows = self.rows[long][fresh]
-        for row, name in enumerate(("present_voltage", "present_temperature")):
+        for row, name in enumerate(HEALTH):
             register = self.bus.family.registers[name]
             offset = register.address - self._block.address
             raw = asked.read.column(offset, register.dtype, long)
             health[row, rows] = raw[fresh] * register.unit
+        health[-1, rows] = self.bus.port.clock.now()
 
     def _plain(self, fast: bool = False) -> Asked:
         return Asked(self._read(self._spans(self._block), fast), None, self._block)

@@ -82,6 +82,14 @@ class ServoLink:
                 self._lose(gone)
         return np.zeros(len(self.line.ids), dtype=bool)
 
+    def read_health(self, health: Array) -> None:
+        """Read voltage and temperature of the servos into (3, n), if the port is there."""
+        if self.lost is None:
+            try:
+                self.line.read_health(health)
+            except PortError as error:
+                self._lose(error)
+
     def send_goals(self, counts: Array) -> bool:
         """Send goals, (servos,) counts; return whether they were sent."""
         if self.barred or self.lost is not None or (self._goal_wakes and not self.torque.powered):

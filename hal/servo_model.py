@@ -2,11 +2,26 @@
 
 from dataclasses import dataclass
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 
 RPM = 2.0 * pi / 60.0
 """One turn a minute, rad/s."""
+
+
+class OwnLimits(NamedTuple):
+    """Where a servo begins to protect itself: its limit registers as they leave the factory.
+
+    Attributes:
+        temperature: It switches its torque off there, degrees C.
+        low: Supply below which it signals an error, V.
+        high: Supply above which it does, V.
+    """
+
+    temperature: float
+    low: float
+    high: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +95,7 @@ class ServoModel:
         pwm_limit: Largest duty.
         encoder_counts: How many counts the encoder has.
         goal_speed: Fastest that the firmware lets a goal run, rad/s.
+        limits: Where it begins to protect itself, or None where nobody has published that.
     """
 
     name: str
@@ -93,6 +109,7 @@ class ServoModel:
     pwm_limit: float = 1.0
     encoder_counts: int = 4096
     goal_speed: float = np.inf
+    limits: OwnLimits | None = None
 
     def motor(self, voltage: float) -> Motor:
         """Return the motor at a supply of `voltage` V.

@@ -12,7 +12,7 @@ from hal.families import family_of
 from hal.guardian.lock import wait_while_guarded
 from hal.imu.opencr import POWER, POWER_UP_TIME, OpenCr
 from hal.imu.source import ImuSource
-from hal.joints import Array, Joints, Mask
+from hal.joints import Joints, Mask
 from hal.plausibility import Plausibility
 from hal.port import Port
 from hal.replug import Opener
@@ -106,14 +106,6 @@ def power_up(bus: Bus, board: OpenCr) -> None:
         bus.write(board.id, POWER, 1)
         clock = bus.port.clock
         clock.wait_until(clock.now() + POWER_UP_TIME)
-
-
-def read_health(line: ServoLine, health: Array) -> None:
-    """Fill voltage and temperature of the joints of a line into (2, n); the cycle refreshes it."""
-    for row, name in enumerate(("present_voltage", "present_temperature")):
-        register = line.bus.family.registers[name]
-        counts, valid = line.bus.sync_read(line.ids, register)
-        health[row, line.rows[valid]] = counts[valid] * register.unit
 
 
 def names_of(joints: Joints, which: Mask) -> str:

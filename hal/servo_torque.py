@@ -12,6 +12,8 @@ from hal.servo_line import Rows, ServoLine
 from hal.torque_state import TorqueState
 
 ATTEMPTS = 5
+HELD_BACK = 0.016
+"""An adapter may hold answers back for so long, and those to all that is asked meanwhile, s."""
 TRIPPED = -1
 """What a Bus Watchdog reads that has fired.
 
@@ -171,6 +173,8 @@ class ServoTorque:
             counts, valid = self.line.bus.sync_read(ids, register)
             if valid.all():
                 return counts.astype(np.float64)
+            clock = self.line.bus.port.clock
+            clock.wait_until(clock.now() + HELD_BACK)
         missing = [id for id, has in zip(ids, valid, strict=True) if not has]
         url = self.line.bus.port.url
         raise HardwareError(

@@ -67,6 +67,8 @@ class Checks:
         self._imu()
         self._poses()
         self._stop()
+        for key, mistake in self.robot.safety.mistakes(self.robot.drive.supply):
+            self._fail(f"safety.{key}", mistake)
 
     def _rate(self) -> None:
         rate, timestep = self.robot.rate_hz, self.model.opt.timestep

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from hal.config import load_toml
 from hal.contacts import ContactSensors
 from hal.errors import UnknownNameError, UsageError
-from hal.guard import StopPolicy
+from hal.guard import HealthLevels, StopPolicy
 from hal.joints import Array, Joint, Joints
 from hal.mirror import Mirror
 from hal.servo_model import ServoMount
@@ -90,6 +90,11 @@ class RobotDescription:
             ConfigError: The robot is not symmetric.
         """
         return mirror_map(self.joints.names, self.axes)
+
+    @cached_property
+    def health(self) -> HealthLevels:
+        """When its joints are unwell."""
+        return HealthLevels.of(self.servos, self.drive.supply, self.safety.given())
 
     def spec(self) -> mujoco.MjSpec:
         """Return the MJCF, parsed afresh and without actuators: change it as you like."""

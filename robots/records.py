@@ -7,6 +7,7 @@ from msgspec.structs import replace
 
 from hal.config import Delay, Length, NotNegative, Positive, Record, Tilt
 from hal.guard import StopPolicy
+from robots.levels import JointLevels
 
 Share = Annotated[float, Meta(ge=0.05, le=1.0)]
 
@@ -133,8 +134,8 @@ class Fall(Record, frozen=True):
     way: tuple[FallWay, ...] = ()
 
 
-class Safety(Record, frozen=True):
-    """What keeps an armed robot safe when nobody commands it.
+class Safety(JointLevels, frozen=True):
+    """What keeps an armed robot safe: levels of its joints' health, and when nobody commands it.
 
     Attributes:
         idle: How long it is held between two calls of a program before its torque goes off, s.

@@ -78,9 +78,8 @@ class Sensors:
         if self._encoders:
             position = np.rint(position * self._counts)
             position /= self._counts
-        joints = JointState(
-            position, qvel[6:], snapshot.force, self._voltage, self._temperature, self._age
-        )
+        health = self._voltage, self._temperature, self._age, self._age
+        joints = JointState(position, qvel[6:], snapshot.force, *health)
         base = BaseState(qpos[:3], qpos[3:7], qvel[:3], qvel[3:6]) if self.true_base else None
         return Observation(
             snapshot.time, joints, self._read_imu(sensors), sensors[self._contacts], base

@@ -19,7 +19,7 @@ from sim_twin.wire import parse_address
 from sim_twin.wire.emulate import emulate
 from tools.output import console
 from tools.robot import Robot
-from tools.stop_rig import port_of
+from tools.safety.emulated import port_of
 
 RUN: Final = 0.1
 """How long it stands each time, s."""
@@ -29,6 +29,8 @@ SLOW: Final = 20
 """On a pseudo-terminal, in real time, it is opened so many times less often."""
 MEMORY_LIMIT: Final = 5.0
 """Growth of memory, MB."""
+COUNTED: Final = ("descriptors", "threads", "processes", "files")
+"""What there may be no more of than before."""
 
 
 @dataclass(frozen=True)
@@ -64,15 +66,10 @@ class Traces:
             files=len(list(runtime_folder().iterdir())),
         )
 
-    def since(self, before: "Traces") -> dict[str, Any]:
+    def since(self, before: "Traces") -> dict[str, float]:
         """Return what has come since `before`."""
-        grown = round(self.memory - before.memory, 2)
-        counts = {
-            name: getattr(self, name) - getattr(before, name)
-            for name in ("descriptors", "threads", "processes", "files")
-        }
-        clean = grown <= MEMORY_LIMIT and all(count <= 0 for count in counts.values())
-        return {"memory_grown_mb": grown, **counts, "clean": clean}
+        counts = {name: getattr(self, name) - getattr(before, name) for name in COUNTED}
+        return {"memory_grown_mb": round(self.memory - before.memory, 2), **counts}
 
 
 def measure_leaks(name: str, times: int) -> dict[str, Any]:
@@ -82,15 +79,24 @@ def measure_leaks(name: str, times: int) -> dict[str, Any]:
         name: The robot.
         times: How often; on a pseudo-terminal a twentieth of that.
     """
-    result: dict[str, Any] = {"twin": leaks(name, None, times)}
+    rows = {"twin": leaks(name, None, times)}
     if any(load_robot(name).servos):
-        result["wire"] = leaks(name, f"twin://{name}", times)
+        rows["wire"] = leaks(name, f"twin://{name}", times)
         with emulated(name) as port:
-            result["port"] = leaks(name, port, max(times // SLOW, 2))
-    return {**result, "good": all(row["clean"] for row in result.values())}
+            rows["port"] = leaks(name, port, max(times // SLOW, 2))
+    result: dict[str, Any] = {
+        f"{kind}_{key}": value for kind, row in rows.items() for key, value in row.items()
+    }
+    return {**result, "met": all(map(clean, rows.values()))}
 
 
-def leaks(name: str, port: str | None, times: int) -> dict[str, Any]:
+def clean(row: dict[str, float]) -> bool:
+    """Return whether nothing worth a name is left."""
+    left = sum(max(row[name], 0) for name in COUNTED)
+    return row["memory_grown_mb"] <= MEMORY_LIMIT and left == 0
+
+
+def leaks(name: str, port: str | None, times: int) -> dict[str, float]:
     """Return what is left after `times`, beside what there was after the first of them."""
     warm = max(round(WARM * times), 1)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:

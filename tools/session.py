@@ -21,6 +21,7 @@ from sim_twin.backend import TwinClock
 from tools.armed import Armed
 from tools.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
 from tools.protect import Protection
+from tools.stop_request import stop_requests
 
 INTERRUPTED = "interrupted"
 REST_SECONDS = 1.5
@@ -113,7 +114,13 @@ class Session(Armed):
         protected = None
         if self.protect and self._protection.possible and not down:
             controller = protected = self._protection.around(controller)
-        with counted_signals(self.stack.wired) as asked, self._running, self._held_afterwards():
+        wishes = stop_requests(self.backend.backend, keys=self.stack.real)
+        with (
+            counted_signals(self.stack.wired) as asked,
+            self._running,
+            self._held_afterwards(),
+            wishes as wanted,
+        ):
             self._arm_once()
             begin = self.backend.clock.now()
 
@@ -121,6 +128,8 @@ class Session(Armed):
                 self.base = observation.base
                 if self.watch is not None:
                     self.watch(observation)
+                if (by := wanted()) is not None:
+                    asked.add(by)
                 if asked() or self._running.asked:
                     return INTERRUPTED
                 if protected is not None and protected.active:
@@ -164,6 +173,7 @@ class Session(Armed):
             if self.loop.reason == INTERRUPTED:
                 if self.stack.wired:
                     note_interruption(asked.by or "robot.stop()")
+                    logging.getLogger(__name__).warning("stopped by %s", asked.by or "robot.stop()")
                 self._stop_after_error(asked)
         except WindupError as error:
             self.loop.reason = str(error)

@@ -7,7 +7,7 @@ from typing import Literal
 import sim_twin.wire as wire
 from control.loop import Estimator
 from hal.errors import UsageError
-from hal.guard import GuardedBackend, SafetyLimits
+from hal.guard import GuardedBackend, HealthWatch, SafetyLimits
 from hal.imu.bno08x_rvc import Bno08xRvc
 from hal.imu.opencr import OpenCr
 from hal.observation import Observation
@@ -50,6 +50,11 @@ class Stack:
     may_arm: bool = True
     world: str = ""
     port: str | None = None
+
+    @property
+    def real(self) -> bool:
+        """Is the port of the outer world? There may be an emulator of another program behind it."""
+        return self.wired and not self.world
 
     def close(self) -> None:
         """Disconnect."""
@@ -131,7 +136,7 @@ def wire_stack(
         port, world = _in_a_world(robot, port, around)
     elif around is not None:
         raise UsageError("only a twin has another ground or plant; leave --port away")
-    backend = _guarded(servo_backend(robot, port), robot)
+    backend = _guarded(servo_backend(robot, port), robot, given)
     backend.connect()
     twin = _twin_behind(world) if emulated else None
     try:
@@ -255,8 +260,15 @@ def _twin_behind(world: str) -> Twin | None:
     return next((item for item in owned if isinstance(item, Twin)), None)
 
 
-def _guarded(backend: TwinBackend | ServoBackend, robot: RobotDescription) -> GuardedBackend:
-    return GuardedBackend(backend, SafetyLimits.of(robot.joints), robot.stop, robot.crouch)
+def _guarded(
+    backend: TwinBackend | ServoBackend, robot: RobotDescription, port: str | None = None
+) -> GuardedBackend:
+    limits, watch = SafetyLimits.of(robot.joints), None
+    if any(robot.servos):
+        where = f" --port '{port}'" if port else ""
+        look = f"; look with `windup health {robot.name}{where}`"
+        watch = HealthWatch(robot.joints, robot.health, look)
+    return GuardedBackend(backend, limits, robot.stop, robot.crouch, watch)
 
 
 def _check_delay(delay: float | None, robot: RobotDescription) -> None:

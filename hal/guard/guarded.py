@@ -8,7 +8,7 @@ from threading import RLock
 
 import numpy as np
 
-from hal.backend import Backend, Clock, Rearmable
+from hal.backend import Backend, Clock, HealthReader, Rearmable
 from hal.command import FIELDS, JointCommand
 from hal.errors import (
     GuardianError,
@@ -19,6 +19,7 @@ from hal.errors import (
     UnsafeCommandError,
 )
 from hal.guard.limits import SafetyLimits, StopPolicy
+from hal.guard.watch import HealthWatch
 from hal.joints import Array, Joints
 from hal.observation import Observation
 from hal.torque_state import TorqueState
@@ -42,6 +43,7 @@ class GuardedBackend:
         limits: What may pass.
         stop_policy: What `stop` does: hold the pose, crouch and go limp, or go limp at once.
         crouch: (n,) pose of the crouch, rad.
+        watch: Judges the health of every joint; None for joints without servos.
         clamps: Clamp name to the number of commands it changed.
         clamped_joints: (n,) number of commands in which each joint was clamped.
         heartbeat: Called with every command, for whoever watches that commands come.
@@ -52,11 +54,14 @@ class GuardedBackend:
     limits: SafetyLimits
     stop_policy: StopPolicy = "limp"
     crouch: Array | None = None
+    watch: HealthWatch | None = None
     clamps: dict[str, int] = field(default_factory=lambda: dict.fromkeys(FIELDS, 0))
     clamped_joints: Array = field(init=False)
     heartbeat: Callable[[], None] = field(init=False, repr=False)
     lock: RLock = field(default_factory=RLock, init=False, repr=False)
     _last: Observation | None = field(default=None, init=False, repr=False)
+    _obeyed: JointCommand | None = field(default=None, init=False, repr=False)
+    _driven: bool = field(default=False, init=False, repr=False)
 
     def __post_init__(self) -> None:
         self.clamped_joints = np.zeros(len(self.backend.joints))
@@ -91,8 +96,15 @@ class GuardedBackend:
         self.backend.disconnect()
 
     def set_torque(self, on: bool) -> TorqueState:
-        """Switch the torque of all joints and return what was read back."""
+        """Switch the torque of all joints and return what was read back.
+
+        Raises:
+            UnhealthyError: Torque on, and a joint is unwell already; nothing has been switched.
+        """
         with self.lock:
+            if on:
+                self.admit()
+            self._driven, self._obeyed = on, None
             return self.backend.set_torque(on)
 
     def rearm(self) -> TorqueState:
@@ -100,7 +112,7 @@ class GuardedBackend:
 
         Raises:
             PortError: A port is still gone.
-            HardwareError: Something is not as wired; torque stays off.
+            HardwareError: Something is not as wired, or a joint is unwell; torque stays off.
         """
         if not isinstance(self.backend, Rearmable):
             return self.set_torque(True)
@@ -108,11 +120,13 @@ class GuardedBackend:
             return self._rearm(self.backend)
 
     def _rearm(self, backend: Rearmable) -> TorqueState:
-        self._last = None
+        self._last = self._obeyed = None
         until = self.clock.now() + REPLUG_TIME
         while True:
             self.backend.read()  # which opens what has come back
             try:
+                self.admit()
+                self._driven = True
                 return backend.rearm()
             except PortError:
                 if self.clock.now() >= until:
@@ -134,6 +148,7 @@ class GuardedBackend:
 
         Raises:
             StaleStateError: A joint has not answered for longer than `limits.max_age`.
+            UnhealthyError: A joint that is driven has been beyond a stop level for long enough.
         """
         observation = self._collect()
         self._last = observation
@@ -145,6 +160,10 @@ class GuardedBackend:
                 f"(limit {self.limits.max_age:.2f} s); check its cable and power, "
                 "then run `windup health`"
             )
+        if self.watch is not None:
+            unwell = self.watch.look(observation, self._obeyed)
+            if unwell is not None and (self._driven or self._obeyed is not None):
+                raise unwell
         return observation
 
     def write(self, command: JointCommand) -> JointCommand:
@@ -165,10 +184,11 @@ class GuardedBackend:
             self._refuse(block)
         np.maximum(block, self.limits.lower, out=self._buffer)
         np.minimum(self._buffer, self.limits.upper, out=self._buffer)
-        if (self._buffer == block).all():
-            return self._write(command)
-        self._count(block)
-        return self._write(JointCommand(self._buffer.copy()))
+        if not (self._buffer == block).all():
+            self._count(block)
+            command = JointCommand(self._buffer.copy())
+        self._obeyed = real = self._write(command)
+        return real
 
     def stop(
         self, policy: StopPolicy | None = None, hurry: Callable[[], bool] = lambda: False
@@ -192,7 +212,7 @@ class GuardedBackend:
             return TorqueState.known(np.ones(len(self.joints), dtype=bool))
         if policy == "crouch" and self.crouch is not None:
             self._glide(self._pose(), self.crouch, CROUCH_SECONDS, hurry)
-        state = self.backend.set_torque(False)
+        state = self.set_torque(False)
         if state.on.any():
             where = state.names(self.joints, state.on)
             raise TorqueOnError(f"torque is still on at {where}; cut the servo power")
@@ -203,6 +223,21 @@ class GuardedBackend:
                 "or give the port back"
             )
         return state
+
+    def admit(self) -> None:
+        """Look twice at every joint before torque comes on.
+
+        Raises:
+            UnhealthyError: A joint is beyond a stop level; nothing has been switched.
+        """
+        if self.watch is None or not isinstance(self.backend, HealthReader):
+            return
+        seen = []
+        for _ in range(2):
+            self.backend.read_health()
+            seen.append(self.backend.read())
+        if (unwell := self.watch.refuse(seen, self.limits.max_age)) is not None:
+            raise unwell
 
     def _pose(self) -> Array:
         last = self._last or self.read()

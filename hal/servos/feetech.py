@@ -14,7 +14,7 @@ STS3215's armature and friction by stall torque. Identify it before trusting a t
 
 from math import pi
 
-from hal.servo_model import Row, ServoModel
+from hal.servo_model import OwnLimits, Row, ServoModel
 
 GAIN = 4096 / (2.0 * pi) / 4000
 """Duty per rad and unit of P: 0.16297."""
@@ -27,19 +27,25 @@ STS3215_12V = (Row.of(12.0, 2.94, 45, 2.7),)
 STS3250_12V = (Row.of(12.0, 4.9, 75),)
 SCS0009_6V = (Row.of(6.0, 0.226, 100),)
 SCS_COUNTS_PER_REV = 1024 * 360 / 300
+LIMITS_7V4, LIMITS_12V = OwnLimits(70.0, 4.0, 8.0), OwnLimits(70.0, 4.0, 14.0)
+"""Registers 13 to 15 of Feetech's memory tables; the largest voltage is the winding's."""
 
 # name, model number, rows, duty per rad and P, default P, armature kg m2, friction N m
 FEETECH = (
     ServoModel(
         "STS3215-7.4V", 777, STS3215_7V4, GAIN, 32, 0.0284, 0.0524,
-        pwm_limit=0.97, goal_speed=GOAL_SPEED,
+        pwm_limit=0.97, goal_speed=GOAL_SPEED, limits=LIMITS_7V4,
     ),
-    ServoModel("STS3215-12V", 777, STS3215_12V, GAIN, 32, 0.0284, 0.0524, goal_speed=GOAL_SPEED),
     ServoModel(
-        "SCS0009", 1284, SCS0009_6V, GAIN, 15, 0.0034, 0.0062, SCS_COUNTS_PER_REV, 0.97, 1024
+        "STS3215-12V", 777, STS3215_12V, GAIN, 32, 0.0284, 0.0524,
+        goal_speed=GOAL_SPEED, limits=LIMITS_12V,
+    ),
+    ServoModel(
+        "SCS0009", 1284, SCS0009_6V, GAIN, 15, 0.0034, 0.0062, SCS_COUNTS_PER_REV, 0.97, 1024,
+        limits=LIMITS_7V4,
     ),
     ServoModel(
         "STS3250", 2825, STS3250_12V, GAIN, 32, 0.0284, 0.0524,
-        pwm_limit=0.97, goal_speed=GOAL_SPEED,
+        pwm_limit=0.97, goal_speed=GOAL_SPEED, limits=LIMITS_12V,
     ),
 )  # fmt: skip

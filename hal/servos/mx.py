@@ -11,7 +11,7 @@ fit of AX-12A or MX-28: their lines scale the MX-64's by stall torque.
 
 from math import pi
 
-from hal.servo_model import Row, ServoModel
+from hal.servo_model import OwnLimits, Row, ServoModel
 
 GAIN = 4096 / (2.0 * pi) / 8 / 511
 """Duty per rad and unit of P: 0.1595."""
@@ -25,10 +25,29 @@ MX_28 = (Row.of(11.1, 2.3, 50, 1.3), Row.of(12.0, 2.5, 55, 1.4), Row.of(14.8, 3.
 MX_64 = (Row.of(11.1, 5.5, 58, 3.9), Row.of(12.0, 6.0, 63, 4.1), Row.of(14.8, 7.3, 78, 5.2))
 MX_106 = (Row.of(11.1, 8.0, 41, 4.8), Row.of(12.0, 8.4, 45, 5.2), Row.of(14.8, 10.0, 55, 6.3))
 
+AX_LIMITS, MX_LIMITS = OwnLimits(70.0, 6.0, 14.0), OwnLimits(80.0, 6.0, 16.0)
+"""Initial values of registers 11 to 13 in the e-Manual."""
+
 # name, model number, rows, duty per rad and P, default P, armature kg m2, friction N m
 MX = (
-    ServoModel("AX-12A", 12, AX_12A, AX_GAIN, 32, 0.003, 0.0226, AX_COUNTS_PER_REV, 1.0, 1024),
-    ServoModel("MX-28", 29, MX_28, GAIN, 32, 0.005, 0.0377, pwm_limit=MAX_DUTY),
-    ServoModel("MX-64", 310, MX_64, GAIN, 32, 0.01195, 0.0904, pwm_limit=MAX_DUTY),
-    ServoModel("MX-106", 320, MX_106, GAIN, 32, 0.0266, 0.1035, pwm_limit=MAX_DUTY),
+    ServoModel(
+        "AX-12A",
+        12,
+        AX_12A,
+        AX_GAIN,
+        32,
+        0.003,
+        0.0226,
+        AX_COUNTS_PER_REV,
+        1.0,
+        1024,
+        limits=AX_LIMITS,
+    ),
+    ServoModel("MX-28", 29, MX_28, GAIN, 32, 0.005, 0.0377, pwm_limit=MAX_DUTY, limits=MX_LIMITS),
+    ServoModel(
+        "MX-64", 310, MX_64, GAIN, 32, 0.01195, 0.0904, pwm_limit=MAX_DUTY, limits=MX_LIMITS
+    ),
+    ServoModel(
+        "MX-106", 320, MX_106, GAIN, 32, 0.0266, 0.1035, pwm_limit=MAX_DUTY, limits=MX_LIMITS
+    ),
 )

@@ -4,6 +4,9 @@ Torque, speed and current are the rows of the ROBOTIS e-Manual (each servo's own
 the position controller gives ``pwm = P / 128 x counts of error``, full scale 885; the XL330 was
 measured to divide by 256 (Rhoban bam, Apache-2.0) against the manual's 128.
 
+Where they protect themselves (Temperature Limit 31, Min and Max Voltage Limit 34 and 32) is the
+initial value on each servo's own page.
+
 Armature and friction are identified where somebody published a fit: XM430-W350 from the OP3 of
 mujoco_menagerie (Apache-2.0; its damping of 1.084 N m s/rad already holds the back-EMF, so nothing
 is left for the joint), XL330 from bam's model M1, the XC and 2X servos and XM430-W210 from
@@ -12,7 +15,7 @@ ToddlerBot (MIT). The others borrow from the nearest motor, and their line says 
 
 from math import pi
 
-from hal.servo_model import Row, ServoModel
+from hal.servo_model import OwnLimits, Row, ServoModel
 
 COUNTS_PER_RAD = 4096 / (2.0 * pi)
 FULL_SCALE = 885
@@ -37,16 +40,26 @@ XL330_M288 = (
 )
 XH540_W270 = (Row.of(11.1, 9.2, 36, 4.5), Row.of(12.0, 9.9, 39, 4.9), Row.of(14.8, 11.7, 46, 5.9))
 
+XM, XC430 = OwnLimits(80.0, 9.5, 16.0), OwnLimits(80.0, 6.0, 16.0)
+XL430, XC330_T = OwnLimits(72.0, 6.0, 14.0), OwnLimits(70.0, 5.5, 14.0)
+X330_M = OwnLimits(70.0, 3.5, 7.0)
+
 # name, model number, rows, duty per rad and P, default P, armature kg m2, friction N m
 X_SERIES = (
-    ServoModel("XM430-W350", 1020, XM430_W350, GAIN, 800, 0.045, 0.03),
-    ServoModel("XM430-W210", 1030, XM430_W210, GAIN, 800, 0.0012, 0.134),
-    ServoModel("XL430-W250", 1060, XL430_W250, GAIN, 640, 0.0042, 0.292),  # as 2XL430
-    ServoModel("2XL430-W250", 1090, XL430_W250, GAIN, 640, 0.0042, 0.292),  # P as XL430
-    ServoModel("XC430-W240", 1080, XC430_W240, GAIN, 700, 0.004, 0.069),
-    ServoModel("2XC430-W250", 1160, TWO_XC430, GAIN, 700, 0.0044, 0.252),  # P as XC430
-    ServoModel("XC330-T288", 1220, XC330_T288, GAIN, 900, 0.0035, 0.014),  # 128: not measured
-    ServoModel("XC330-M288", 1240, XC330_M288, GAIN, 900, 0.0035, 0.014),  # as XC330-T288
-    ServoModel("XL330-M288", 1200, XL330_M288, GAIN / 2, 400, 0.0018, 0.0128),
-    ServoModel("XH540-W270", 1100, XH540_W270, GAIN, 800, 0.045, 0.03),  # no fit: as XM430-W350
+    ServoModel("XM430-W350", 1020, XM430_W350, GAIN, 800, 0.045, 0.03, limits=XM),
+    ServoModel("XM430-W210", 1030, XM430_W210, GAIN, 800, 0.0012, 0.134, limits=XM),
+    # armature and friction as 2XL430
+    ServoModel("XL430-W250", 1060, XL430_W250, GAIN, 640, 0.0042, 0.292, limits=XL430),
+    # P as XL430
+    ServoModel("2XL430-W250", 1090, XL430_W250, GAIN, 640, 0.0042, 0.292, limits=XL430),
+    ServoModel("XC430-W240", 1080, XC430_W240, GAIN, 700, 0.004, 0.069, limits=XC430),
+    # P as XC430
+    ServoModel("2XC430-W250", 1160, TWO_XC430, GAIN, 700, 0.0044, 0.252, limits=XC430),
+    # division by 128: not measured
+    ServoModel("XC330-T288", 1220, XC330_T288, GAIN, 900, 0.0035, 0.014, limits=XC330_T),
+    # armature and friction as XC330-T288
+    ServoModel("XC330-M288", 1240, XC330_M288, GAIN, 900, 0.0035, 0.014, limits=X330_M),
+    ServoModel("XL330-M288", 1200, XL330_M288, GAIN / 2, 400, 0.0018, 0.0128, limits=X330_M),
+    # no fit: as XM430-W350
+    ServoModel("XH540-W270", 1100, XH540_W270, GAIN, 800, 0.045, 0.03, limits=XM),
 )

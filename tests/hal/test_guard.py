@@ -1,12 +1,23 @@
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pytest
 
 from hal.command import FIELDS, JointCommand
-from hal.errors import HardwareError, StaleStateError, TorqueUnknownError, UnsafeCommandError
+from hal.errors import (
+    HardwareError,
+    StaleStateError,
+    TorqueUnknownError,
+    UnhealthyError,
+    UnsafeCommandError,
+)
 from hal.guard import GuardedBackend, SafetyLimits, StopPolicy
 from hal.joints import Joint, Joints
+from hal.observation import Observation
+from hal.torque_state import TorqueState
+from tests.hal import servo_state
 from tests.small_world import JOINTS, FakeBackend, N
 
 
@@ -163,3 +174,82 @@ def test_torque_that_cannot_be_read_back_is_called_unknown_not_on() -> None:
     fake(guard).silent[:] = True
     with pytest.raises(TorqueUnknownError, match="torque is unknown at all joints: no answer"):
         guard.stop()
+
+
+# Health
+
+
+@dataclass
+class Servos(FakeBackend):
+    """Three joints with servos, whose temperature can be set."""
+
+    joints: Joints = servo_state.JOINTS
+    temperature: float = 30.0
+    readings: int = 0
+    misread: bool = False
+
+    def __post_init__(self) -> None:
+        self.position = np.zeros(len(self.joints))
+        self.silent = self.stuck = np.zeros(len(self.joints), dtype=bool)
+
+    def collect(self) -> Observation:
+        self.readings += 1
+        wrong = self.misread and self.readings == 1
+        return servo_state.seen(self.clock.now(), temperature=250.0 if wrong else self.temperature)
+
+    def read_health(self) -> None: ...
+
+    def set_torque(self, on: bool) -> TorqueState:
+        self.powered = on
+        return TorqueState.known(np.full(len(self.joints), on))
+
+
+def watched(**servos: Any) -> tuple[GuardedBackend, Servos]:
+    backend = Servos(powered=False, **servos)
+    limits = SafetyLimits.of(backend.joints)
+    return GuardedBackend(backend, limits, watch=servo_state.watch()), backend
+
+
+def pass_time(guard: GuardedBackend, seconds: float) -> None:
+    for _ in range(round(seconds / 0.01)):
+        guard.clock.wait_until(guard.clock.now() + 0.01)
+        guard.read()
+
+
+def test_a_joint_that_is_driven_and_unwell_raises_out_of_the_guard() -> None:
+    guard, servos = watched()
+    guard.set_torque(True)
+    guard.write(servo_state.goal(0.0))
+    pass_time(guard, 2.0)
+    servos.temperature = 75.0
+    with pytest.raises(UnhealthyError, match=r"knee is at 75 degrees C \(stop at 72\)"):
+        pass_time(guard, 2.0)
+    guard.stop()
+    assert not servos.powered
+    pass_time(guard, 2.0)  # who is limp may be looked at, however hot
+
+
+def test_torque_does_not_come_on_at_an_unwell_joint() -> None:
+    guard, servos = watched(temperature=75.0)
+    with pytest.raises(UnhealthyError) as refused:
+        guard.set_torque(True)
+    assert str(refused.value) == (
+        "knee is at 75 degrees C (stop at 72): nothing has moved; "
+        "let it cool; a pose with less load helps"
+    )
+    assert refused.value.exit_status == 3
+    assert not servos.powered
+    servos.temperature = 70.0
+    assert guard.set_torque(True).all_on
+
+
+def test_one_wrong_byte_refuses_nobody() -> None:
+    guard, _ = watched(misread=True)
+    assert guard.set_torque(True).all_on
+
+
+def test_arming_again_asks_for_health_too() -> None:
+    guard, servos = watched(temperature=75.0)
+    with pytest.raises(UnhealthyError):
+        guard.rearm()
+    assert not servos.powered

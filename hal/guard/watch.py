@@ -1,0 +1,135 @@
+"""Is every joint well? Each observation against a warning and a stop level, by joint and kind.
+
+What a joint does not measure is neither well nor unwell. A verdict depends on the observations and
+the commands alone: the same ones give the same verdict.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hal.command import JointCommand
+from hal.errors import UnhealthyError
+from hal.guard.finding import SAYINGS, Finding
+from hal.guard.levels import HealthLevels, Kind
+from hal.guard.persistence import SIGNS, Persistence
+from hal.guard.strain import Strain
+from hal.joints import Array, Joints, Mask
+from hal.observation import JointState, Observation
+
+PERIOD = 0.03
+"""From one look to the next, s: nothing that is judged is faster, and a look costs some 30 us."""
+LONGEST = 0.1
+"""What a single look may count for, s: between two calls of a program nobody looked."""
+
+
+class HealthWatch:
+    """Watches the n joints of one robot.
+
+    Args:
+        joints: The joints.
+        levels: When they are unwell.
+        look: What a message ends with: the command that shows more.
+    """
+
+    def __init__(self, joints: Joints, levels: HealthLevels, look: str = "") -> None:
+        self.levels, self._names, self._look = levels, joints.names, look
+        # Rows in the order of `Kind`, signed so that more is worse.
+        self._values: Array = np.full((len(Kind), len(joints)), np.nan)
+        self._strain = Strain(levels.torque, self._values[Kind.LOAD], self._values[Kind.STALL])
+        self._persistence = Persistence(levels)
+        self._time = -np.inf
+        # What has been warned of: by kind how often and since when, s; the worst values.
+        self._warned: Mask = np.zeros_like(self._values, dtype=bool)
+        self._counts = np.zeros(len(Kind), dtype=np.int64)
+        self._first = np.full(len(Kind), np.nan)
+        self._worst: Array = np.full_like(self._values, np.nan)
+
+    def look(
+        self, observation: Observation, command: JointCommand | None = None
+    ) -> UnhealthyError | None:
+        """Judge an observation; collect warnings, and return the reason to stop, if there is one.
+
+        Args:
+            observation: What was seen.
+            command: What the joints were told last and obey, or None where nobody drives them.
+        """
+        now, joints = observation.time, observation.joints
+        passed = now - self._time
+        if 0.0 <= passed < PERIOD:
+            return None
+        if passed < 0.0:  # the clock begins again
+            self._strain.reset()
+            self._persistence.reset()
+        self._time = now
+        _health(joints, self._values)
+        self._strain.update(joints, command, min(abs(passed), LONGEST))
+        due = self._persistence.due(self._values, now, joints.health_age)
+        if due is None:
+            return None
+        self._note(due[0], now)
+        if not due[1].any():
+            return None
+        found = self._reason(due[1], self._values)
+        return UnhealthyError(f"{found}: {found.saying.do}{self._look}")
+
+    def refuse(self, observations: Sequence[Observation], max_age: float) -> UnhealthyError | None:
+        """Return why torque may not come on: who is beyond a stop level in all `observations`.
+
+        What has not been answered for longer than `max_age` s is not judged.
+        """
+        due, values = np.ones_like(self._warned), np.full_like(self._values, np.nan)
+        for observation in observations:
+            _health(observation.joints, values)
+            due &= self._persistence.beyond(values) & (observation.joints.age <= max_age)
+        if not due.any():
+            return None
+        found = self._reason(due, values)
+        return UnhealthyError(f"{found}: nothing has moved; {found.saying.do}")
+
+    @property
+    def warnings(self) -> list[Finding]:
+        """What there was to warn about: one finding a kind, with its worst value and its count."""
+        found = []
+        for row in np.flatnonzero(self._counts).tolist():
+            worst = self._worst[row]
+            finding = self._finding(Kind(row), worst, np.isfinite(worst), self.levels.warn)
+            finding.since, finding.count = float(self._first[row]), int(self._counts[row])
+            found.append(finding)
+        return found
+
+    def _note(self, due: Mask, now: float) -> None:
+        """Take down the warnings that are `due` (5, n)."""
+        begun = due & ~self._warned
+        if begun.any():
+            counts = np.count_nonzero(begun, axis=1)
+            self._first[(counts > 0) & (self._counts == 0)] = now
+            self._counts += counts
+        self._warned = due
+        np.fmax(self._worst, self._values, where=due, out=self._worst)
+
+    def _reason(self, due: Mask, values: Array) -> Finding:
+        """Return the finding of the first kind of which somebody is `due` (5, n) to be stopped."""
+        kind = Kind(int(np.argmax(due.any(axis=1))))
+        found = self._finding(kind, values[kind], due[kind], self.levels.stop)
+        found.stop = True
+        return found
+
+    def _finding(self, kind: Kind, values: Array, which: Mask, levels: Array) -> Finding:
+        """Return what is wrong with the joints `which` (n,), whose `values` are signed."""
+        rows = np.flatnonzero(which)
+        worst = int(rows[int(np.argmax(values[rows]))])
+        return Finding(
+            SAYINGS[kind],
+            float(SIGNS[kind, 0] * values[worst]),
+            float(levels[kind, worst]),
+            self._time,
+            joints=[self._names[row] for row in rows.tolist()],
+        )
+
+
+def _health(joints: JointState, values: Array) -> None:
+    """Put supply and temperature into their rows of `values` (5, n)."""
+    np.negative(joints.voltage, out=values[Kind.SUPPLY_LOW])
+    values[Kind.SUPPLY_HIGH] = joints.voltage
+    values[Kind.TEMPERATURE] = joints.temperature
