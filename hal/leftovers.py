@@ -45,9 +45,14 @@ class Ring:
     finished: bool
 
 
-def remove_leftovers(own: Path) -> None:
-    """Remove what earlier runs have left in the folder of the ring `own`, and are not that one."""
-    folder, now = own.parent, time.time()
+def remove_leftovers(own: Path, now: float | None = None) -> None:
+    """Remove what earlier runs have left in the runtime folder.
+
+    Args:
+        own: The ring of the run that begins, in that folder; it is replaced, not removed.
+        now: The time, s since 1970; by default that of the clock.
+    """
+    folder, now = own.parent, time.time() if now is None else now
     for path in folder.glob("*@*"):
         if path.suffix[1:].isdigit() and not process_runs(int(path.suffix[1:])):
             _remove(path)

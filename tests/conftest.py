@@ -1,4 +1,5 @@
-from collections.abc import Iterator
+import os
+import tempfile
 
 import pytest
 from hypothesis import settings
@@ -7,17 +8,17 @@ from robots import RobotDescription, load_robot
 
 pytest_plugins = ["pytester"]
 
+# No ring and no lock of a test comes into the user's own folder.
+RUNTIME = tempfile.TemporaryDirectory(prefix="windup-tests-", ignore_cleanup_errors=True)
+os.environ["XDG_RUNTIME_DIR"] = RUNTIME.name
+
 # The same examples on every machine, and no clock in them.
 settings.register_profile("windup", deadline=None, database=None, derandomize=True, max_examples=40)
 settings.load_profile("windup")
 
 
-@pytest.fixture(scope="session", autouse=True)
-def runtime_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Let no ring and no lock of a test stay in the user's runtime folder."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_RUNTIME_DIR", str(tmp_path_factory.mktemp("runtime")))
-        yield
+def pytest_unconfigure() -> None:
+    RUNTIME.cleanup()
 
 
 @pytest.fixture(scope="session")

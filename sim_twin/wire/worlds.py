@@ -57,17 +57,15 @@ def enter(address: Address) -> Running:
     """Return the running world of an address, built if need be, with one port more."""
     name = address.world or f"{address.robot} ({address.clock})"
     running = _running.get(name) or _running.pop(_lost_name(address), None)
-    if running is not None:
-        _running[name] = running
     if running is None:
         running = _start(build_world(address), address.clock, keep=bool(address.world))
-        _running[name] = running
     elif running.kind != address.clock:
         raise UsageError(
             f"world {name!r} runs on a {running.kind} clock, not a {address.clock} one"
         )
     if address.bus and address.bus not in running.world.buses:
         raise UnknownNameError("bus", address.bus, running.world.buses)
+    _running[name] = running
     running.ports += 1
     return running
 
