@@ -12,9 +12,11 @@ from control.play import PoseHolder
 from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
 from hal.errors import ControllerError, TelemetryError, WindupError
+from hal.leftovers import remove_leftovers
 from hal.observation import Observation
 from hal.ranges import numbers_checked
 from hal.telemetry import TelemetryWriter
+from hal.telemetry_layout import ring_path
 from sim_twin.backend import TwinClock
 from tools.armed import Armed
 from tools.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
@@ -191,13 +193,16 @@ class Session(Armed):
 
     def _publish(self) -> None:
         """Say to everybody that a run begins; a robot runs without them all the same."""
+        name, port = self.description.name, self.stack.port
         try:
+            if self.telemetry is None:
+                remove_leftovers(ring_path(name, port))
             self.telemetry = self.telemetry or TelemetryWriter(
-                self.description.name,
+                name,
                 self.backend,
                 self.description.contacts,
                 1.0 / self.period,
-                port=self.stack.port,
+                port=port,
             )
             self.telemetry.begin()
         except TelemetryError as error:
