@@ -49,7 +49,7 @@ def remove_leftovers(own: Path, now: float | None = None) -> None:
     """Remove what earlier runs have left in the runtime folder.
 
     Args:
-        own: The ring of the run that begins, in that folder; it is replaced, not removed.
+        own: The ring of the robot that is opened, in that folder; it is replaced, not removed.
         now: The time, s since 1970; by default that of the clock.
     """
     folder, now = own.parent, time.time() if now is None else now

@@ -2,7 +2,7 @@
 
 import logging
 from collections.abc import Callable
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
@@ -50,6 +50,8 @@ class Session(Armed):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._protection = Protection(self.description)
+        with suppress(TelemetryError):  # a run says so
+            remove_leftovers(ring_path(self.description.name, self.stack.port))
 
     def __enter__(self) -> Self:
         return self
@@ -193,16 +195,13 @@ class Session(Armed):
 
     def _publish(self) -> None:
         """Say to everybody that a run begins; a robot runs without them all the same."""
-        name, port = self.description.name, self.stack.port
         try:
-            if self.telemetry is None:
-                remove_leftovers(ring_path(name, port))
             self.telemetry = self.telemetry or TelemetryWriter(
-                name,
+                self.description.name,
                 self.backend,
                 self.description.contacts,
                 1.0 / self.period,
-                port=port,
+                port=self.stack.port,
             )
             self.telemetry.begin()
         except TelemetryError as error:
