@@ -1,5 +1,6 @@
 """What became of a trial: how soon, what the vendor's SDK reads, how the program ended."""
 
+import time
 from dataclasses import dataclass
 from math import inf
 
@@ -61,9 +62,17 @@ def _undriven(trial: Trial, t0: float) -> float:
     return max([0.0, *(time - t0 for time in let_go)]) if trial.journal.driven == 0 else inf
 
 
+def _watched(trial: Trial, row: Row) -> bool:
+    """Return whether a guardian is left, once it has had the time to end."""
+    until = time.monotonic() + (LONGEST if row.end == "off" else 0.0)
+    while alive(trial.guardian) and time.monotonic() < until:
+        time.sleep(0.01)
+    return alive(trial.guardian)
+
+
 def _found(trial: Trial, row: Row, robot: RobotDescription) -> str:
     """Return what an independent client finds, and whether a guardian is left."""
-    watched = alive(trial.guardian)
+    watched = _watched(trial, row)
     if row.end in ("unknown", "unattended"):
         return "unknown" if watched else "unattended"
     torque = torque_of(robot, trial.port) if not row.network else {}
