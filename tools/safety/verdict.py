@@ -4,6 +4,8 @@ import time
 from dataclasses import dataclass
 from math import inf
 
+from serial import SerialException
+
 from robots import RobotDescription
 from tools.safety.independent import torque_of
 from tools.safety.processes import alive
@@ -75,7 +77,12 @@ def _found(trial: Trial, row: Row, robot: RobotDescription) -> str:
     watched = _watched(trial, row)
     if row.end in ("unknown", "unattended"):
         return "unknown" if watched else "unattended"
-    torque = torque_of(robot, trial.port) if not row.network else {}
+    if trial.program.is_alive():
+        return "the program goes on"
+    try:
+        torque = torque_of(robot, trial.port) if not row.network else {}
+    except (OSError, SerialException) as error:
+        return f"the port cannot be read: {error}"
     on = [name for name, value in torque.items() if value == 1]
     if on:
         return f"torque on at {', '.join(on)}"
