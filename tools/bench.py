@@ -3,13 +3,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from math import inf
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tyro
 
-from hal.errors import UsageError
+from hal.ranges import Range
 from tools.bench_balance import measure_balance
 from tools.bench_faults import measure_faults
 from tools.bench_guardian import measure_takeovers
@@ -18,7 +17,9 @@ from tools.bench_loop import measure_tick, measure_twin
 from tools.bench_servo import measure_servos
 from tools.bench_unplug import measure_unplugs
 from tools.bench_wire import Maker, measure_bus
+from tools.command import Command
 from tools.output import console, write_json
+from tools.quantities import Count, Seed
 from tools.safety.bench import ROBOTS, measure_safety
 
 What = Literal[
@@ -36,7 +37,7 @@ What = Literal[
 
 
 @dataclass(frozen=True)
-class Bench:
+class Bench(Command):
     """Measure what the stack costs."""
 
     what: Annotated[What, tyro.conf.Positional]
@@ -52,29 +53,23 @@ class Bench:
     """Name of the robot, or path of its folder; op3 by default, safety: op3 and duck."""
     vendor: Maker = "dynamixel2"
     """bus: whose servos: STS3215, MX-28 under protocol 1, or XM430 under protocol 2."""
-    moments: int = 20
+    moments: Count = 20
     """safety: random moments of each way to end, shared by the robots."""
     rows: tuple[str, ...] = ()
     """safety: only the rows that begin with one of these names; all by default."""
-    reads: int = 1_000_000
+    reads: Annotated[int, Range(1, 10**9)] = 1_000_000
     """faults: how often servos of each family are read."""
-    times: int = 100
+    times: Count = 100
     """unplug: how often."""
-    seed: int = 0
+    seed: Seed = 0
     """safety, faults, unplug: seed of the moments."""
-    minutes: float = 10.0
+    minutes: Annotated[float, Range(0.0, 10_000.0, "minutes", above=True)] = 10.0
     """loop, guardian: how long."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
     def run(self) -> int:
         """Measure; returns the exit status."""
-        if self.moments < 1:
-            raise UsageError(f"--moments {self.moments}: give 1 or more")
-        if self.times < 1:
-            raise UsageError(f"--times {self.times}: give 1 or more")
-        if not 0.0 < self.minutes < inf:
-            raise UsageError(f"--minutes {self.minutes:g}: give more than 0")
         measures: dict[str, Callable[[str], dict[str, Any]]] = {
             "tick": measure_tick,
             "twin": measure_twin,

@@ -13,6 +13,7 @@ from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
 from hal.errors import ControllerError, TelemetryError, WindupError
 from hal.observation import Observation
+from hal.ranges import numbers_checked
 from hal.telemetry import TelemetryWriter
 from sim_twin.backend import TwinClock
 from tools.armed import Armed
@@ -84,6 +85,7 @@ class Session(Armed):
             self.run(PoseHolder(self.description.joints, crouch, REST_SECONDS), REST_SECONDS + 0.3)
         self.stop(limp=True)
 
+    @numbers_checked
     def run(
         self,
         controller: Controller,
