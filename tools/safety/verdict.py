@@ -24,6 +24,7 @@ class Verdict:
         status: The program's exit status.
         found: What is found afterwards, as a row's `end`, or what else.
         wrong: What is not as it should be; "" for a safe ending.
+        words: What program and guardian have printed, where something is wrong.
     """
 
     activity: str
@@ -32,6 +33,7 @@ class Verdict:
     status: int | None
     found: str
     wrong: str
+    words: str = ""
 
 
 def judge(trial: Trial, row: Row, robot: RobotDescription, t0: float) -> Verdict:
@@ -48,10 +50,9 @@ def judge(trial: Trial, row: Row, robot: RobotDescription, t0: float) -> Verdict
         f"exit status {status}" * (status not in row.status),
         found * (found != row.end),
     ]
-    moment = trial.moment
-    return Verdict(
-        moment.activity, moment.after, seconds, status, found, ", ".join(filter(None, wrong))
-    )
+    said, moment = ", ".join(filter(None, wrong)), trial.moment
+    words = trial.words() if said else ""
+    return Verdict(moment.activity, moment.after, seconds, status, found, said, words)
 
 
 def _undriven(trial: Trial, t0: float) -> float:
