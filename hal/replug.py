@@ -40,6 +40,10 @@ class Replug:
         self.close()
         self._next = now + RETRY
 
+    def hurry(self) -> None:
+        """Try at the next moment: somebody waits."""
+        self._next = 0.0
+
     def again(self, now: float) -> Port | None:
         """Return the port opened anew, or None if it is not back or was tried a moment ago."""
         if now < self._next:
