@@ -61,9 +61,10 @@ class JointReadings:
             answered = self._couplings.oldest(answered)
         age = now - answered
         state = JointState(position, velocity, torque, voltage, temperature, age, now - measured)
-        return Observation(now, state, self._imu_state(now, links), self._contacts, None)
+        return Observation(now, state, self.imu_state(now, links), self._contacts, None)
 
-    def _imu_state(self, now: float, links: Sequence[ServoLink]) -> ImuState | None:
+    def imu_state(self, now: float, links: Sequence[ServoLink]) -> ImuState | None:
+        """Return what the IMU last said as of `now` s, or None where there is none."""
         if self._imu is not None:
             return self._imu.state(now)
         for link in links:

@@ -61,6 +61,7 @@ class ServoBackend:
 
     Attributes:
         links: The buses, from `connect` to `disconnect`.
+        readings: What the servos last said.
         button: The buttons of the OpenCR: any of them is a stop.
         clamps: Clamp name to the number of commands it changed; "unarmed" and "lost" are goals
             withheld, of a bus, and of joints that may have lost their torque.
@@ -99,7 +100,7 @@ class ServoBackend:
         self.clamps: Counter[str] = Counter({"goal": 0, "gain": 0})
         self.watchdog_trips = 0
         n = len(joints)
-        self._readings = JointReadings(self.units, self._couplings, imu, contacts)
+        self.readings = JointReadings(self.units, self._couplings, imu, contacts)
         self._realised = np.empty((2, n))
         self._realised[1] = self._couplings.joint_gains(self.units.damping)
         self._gains = b""
@@ -166,16 +167,16 @@ class ServoBackend:
 
     def read_health(self) -> None:
         """Read voltage and temperature of every servo now, where its port is there."""
-        self._readings.read_health(self.links)
+        self.readings.read_health(self.links)
 
     def _silent(self) -> str:
         """Read until every joint has answered, some times at most; return the names of others."""
         began = self.clock.now()
         for _ in range(ATTEMPTS):
             self.read()
-            if (self._readings.answered > began).all():
+            if (self.readings.answered > began).all():
                 break
-        return names_of(self.joints, self._readings.answered <= began)
+        return names_of(self.joints, self.readings.answered <= began)
 
     def request(self) -> None:
         """Ask every joint for its state."""
@@ -186,7 +187,7 @@ class ServoBackend:
         """Return the state last asked for."""
         calm = True
         for link in self.links:
-            self._readings.collect(link, self._alerts.errors)
+            self.readings.collect(link, self._alerts.errors)
             calm &= link.calm
         if not calm or self._alerts.now:
             self._see_to(self.links)
@@ -194,7 +195,7 @@ class ServoBackend:
             self.button.look(self.links)
         if self._imu_link is not None:
             self._imu_link.poll()
-        return self._readings.observe(self.clock.now(), self.links)
+        return self.readings.observe(self.clock.now(), self.links)
 
     def read(self) -> Observation:
         """Return the present state: `request` and `collect`."""
