@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from hal.errors import PortError, UsageError
+from hal.network_port import NETWORK
 from hal.open_port import stable_url
 from hal.port import Port
 
@@ -45,8 +46,11 @@ class Replug:
         self._next = 0.0
 
     def again(self, now: float) -> Port | None:
-        """Return the port opened anew, or None if it is not back or was tried a moment ago."""
-        if now < self._next:
+        """Return the port opened anew, or None if it is not back or was tried a moment ago.
+
+        A network is not tried: connecting may take seconds, in which a loop would stand still.
+        """
+        if now < self._next or self._url.startswith(NETWORK):
             return None
         self._next = now + RETRY
         try:

@@ -91,6 +91,8 @@ def _measure(
         "not_measured": dict(failed),
     }
     console.print(f"{row.name}: {report['safe']} of {len(seen)} safe, {report['longest_s']} s")
+    for reason, count in failed.items():
+        console.print(f"  not measured, {count} x {reason}", markup=False, soft_wrap=True)
     for each in wrong:
         said = f"  {each['robot']} {each['activity']}: {each['wrong']}\n{each['words']}"
         console.print(said, markup=False, soft_wrap=True)

@@ -25,7 +25,7 @@ LONGEST = 8.0
 AFTERWARDS = 0.4
 """How long nothing may be driven again, and for a guardian to see that torque is off, s."""
 # What a fresh process would import anew each time: nothing of it is kept from trial to trial.
-LINES = 12
+LINES = 40
 """Of what program and guardian have printed, at most."""
 PRELOAD = ["tools.robot", "tools.safety.program", "tools.safety.emulated"]
 
