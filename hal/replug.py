@@ -36,6 +36,11 @@ class Replug:
         self._url = stable_url(url)
         self._next = 0.0
 
+    @property
+    def returns(self) -> bool:
+        """False for a network: connecting may take seconds, in which a loop would stand still."""
+        return not self._url.startswith(NETWORK)
+
     def lose(self, now: float) -> None:
         """Close the port, which has failed."""
         self.close()
@@ -48,9 +53,9 @@ class Replug:
     def again(self, now: float) -> Port | None:
         """Return the port opened anew, or None if it is not back or was tried a moment ago.
 
-        A network is not tried: connecting may take seconds, in which a loop would stand still.
+        A port that does not return is not tried.
         """
-        if now < self._next or self._url.startswith(NETWORK):
+        if now < self._next or not self.returns:
             return None
         self._next = now + RETRY
         try:
