@@ -143,6 +143,11 @@ class GuardedBackend:
             self.backend.request()
             return self.collect()
 
+    def peek(self) -> Observation:
+        """Return the present state, however old it is and however unwell the joints are."""
+        with self.lock:
+            return self.backend.read()
+
     def collect(self) -> Observation:
         """Return the state last asked for.
 
@@ -235,7 +240,7 @@ class GuardedBackend:
         seen = []
         for _ in range(2):
             self.backend.read_health()
-            seen.append(self.backend.read())
+            seen.append(self.peek())
         if (unwell := self.watch.refuse(seen, self.limits.max_age)) is not None:
             raise unwell
 
