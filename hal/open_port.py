@@ -7,6 +7,7 @@ import importlib
 import os
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import serial
 from serial.tools import list_ports
@@ -54,6 +55,10 @@ def _open(target: str, url: str, baud: int, exclusive: bool) -> Any:
 def _check_handler(url: str) -> None:
     """Find what pyserial hides: a handler that is missing, or whose import fails."""
     scheme = url.split("://", 1)[0].lower()
+    try:
+        _ = urlsplit(url).port
+    except ValueError as error:
+        raise UsageError(f"{url}: {error}") from None
     name = f"protocol_{scheme}"
     for package in serial.protocol_handler_packages:
         module = f"{package}.{name}"

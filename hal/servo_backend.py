@@ -22,6 +22,7 @@ from hal.servo_line import ServoLine
 from hal.servo_link import BusPort, ImuLink, ServoLink
 from hal.servo_model import ServoMount
 from hal.servo_setup import lines_of, names_of, open_links, set_up
+from hal.stop_button import StopButton
 from hal.torque_state import TorqueState
 from hal.units import Units
 from hal.wiring import check_mounts
@@ -55,6 +56,7 @@ class ServoBackend:
     Attributes:
         links: The buses, from `connect` to `disconnect`.
         clamps: Clamp name to the number of commands it changed; "unarmed" are goals withheld.
+        button: The buttons of the OpenCR: any of them is a stop.
         watchdog_trips: Servos that had frozen for silence, and were cleared.
         heartbeat: Called again and again while torque is switched, which takes a while.
     """
@@ -82,6 +84,7 @@ class ServoBackend:
         self.links: list[ServoLink] = []
         self._imu_link: ImuLink | None = None
         self._alerts = ServoAlerts(joints, self.mounts)
+        self.button = StopButton()
         self.clamps: Counter[str] = Counter({"goal": 0, "gain": 0})
         self.watchdog_trips = 0
         n = len(joints)
@@ -170,6 +173,8 @@ class ServoBackend:
         if late:
             self.watchdog_trips += sum(link.clear_watchdogs() for link in self.links)
         self._alerts.update(self.links)
+        if self.board is not None:
+            self.button.look(self.links)
         if self._imu_link is not None:
             self._imu_link.poll()
         return self._observe()
@@ -219,6 +224,7 @@ class ServoBackend:
         """
         self._gains = b""
         if on:
+            self.button.forget()
             try:
                 return self._switch_on()
             except HardwareError:

@@ -19,7 +19,9 @@ from tools.interrupts import (
     forget_interruption,
 )
 from tools.on_stack import OnStack
+from tools.output import console
 from tools.running import Running
+from tools.stop_request import check_released, how_to_stop
 
 
 @dataclass
@@ -78,6 +80,9 @@ class Armed(OnStack):
     def _arm(self, switch_on: Callable[[], TorqueState]) -> None:
         if not self.stack.may_arm:
             raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
+        check_released(self.backend.backend)
+        if self.stack.real:
+            console.print(f"arming {self.description.name}: {how_to_stop(self.backend.backend)}")
         self.backend.admit()
         self.custody.begin()
         self.armed = True

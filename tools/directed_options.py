@@ -27,6 +27,11 @@ class DirectedOptions(TwinOptions, Common, ABC):
     def prints(self, seed: int) -> list[Footprint]:
         """Return what to walk with this seed."""
 
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        build_directed(load_robot(self.robot), self.prints(self.all_seeds[0]))
+
     def walk(self, command: str) -> int:
         """Walk on every seed; returns the exit status."""
         rows: list[dict[str, Any]] = []

@@ -11,13 +11,15 @@ from collections.abc import Callable
 
 from hal.errors import WindupError
 from hal.guard import GuardedBackend
+from tools.interrupts import note_interruption
+from tools.stop_request import pressed_button
 
 PERIOD = 0.04
 """Between two looks at the servos, s; their bus watchdog waits for 0.2 s."""
 
 
 class IdleKeeper:
-    """Holds a robot for a while, then switches its torque off.
+    """Holds a robot for a while, then switches its torque off; at once when a button asks for it.
 
     Args:
         backend: The robot.
@@ -56,6 +58,11 @@ class IdleKeeper:
                     return
                 self._backend.read()
                 self._alive()
+                if (button := pressed_button(self._backend.backend)) is not None:
+                    logging.getLogger(__name__).warning("stopped by %s", button)
+                    note_interruption(button)
+                    self._give_up(None)
+                    return
         except WindupError as error:
             logging.getLogger(__name__).warning("%s; torque goes off", error)
             self._give_up(error)

@@ -48,7 +48,7 @@ class Asked:
     """Who has asked the program to end.
 
     Attributes:
-        count: Number of signals so far.
+        count: Number of signals, and of buttons and keys that count as one, so far.
         by: The first of them, in words.
     """
 
@@ -66,7 +66,11 @@ class Asked:
 
     def remember(self, number: int, frame: Any) -> None:
         """Count a signal: the handler."""
-        self.by = self.by or WORDS[signal.Signals(number)]
+        self.add(WORDS[signal.Signals(number)])
+
+    def add(self, by: str) -> None:
+        """Count a wish of somebody, in words."""
+        self.by = self.by or by
         self.count += 1
 
 

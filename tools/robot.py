@@ -14,9 +14,10 @@ from control.play import GraphPlayer, PoseHolder
 from control.staged import StagedPlayer
 from control.supervisor import Supervisor
 from hal.controller import Stopwatch
-from hal.errors import UnknownNameError, UsageError
+from hal.errors import UnknownNameError
 from hal.joints import Array
 from hal.observation import Observation
+from hal.ranges import check_numbers, numbers_checked
 from robots import load_robot
 from sim_twin.clearance import FootClearance
 from sim_twin.rollouts import RolloutPredictor
@@ -27,6 +28,7 @@ from tools.gauges import Gauges
 from tools.interrupts import RunInterruptedError
 from tools.load_gauge import LoadGauge
 from tools.plan_process import ProcessPlanner, plan_aside
+from tools.quantities import Count, Delay, Noise, Rate, Seconds, Seed, Speed
 from tools.report import WalkReport
 from tools.session import Session
 from tools.stack import State, twin_stack, wire_stack
@@ -63,6 +65,7 @@ class Robot(Session):
     load: LoadGauge | None = field(default=None, init=False)
 
     @classmethod
+    @numbers_checked
     def open(
         cls,
         name: str,
@@ -70,11 +73,11 @@ class Robot(Session):
         port: str | None = None,
         arm: bool = False,
         state: State | None = None,
-        rate: float | None = None,
+        rate: Rate | None = None,
         realtime: bool = False,
-        seed: int = 0,
-        noise: float = 0.0,
-        delay: float | None = None,
+        seed: Seed = 0,
+        noise: Noise = 0.0,
+        delay: Delay | None = None,
         world: World | None = None,
         known_ground: bool = False,
         protect: bool = True,
@@ -135,14 +138,16 @@ class Robot(Session):
             protect=protect,
         )
 
-    def stand(self, seconds: float = 2.0) -> LoopReport:
+    @numbers_checked
+    def stand(self, seconds: Seconds = 2.0) -> LoopReport:
         """Hold the stance for `seconds` s of the robot's time."""
         return self.run(PoseHolder(self.description.joints, self.description.stance), seconds)
 
+    @numbers_checked
     def play(
         self,
         graph: str,
-        seconds: float | None = None,
+        seconds: Seconds | None = None,
         disturb: Callable[["Robot"], None] | None = None,
     ) -> LoopReport:
         """Play a pose graph of the robot to its end, or for `seconds` s.
@@ -173,14 +178,15 @@ class Robot(Session):
         down = gait.file.down or gait.file.lying is not None
         return self.run(player, seconds, until=until, down=down, needs_imu=gait.file.attitude)
 
+    @numbers_checked
     def walk(
         self,
-        speed: float | None = None,
-        steps: int = 40,
+        speed: Speed | None = None,
+        steps: Count = 40,
         options: WalkOptions | None = None,
         on_step: OnStep | None = None,
         disturb: Callable[["Robot"], None] | None = None,
-        stand: float = 0.0,
+        stand: Seconds = 0.0,
     ) -> WalkReport:
         """Walk a number of steps and return how it went.
 
@@ -196,9 +202,8 @@ class Robot(Session):
             UsageError: The options do not fit the gait; nothing has moved.
             RunInterruptedError: By a signal; the robot has stopped, and the report is attached.
         """
-        if steps < 1:
-            raise UsageError(f"--steps {steps}: give 1 or more")
         options = options or WalkOptions()
+        check_numbers(options)
         if speed is not None:
             options = replace(options, speed=speed)
         self.predictor.stopwatch = Stopwatch()

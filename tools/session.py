@@ -16,12 +16,14 @@ from hal.controller import Controller, Stopwatch
 from hal.errors import ControllerError, TelemetryError, WindupError
 from hal.guard.imu_watch import ImuWatch
 from hal.observation import Observation
+from hal.ranges import numbers_checked
 from hal.telemetry import TelemetryWriter
 from sim_twin.backend import TwinClock
 from tools.armed import Armed
 from tools.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
 from tools.protect import Protection
 from tools.stack import look_with
+from tools.stop_request import stop_requests
 
 INTERRUPTED = "interrupted"
 REST_SECONDS = 1.5
@@ -89,6 +91,7 @@ class Session(Armed):
             self.run(PoseHolder(self.description.joints, crouch, REST_SECONDS), REST_SECONDS + 0.3)
         self.stop(limp=True)
 
+    @numbers_checked
     def run(
         self,
         controller: Controller,
@@ -118,7 +121,13 @@ class Session(Armed):
         protected = None
         if self.protect and self._protection.possible and not down:
             controller = protected = self._protection.around(controller)
-        with counted_signals(self.stack.wired) as asked, self._running, self._held_afterwards():
+        wishes = stop_requests(self.backend.backend, keys=self.stack.real)
+        with (
+            counted_signals(self.stack.wired) as asked,
+            self._running,
+            self._held_afterwards(),
+            wishes as wanted,
+        ):
             estimator = self._estimator(needs_imu)
             self._arm_once()
             begin = self.backend.clock.now()
@@ -127,6 +136,8 @@ class Session(Armed):
                 self.base = observation.base
                 if self.watch is not None:
                     self.watch(observation)
+                if (by := wanted()) is not None:
+                    asked.add(by)
                 if asked() or self._running.asked:
                     return INTERRUPTED
                 if protected is not None and protected.active:
@@ -190,6 +201,7 @@ class Session(Armed):
             if self.loop.reason == INTERRUPTED:
                 if self.stack.wired:
                     note_interruption(asked.by or "robot.stop()")
+                    logging.getLogger(__name__).warning("stopped by %s", asked.by or "robot.stop()")
                 self._stop_after_error(asked)
         except WindupError as error:
             self.loop.reason = str(error)

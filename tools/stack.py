@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from itertools import count
-from math import inf
 from typing import Literal
 
 import sim_twin.wire as wire
@@ -52,6 +51,11 @@ class Stack:
     world: str = ""
     port: str | None = None
 
+    @property
+    def real(self) -> bool:
+        """Is the port of the outer world? There may be an emulator of another program behind it."""
+        return self.wired and not self.world
+
     def close(self) -> None:
         """Disconnect."""
         self.backend.disconnect()
@@ -89,7 +93,7 @@ def twin_stack(
     What is odd about the twin's `world` nobody is told.
 
     Raises:
-        UsageError: The delay is negative, or no whole number of physics steps.
+        UsageError: The delay is no whole number of physics steps.
     """
     _check_delay(delay, robot)
     twin = Twin(robot, delay=delay, world=world)
@@ -191,6 +195,17 @@ def servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
     )
 
 
+def check_port(robot: RobotDescription, port: str) -> None:
+    """Raise what is wrong with a port of `robot`, before it is opened.
+
+    Raises:
+        UsageError: It does not fit the robot, or a number in a twin:// URL cannot be.
+    """
+    for url in _urls(robot, port).values():
+        if url.startswith(TWIN):
+            wire.parse_address(url)
+
+
 def _imu_on_the_bus(robot: RobotDescription) -> bool:
     """An OP3's IMU hangs on the servo bus; other robots have a BNO08x on a port of its own."""
     return robot.imu is not None and robot.buses[0].protocol == "dynamixel2"
@@ -263,8 +278,6 @@ def look_with(robot: RobotDescription, port: str | None) -> str:
 def _check_delay(delay: float | None, robot: RobotDescription) -> None:
     if delay is None:
         return
-    if not 0.0 <= delay < inf:
-        raise UsageError(f"--delay {delay:g}: give 0 s or more")
     steps = delay / robot.timestep
     if abs(steps - round(steps)) > 1e-6:
         raise UsageError(

@@ -24,6 +24,12 @@ POWER = Register("dynamixel_power", 24, 1)
 POWER_UP_TIME = 0.5
 """From switching that power on to servos that answer, s."""
 VOLTAGE_UNIT = 0.1
+BUTTONS = ("mode", "start", "user", "reset")
+"""Names on the back of the robot, from the lowest bit of register 30 up (`dxl_node_op3.cpp`).
+
+The firmware ignores what bounces for less than 30 ms. Held for 0.1 s, "reset" also takes the power
+from the servos, without asking a host.
+"""
 
 
 @dataclass(frozen=True)
@@ -44,6 +50,11 @@ class OpenCr:
     def span(self) -> Span:
         """Buttons, voltage, gyroscope, accelerometer and angles in one run of registers."""
         return Span(self.id, 30, 20)
+
+    def buttons(self, data: bytes) -> tuple[str, ...]:
+        """Return the names of the buttons that are down in the bytes of `span`."""
+        down = data[0]
+        return tuple(name for bit, name in enumerate(BUTTONS) if down >> bit & 1) if down else ()
 
     def decode(self, data: bytes, age: float) -> ImuState:
         """Return the sample in the bytes of `span`, `age` s old, in the body frame."""

@@ -3,11 +3,13 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from hal.errors import StaleStateError, WindupError
+import tools.idle
+from hal.errors import StaleStateError, UsageError, WindupError
 from hal.guard import GuardedBackend, SafetyLimits
 from hal.observation import Observation
 from tests.small_world import JOINTS, FakeBackend
 from tools.idle import IdleKeeper
+from tools.interrupts import check_not_interrupted, forget_interruption
 
 
 @dataclass
@@ -58,3 +60,17 @@ def test_a_robot_that_is_unwell_is_stopped_and_the_cause_is_kept() -> None:
     assert stopped.said.wait(10.0)
     assert isinstance(stopped.error, StaleStateError)
     keeper.end()
+
+
+def test_a_button_ends_the_hold_at_once_and_nothing_arms_by_itself(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    stopped = Stopped()
+    monkeypatch.setattr(tools.idle, "pressed_button", lambda backend: "the mode button")
+    keeper = IdleKeeper(guarded(FakeBackend()), 60.0, lambda: None, stopped)
+    assert stopped.said.wait(10.0) and stopped.error is None
+    keeper.end()
+    assert "stopped by the mode button" in caplog.text
+    with pytest.raises(UsageError, match="the mode button has stopped this program"):
+        check_not_interrupted()
+    forget_interruption()
