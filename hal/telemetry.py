@@ -6,7 +6,6 @@ keeps what it has. A tick that is overwritten while it is read shows in its sequ
 checksum; readers then take the next one.
 """
 
-import contextlib
 import mmap
 import os
 import time as wall
@@ -23,18 +22,17 @@ from hal.contacts import ContactSensors
 from hal.errors import TelemetryError
 from hal.guard import GuardedBackend
 from hal.observation import Observation
+from hal.telemetry_file import make_ring, read_header
 from hal.telemetry_layout import (
-    ALIGNMENT,
+    CLOSED,
     ENDED,
     ENDED_AT,
-    FIXED,
     HEAD,
     HEAD_AT,
-    MAGIC,
+    OVER,
     PAYLOAD_AT,
-    SIZES,
-    SIZES_AT,
-    VERSION,
+    RUNS,
+    STATE,
     Header,
     checksum,
     ring_path,
@@ -86,7 +84,7 @@ class TelemetryWriter:
         )
         self.path = path or ring_path(robot, port)
         self._prepare()
-        self._map, self._first = _create(self.path, self.header, self._slots, len(self._bytes))
+        self._map, self._first = make_ring(self.path, self.header, self._slots, len(self._bytes))
         self._sequence = 0
 
     def _prepare(self) -> None:
@@ -104,7 +102,7 @@ class TelemetryWriter:
 
     def begin(self) -> None:
         """A run begins (again)."""
-        ENDED.pack_into(self._map, ENDED_AT, 0, b"")
+        ENDED.pack_into(self._map, ENDED_AT, RUNS, b"")
 
     def record(
         self,
@@ -153,10 +151,11 @@ class TelemetryWriter:
     def end(self, reason: str) -> None:
         """The run is over; the ring stays for whoever wants to know how it went."""
         text = reason.encode()[:127].decode(errors="ignore").encode()
-        ENDED.pack_into(self._map, ENDED_AT, 1, text)
+        ENDED.pack_into(self._map, ENDED_AT, OVER, text)
 
     def close(self) -> None:
-        """Give the mapping back. The file stays."""
+        """Give the mapping back. The file stays, until newer ones have taken its place."""
+        STATE.pack_into(self._map, ENDED_AT, CLOSED)
         self._map.close()
 
     def _publish(self) -> None:
@@ -201,7 +200,7 @@ class TelemetryReader:
         except (OSError, ValueError) as error:
             raise TelemetryError(f"{path}: cannot be read: {error}") from None
         try:
-            self.header, self._first, self._slots = _parse(self._map)
+            self.header, self._first, self._slots = read_header(self._map)
         except (ValueError, msgspec.DecodeError) as error:
             self._map.close()
             raise TelemetryError(f"{path}: is no telemetry of this version: {error}") from None
@@ -217,6 +216,11 @@ class TelemetryReader:
         """Why the run ended, or None while it lasts."""
         over, reason = ENDED.unpack_from(self._map, ENDED_AT)
         return reason.rstrip(b"\0").decode(errors="replace") if over else None
+
+    @property
+    def closed(self) -> bool:
+        """True when its writer has gone in good order."""
+        return int(STATE.unpack_from(self._map, ENDED_AT)[0]) == CLOSED
 
     @property
     def replaced(self) -> bool:
@@ -256,41 +260,3 @@ class TelemetryReader:
         head = np.frombuffer(data, dtype=np.uint64, count=2)
         whole = int(head[0]) == sequence and int(head[1]) == checksum(sequence, data[PAYLOAD_AT:])
         return data if whole else None
-
-
-def _create(path: Path, header: Header, slots: int, size: int) -> tuple[mmap.mmap, int]:
-    """Make a ring and move it to `path`; return its mapping and the offset of the first slot."""
-    text = msgspec.json.encode(header)
-    first = -(-(FIXED.size + len(text)) // ALIGNMENT) * ALIGNMENT
-    head = FIXED.pack(MAGIC, VERSION, first, slots, size, 0, 0, b"", len(text)) + text
-    fresh = path.with_suffix(f".{os.getpid()}")
-    try:
-        with fresh.open("wb+") as file:
-            # Room is taken now: a full disk must not show as a bus error in mid-run.
-            os.posix_fallocate(file.fileno(), 0, first + slots * size)
-            ring = mmap.mmap(file.fileno(), first + slots * size)
-        ring[:] = head.ljust(len(ring), b"\0")
-        fresh.replace(path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            fresh.unlink()
-        raise TelemetryError(f"{path}: cannot be made: {error.strerror}") from None
-    return ring, first
-
-
-def _parse(ring: mmap.mmap) -> tuple[Header, int, int]:
-    """Return the header, the offset of the first slot and the number of slots.
-
-    Raises:
-        ValueError: It is not a ring.
-    """
-    if len(ring) < FIXED.size or ring[: len(MAGIC)] != MAGIC:
-        raise ValueError("other magic")
-    version, first, slots, size = SIZES.unpack_from(ring, SIZES_AT)
-    if version != VERSION:
-        raise ValueError(f"version {version}, this is {VERSION}")
-    *_, length = FIXED.unpack_from(ring)
-    header = msgspec.json.decode(ring[FIXED.size : FIXED.size + length], type=Header)
-    if header.dtype().itemsize != size or len(ring) < first + slots * size:
-        raise ValueError("its size is not what its header says")
-    return header, first, slots

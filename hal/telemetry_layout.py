@@ -6,7 +6,7 @@ The numbers are little-endian::
     0       8      magic
     8       16     version, offset of the first slot, number of slots, bytes of a slot
     24      8      sequence number of the newest tick, from 1; 0 before any
-    32      4      1 when the run has ended, else 0
+    32      4      1 when the run has ended, 2 when nobody will begin another, else 0
     36      128    why it ended, UTF-8, zero-padded
     164     4      bytes of the JSON that follows, a `Header`
     168     ..     JSON
@@ -36,6 +36,8 @@ FIXED = struct.Struct("<8sIIIIQI128sI")
 SIZES = struct.Struct("<IIII")
 SIZES_AT, HEAD_AT, ENDED_AT = 8, 24, 32
 ENDED = struct.Struct("<I128s")
+STATE = struct.Struct("<I")
+RUNS, OVER, CLOSED = 0, 1, 2
 HEAD = struct.Struct("<Q")
 PAYLOAD_AT = 16
 ALIGNMENT = 64

@@ -13,6 +13,7 @@ from tools.bench_balance import measure_balance
 from tools.bench_faults import measure_faults
 from tools.bench_guardian import measure_takeovers
 from tools.bench_jitter import measure_jitter
+from tools.bench_leaks import measure_leaks
 from tools.bench_loop import measure_tick, measure_twin
 from tools.bench_servo import measure_servos
 from tools.bench_unplug import measure_unplugs
@@ -33,6 +34,7 @@ What = Literal[
     "loop",
     "faults",
     "unplug",
+    "leaks",
 ]
 
 
@@ -48,7 +50,9 @@ class Bench(Command):
     guardian: does it leave a robot alone that walks beside a spinning process (give --minutes 30).
     loop: how late our loop wakes at 125 Hz, beside a C program that only sleeps.
     faults: what becomes of the readings of each family while everything goes wrong (3 minutes).
-    unplug: what becomes of a robot whose adapter is pulled out and put in again (4 minutes)."""
+    unplug: what becomes of a robot whose adapter is pulled out and put in again (4 minutes).
+    leaks: what opening and closing a robot leaves behind; 1000 times (10 minutes), status 1 if that
+    is more than 5 MB, or any file, thread or process."""
     robot: str | None = None
     """Name of the robot, or path of its folder; op3 by default, safety: op3 and duck."""
     vendor: Maker = "dynamixel2"
@@ -59,8 +63,8 @@ class Bench(Command):
     """safety: only the rows that begin with one of these names; all by default."""
     reads: Annotated[int, Range(1, 10**9)] = 1_000_000
     """faults: how often servos of each family are read."""
-    times: Count = 100
-    """unplug: how often."""
+    times: Count | None = None
+    """unplug and leaks: how often; 100, and 1000."""
     seed: Seed = 0
     """safety, faults, unplug: seed of the moments."""
     minutes: Annotated[float, Range(0.0, 10_000.0, "minutes", above=True)] = 10.0
@@ -78,7 +82,8 @@ class Bench(Command):
             "bus": partial(measure_bus, maker=self.vendor),
             "loop": partial(measure_jitter, minutes=self.minutes),
             "guardian": partial(measure_takeovers, minutes=self.minutes),
-            "unplug": partial(measure_unplugs, times=self.times, seed=self.seed),
+            "unplug": partial(measure_unplugs, times=self.times or 100, seed=self.seed),
+            "leaks": partial(measure_leaks, times=self.times or 1_000),
             "faults": partial(measure_faults, reads=self.reads, seed=self.seed),
         }
         if self.what == "safety":
@@ -88,7 +93,7 @@ class Bench(Command):
         for key, value in result.items():
             console.print(f"{key:28} {value}")
         write_json(self.json, f"bench {self.what}", {"robot": robot, **result})
-        return 0
+        return 0 if result.get("met", True) else 1
 
     def _safety(self) -> int:
         """Measure safety, whose table has other columns than key and value."""

@@ -2,7 +2,7 @@
 
 import logging
 from collections.abc import Callable
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
@@ -15,9 +15,11 @@ from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
 from hal.errors import ControllerError, TelemetryError, WindupError
 from hal.guard.imu_watch import ImuWatch
+from hal.leftovers import remove_leftovers
 from hal.observation import Observation
 from hal.ranges import numbers_checked
 from hal.telemetry import TelemetryWriter
+from hal.telemetry_layout import ring_path
 from sim_twin.backend import TwinClock
 from tools.armed import Armed
 from tools.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
@@ -54,6 +56,8 @@ class Session(Armed):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._protection = Protection(self.description)
+        with suppress(TelemetryError):  # a run says so
+            remove_leftovers(ring_path(self.description.name, self.stack.port))
 
     def __enter__(self) -> Self:
         return self

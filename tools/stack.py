@@ -137,15 +137,16 @@ def wire_stack(
     elif around is not None:
         raise UsageError("only a twin has another ground or plant; leave --port away")
     backend = _guarded(servo_backend(robot, port), robot, given)
-    backend.connect()
-    twin = _twin_behind(world) if emulated else None
     try:
+        backend.connect()
+        twin = _twin_behind(world) if emulated else None
         estimator = _estimator(robot, twin, state)
         if twin is not None:
             twin.reset(noise=noise, seed=seed)
         backend.configure()
     except BaseException:
         backend.disconnect()
+        _forget_world(world, given)
         raise
     delay = robot.drive.wire_delay
     return Stack(backend, twin, estimator, delay, True, arm or emulated, world, given)
@@ -162,14 +163,16 @@ def _estimator(robot: RobotDescription, twin: Twin | None, state: State) -> Esti
 
 def limp(robot: RobotDescription, port: str) -> TorqueState:
     """Switch all torque of `robot` off, whatever state it is in; return what was read back."""
+    given, world = port, ""
     if port.startswith(TWIN):
-        port, _ = _in_a_world(robot, port)
+        port, world = _in_a_world(robot, port)
     backend = servo_backend(robot, port)
-    backend.connect()
     try:
+        backend.connect()
         return backend.set_torque(False)
     finally:
         backend.disconnect()
+        _forget_world(world, given)
 
 
 def servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
@@ -253,6 +256,12 @@ def _in_a_world(robot: RobotDescription, port: str, around: World | None = None)
     if around is not None:
         wire.put_world(name, wire.build_world(address, around), address.clock)
     return f"{port}{'&' if '?' in port else '?'}world={name}", name
+
+
+def _forget_world(world: str, port: str) -> None:
+    """Forget a world that was made for `port`, which names none of its own."""
+    if world and not wire.parse_address(port).world:
+        wire.drop_world(world)
 
 
 def _twin_behind(world: str) -> Twin | None:

@@ -15,6 +15,7 @@ The controller of a dcmotor asks for a torque, ``kp (ctrl - q) - kd dq``, and dr
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from weakref import WeakMethod
 
 import numpy as np
 
@@ -130,7 +131,7 @@ class TwinImu:
         self._places = np.r_[gyro : gyro + 3, acceleration : acceleration + 3]
         self._filter = LowPass(OPENCR.lag, twin.timestep)
         self._base = twin.data.qpos
-        twin.on_step = self._feel
+        twin.on_step = _while_alive(self._feel)
 
     @property
     def angular_velocity(self) -> Array:
@@ -197,3 +198,14 @@ class TwinPhysics:
         kept_q, kept_v = data.qpos[7 + free].copy(), data.qvel[6 + free].copy()
         data.qpos[:], data.qvel[:] = self._qpos, self._qvel
         data.qpos[7 + free], data.qvel[6 + free] = kept_q, kept_v
+
+
+def _while_alive(method: Callable[[], None]) -> Callable[[], None]:
+    """Return what calls a method as long as its object lives, and does not keep that alive."""
+    found = WeakMethod(method)
+
+    def call() -> None:
+        if (method := found()) is not None:
+            method()
+
+    return call
