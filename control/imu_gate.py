@@ -1,5 +1,6 @@
 """What stands between an IMU and the estimator: a sample that cannot be trusted does not pass."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
 
@@ -10,6 +11,8 @@ from hal.guard.finding import CHECK
 from hal.guard.gyro_watch import GRAVITY
 from hal.guard.imu_watch import SILENT, ImuWatch
 from hal.observation import ImuState, Observation
+
+ATTEMPTS = 5
 
 
 class ImuUser(Protocol):
@@ -43,14 +46,18 @@ class ImuGate:
         self._last = ImuState(level, np.zeros(3), np.array([0.0, 0.0, GRAVITY]), 0.0)
         self._failed = False
 
-    def admit(self, observation: Observation) -> None:
-        """Look at the IMU before anything moves.
+    def admit(self, read: Callable[[], Observation]) -> None:
+        """Look at the IMU before anything moves, a few times: an answer may get lost.
 
         Raises:
             ImuError: It says nothing, and the controller needs it.
         """
-        imu = observation.imu
-        if self._needed and (imu is None or imu.age > SILENT):
+        looks = ATTEMPTS if self._needed else 0
+        for _ in range(looks):
+            imu = read().imu
+            if imu is not None and imu.age <= SILENT:
+                return
+        if looks:
             since = "yet" if imu is None else f"for {imu.age:.2f} s"
             raise ImuError(f"the IMU has said nothing {since}: nothing has moved; {CHECK}")
 

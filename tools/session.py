@@ -170,7 +170,7 @@ class Session(Armed):
         look = look_with(self.description, self.stack.port)
         gate = ImuGate(estimator, self.imu, needs_imu, look)
         if not self.armed:
-            gate.admit(self.backend.read())
+            gate.admit(self.backend.peek)
         return gate
 
     def _landed(self) -> str:

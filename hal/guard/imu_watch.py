@@ -86,7 +86,7 @@ class ImuWatch:
             return (NO_NUMBER, nan, nan), True
         same = now - self._changed
         if sample != self._sample:
-            if self._sample and same < LONGEST:
+            if self._sample and (same < LONGEST or self.gyro.doubted):
                 self.gyro.compare(sample, self._sample, now)
             self._sample, self._changed, self._pose = sample, now, joints.position
         elif same > FROZEN and np.abs(joints.position - self._pose).max() > MOVED:

@@ -88,5 +88,10 @@ def test_rates_that_are_doubted_are_replaced_by_the_last_that_were_not() -> None
 def test_a_silent_imu_is_refused_before_anything_moves(observation: Observation, says: str) -> None:
     guarded, _ = gate(needed=True)
     with pytest.raises(ImuError, match=says):
-        guarded.admit(observation)
-    gate(needed=False)[0].admit(observation)
+        guarded.admit(lambda: observation)
+    gate(needed=False)[0].admit(lambda: observation)
+
+
+def test_one_lost_answer_refuses_nobody() -> None:
+    answers = iter([seen(0.0, age=0.4), seen(0.01)])
+    gate(needed=True)[0].admit(lambda: next(answers))
