@@ -96,6 +96,10 @@ class TorqueUnknownError(HardwareError):
     """Torque was told to go off, and a joint could not be read back: it may be on or off."""
 
 
+class TorqueLostError(HardwareError):
+    """A joint has no torque any more though nobody of ours switched it off."""
+
+
 class UnhealthyError(HardwareError):
     """A joint is too hot, on the wrong supply, loaded for too long, or blocked."""
 
