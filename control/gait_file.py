@@ -266,6 +266,13 @@ class GaitFile(Record, frozen=True):
     torso_servo: TorsoServo | None = None
 
     @property
+    def attitude(self) -> bool:
+        """True where the base's attitude decides: feedback balances, or a state asks for a lean."""
+        reaches = (state.reach for state in self.state if state.reach is not None)
+        leans = any(reach.lean is not None or reach.side is not None for reach in reaches)
+        return self.upright is not None or leans
+
+    @property
     def staged(self) -> bool:
         """True where a state moves to its pose or has to reach something, or feedback balances."""
         if self.upright is not None:

@@ -10,13 +10,12 @@ import numpy.typing as npt
 from hal.errors import HardwareError, NoAnswerError, UsageError
 from hal.exchange import Exchange
 from hal.families import DYNAMIXEL_X, Family
-from hal.heartbeat import no_heartbeat
+from hal.heartbeat import Heartbeat
 from hal.joints import Mask
 from hal.port import Port
 from hal.protocols.cyclic import CyclicRead
 from hal.protocols.protocol2 import Span, Status
 from hal.registers import Register
-from hal.sdk import Link
 
 Counts = npt.NDArray[np.int64]
 
@@ -56,15 +55,24 @@ class Bus:
     def __init__(self, port: Port, family: Family = DYNAMIXEL_X) -> None:
         self.port, self.family = port, family
         self.exchange = Exchange(port)
-        self.heartbeat = no_heartbeat
-        self._link = self._link_to(port)
+        self._link = family.dialect.link(port)
         self._fast: dict[tuple[int, ...], bool] = {}
 
     def move_to(self, port: Port) -> None:
         """Go on over another port, as after an adapter was unplugged; statistics go on too."""
         self.port = port
         self.exchange.move_to(port)
-        self._link = self._link_to(port)
+        heartbeat, self._link = self.heartbeat, self.family.dialect.link(port)
+        self.heartbeat = heartbeat
+
+    @property
+    def heartbeat(self) -> Heartbeat:
+        """What is called meanwhile; the maker's SDK calls it before each attempt."""
+        return self._link.heartbeat
+
+    @heartbeat.setter
+    def heartbeat(self, heartbeat: Heartbeat) -> None:
+        self._link.heartbeat = heartbeat
 
     def ping(self, id: int) -> int:
         """Return the model number of servo `id`.
@@ -247,8 +255,3 @@ class Bus:
         except HardwareError:
             return True
         return True
-
-    def _link_to(self, port: Port) -> Link:
-        link = self.family.dialect.link(port)
-        link.heartbeat = lambda: self.heartbeat()
-        return link

@@ -55,7 +55,7 @@ class JointTorque:
             link.send_off()
         states = [link.switch_off() for link in links]
         until = max((link.clock.now() for link in links), default=0.0) + BOOT_TIME
-        while not all(state.all_off for state in states) and links[0].clock.now() < until:
+        while _worth_waiting(links, states) and links[0].clock.now() < until:
             heartbeat()
             links[0].clock.wait_until(links[0].clock.now() + PAUSE)
             states = [link.insist_off(s) for link, s in zip(links, states, strict=True)]
@@ -108,3 +108,9 @@ class JointTorque:
             on[link.line.rows], unknown[link.line.rows] = state.on, state.unknown
         on, unknown = self._couplings.any(on), self._couplings.any(unknown)
         return TorqueState(on, unknown & ~on)
+
+
+def _worth_waiting(links: Sequence[ServoLink], states: Sequence[TorqueState]) -> bool:
+    """Return whether a servo that is not known to be off may still answer this process."""
+    pairs = zip(links, states, strict=True)
+    return any(not state.all_off and not link.gone_for_good for link, state in pairs)

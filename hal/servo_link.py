@@ -153,6 +153,11 @@ class ServoLink:
                 self._lose(error)
         return TorqueState.unread(len(self.line.ids))
 
+    @property
+    def gone_for_good(self) -> bool:
+        """True when the port is gone and this process does not open it again."""
+        return self.lost is not None and not self._replug.returns
+
     def insist_off(self, state: TorqueState) -> TorqueState:
         """Switch off once more who was not read as off; open a port that is back for that."""
         if state.all_off:

@@ -55,7 +55,7 @@ class DirectedOptions(TwinOptions, Common, ABC):
         controller = build_directed(description, self.prints(seed))
         paced = replace(self, rate=self.rate or loop_rate(description))
         with paced.open_robot(seed, world=self.world(description, seed)) as robot:
-            robot.start_at(controller.how.stance)
+            robot.start_at(controller.how.stance, needs_imu=True)
             if (disturb := self.disturb()) is not None:
                 disturb(robot)
             return walk_prints(robot, controller)

@@ -110,7 +110,7 @@ def side_of(robot: Robot) -> Side | None:
     seen: list[Observation] = []
     watch, robot.watch = robot.watch, lambda observation: seen.append(observation)
     pose = robot.backend.read().joints.position
-    robot.run(PoseHolder(robot.description.joints, pose, ramp=0.0), LOOK, down=True)
+    robot.run(PoseHolder(robot.description.joints, pose, ramp=0.0), LOOK, down=True, needs_imu=True)
     robot.watch = watch
     if not robot.fallen:
         return None

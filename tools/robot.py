@@ -166,7 +166,7 @@ class Robot(Session):
         kind = StagedPlayer if gait.file.staged else GraphPlayer
         player = self.player = kind(gait, self.description.joints, self.description.contacts)
         if gait.file.lying is None:
-            self.start_at(gait.file.start)
+            self.start_at(gait.file.start, needs_imu=gait.file.attitude)
         if disturb is not None:
             disturb(self)
         load = self.load = LoadGauge(self.description.joints)
@@ -176,7 +176,7 @@ class Robot(Session):
             return "done" if player.finished else player.failed
 
         down = gait.file.down or gait.file.lying is not None
-        return self.run(player, seconds, until=until, down=down)
+        return self.run(player, seconds, until=until, down=down, needs_imu=gait.file.attitude)
 
     @numbers_checked
     def walk(
@@ -217,14 +217,15 @@ class Robot(Session):
             if self.paced and walker.planner is not None:
                 aside = plan_aside(self.description, options, self.predictor, self.period)
                 walker.planner = self._when_ready(stack.enter_context(aside))
-            self.start_at(walker.gait.file.start)
+            self.start_at(walker.gait.file.start, needs_imu=True)
             self._watch_feet()
             if disturb is not None:
                 disturb(self)
             report = WalkReport(self, walker, options, steps)
             try:
                 walking = self.supervisor or walker
-                walked = self.run(walking, until=self._looking(end), rollouts=stopwatch)
+                until = self._looking(end)
+                walked = self.run(walking, until=until, rollouts=stopwatch, needs_imu=True)
                 if stand > 0.0 and walked.reason == "done":
                     walked.reason = self.stand(stand).reason
                     self.loop = walked
@@ -263,16 +264,21 @@ class Robot(Session):
 
         return until
 
-    def start_at(self, name: str | None) -> None:
+    def start_at(self, name: str | None, *, needs_imu: bool = False) -> None:
         """Put a fresh twin into a start pose, with noise; let anything else move there."""
         poses = self.description.poses
         if name is not None and name not in poses:
             raise UnknownNameError(f"pose of {self.description.name}", name, poses)
-        self.start_in(self.description.stance if name is None else poses[name])
+        pose = self.description.stance if name is None else poses[name]
+        self.start_in(pose, needs_imu=needs_imu)
 
-    def start_in(self, pose: Array) -> None:
-        """Put a fresh twin into a pose (n,) rad, with noise; let anything else move there."""
+    def start_in(self, pose: Array, *, needs_imu: bool = False) -> None:
+        """Put a fresh twin into a pose (n,) rad, with noise; let anything else move there.
+
+        What comes next may need the IMU: then this does not begin without it either.
+        """
         if not self.stack.wired and self.twin.time == 0.0:
             self.twin.reset(pose, noise=self.noise, seed=self.seed)
         else:
-            self.run(PoseHolder(self.description.joints, pose), START_SECONDS)
+            holder = PoseHolder(self.description.joints, pose)
+            self.run(holder, START_SECONDS, needs_imu=needs_imu)

@@ -7,11 +7,14 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
 
-from control.loop import LoopReport, Until, run_loop
+from control.estimator import BaseEstimator
+from control.imu_gate import ImuGate
+from control.loop import Estimator, LoopReport, Until, run_loop
 from control.play import PoseHolder
 from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
 from hal.errors import ControllerError, TelemetryError, WindupError
+from hal.guard.imu_watch import ImuWatch
 from hal.leftovers import remove_leftovers
 from hal.observation import Observation
 from hal.ranges import numbers_checked
@@ -21,6 +24,7 @@ from sim_twin.backend import TwinClock
 from tools.armed import Armed
 from tools.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
 from tools.protect import Protection
+from tools.stack import look_with
 from tools.stop_request import stop_requests
 
 INTERRUPTED = "interrupted"
@@ -39,6 +43,7 @@ class Session(Armed):
         protect: A fall that cannot be prevented is softened, where the robot's file says how.
         watch: Called with every observation, for whoever draws or logs.
         telemetry: Where everybody else can read how it goes, once it runs.
+        imu: Judges the IMU, where the base state is estimated from it.
     """
 
     period: float = field(kw_only=True)
@@ -46,6 +51,7 @@ class Session(Armed):
     protect: bool = True
     watch: Watch | None = field(default=None, init=False)
     telemetry: TelemetryWriter | None = field(default=None, init=False)
+    imu: ImuWatch = field(default_factory=ImuWatch, init=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -98,6 +104,7 @@ class Session(Armed):
         until: Until | None = None,
         rollouts: Stopwatch | None = None,
         down: bool = False,
+        needs_imu: bool = False,
     ) -> LoopReport:
         """Run a controller until the time is over, `until` gives a reason, or the robot falls.
 
@@ -109,6 +116,8 @@ class Session(Armed):
             until: Called with each observation; a reason ends the run.
             rollouts: Time to leave out of the ticks.
             down: The robot may lie: a fall does not end the run.
+            needs_imu: The controller balances with the IMU, or decides by it: one that fails stops
+                the robot. Without, that is a warning.
 
         Raises:
             WindupError: From the guard, the backend or the controller; the stop policy has run.
@@ -123,6 +132,7 @@ class Session(Armed):
             self._held_afterwards(),
             wishes as wanted,
         ):
+            estimator = self._estimator(needs_imu)
             self._arm_once()
             begin = self.backend.clock.now()
 
@@ -143,17 +153,37 @@ class Session(Armed):
                 over = seconds is not None and observation.time >= begin + seconds - 1e-9
                 return "done" if over else None
 
-            self._run(controller, end, rollouts, asked)
+            self._run(controller, end, rollouts, asked, estimator)
         if self.loop.reason == INTERRUPTED:
             raise RunInterruptedError(self.loop, asked.by or "robot.stop()")
         return self.loop
+
+    def _estimator(self, needs_imu: bool) -> Estimator | None:
+        """Return what fills in the base state; who estimates it is guarded against a bad IMU.
+
+        Raises:
+            ImuError: The IMU says nothing, and the controller needs it.
+        """
+        estimator = self.stack.estimator
+        if not isinstance(estimator, BaseEstimator):
+            return estimator
+        look = look_with(self.description, self.stack.port)
+        gate = ImuGate(estimator, self.imu, needs_imu, look)
+        if not self.armed:
+            gate.admit(self.backend.peek)
+        return gate
 
     def _landed(self) -> str:
         """Return why a run ends whose fall is over."""
         return "fell" if self.fallen else "braced for a fall that did not come"
 
     def _run(
-        self, controller: Controller, end: Until, rollouts: Stopwatch | None, asked: Asked
+        self,
+        controller: Controller,
+        end: Until,
+        rollouts: Stopwatch | None,
+        asked: Asked,
+        estimator: Estimator | None,
     ) -> None:
         """Run the loop; stop the robot if it ends by an error or a wish."""
         self.loop = LoopReport()
@@ -167,7 +197,7 @@ class Session(Armed):
                     controller,
                     period=self.period,
                     until=end,
-                    estimator=self.stack.estimator,
+                    estimator=estimator,
                     rollouts=rollouts,
                     report=self.loop,
                     recorder=self.telemetry,

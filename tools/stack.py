@@ -274,10 +274,14 @@ def _guarded(
 ) -> GuardedBackend:
     limits, watch = SafetyLimits.of(robot.joints), None
     if any(robot.servos):
-        where = f" --port '{port}'" if port else ""
-        look = f"; look with `windup health {robot.name}{where}`"
-        watch = HealthWatch(robot.joints, robot.health, look)
+        watch = HealthWatch(robot.joints, robot.health, look_with(robot, port))
     return GuardedBackend(backend, limits, robot.stop, robot.crouch, watch)
+
+
+def look_with(robot: RobotDescription, port: str | None) -> str:
+    """Return what ends a message about an unwell robot: the command that shows more."""
+    where = f" --port '{port}'" if port else ""
+    return f"; look with `windup health {robot.name}{where}`"
 
 
 def _check_delay(delay: float | None, robot: RobotDescription) -> None:

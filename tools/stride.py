@@ -74,7 +74,7 @@ class Stride(TwinOptions, Common):
         check_legs(legs, self.seconds, how)
         strider = build_strider(description, legs, self.seconds)
         with self.open_robot(seed, world=self.world(description, seed)) as robot:
-            robot.start_at(how.stance)
+            robot.start_at(how.stance, needs_imu=True)
             if (disturb := self.disturb()) is not None:
                 disturb(robot)
             return stride(robot, strider, legs, self.seconds, path=path)

@@ -143,7 +143,7 @@ def stride(
 
     halted, reason = [0.0], "interrupted"
     with suppress(KeyboardInterrupt):
-        reason = robot.run(strider, until=until).reason
+        reason = robot.run(strider, until=until, needs_imu=True).reason
     trace = np.array(rows).reshape(-1, 4)
     moved = _seen(trace[0], trace[-1]) if len(trace) else np.zeros(3)
     more = {"path": trace.tolist()} if path else {}

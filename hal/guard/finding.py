@@ -10,6 +10,10 @@ FEW = 3
 """So many joints are named; more are counted."""
 
 
+CHECK, AGAIN = "check its cable and power", "switch it off and on"
+"""What to do about a part that is silent, and about one that says what is wrong."""
+
+
 class Saying(NamedTuple):
     """How a kind of finding is put into words.
 
@@ -92,7 +96,8 @@ class Finding:
         one = len(self.joints) <= 1
         verb = ("is" if one else "are") if self.stop else ("was" if one else "were")
         word = "stop" if self.stop else "warning"
-        return f"{named(self.joints) or saying.who} {verb} {state} ({word} {level})"
+        limit = f" ({word} {level})" if level else ""
+        return f"{named(self.joints) or saying.who} {verb} {state}{limit}"
 
     def record(self) -> dict[str, Any]:
         """Return it for programs."""

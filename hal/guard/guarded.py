@@ -30,6 +30,7 @@ CROUCH_SECONDS = 1.5
 TICK = 0.008
 LOOKS = 5
 """Times that a joint that was silent is read again before a stop takes it for dead."""
+ATTEMPTS = 10
 REPLUG_TIME = 2.0
 """What a port that was plugged in again may take until it can be opened, s."""
 
@@ -107,7 +108,10 @@ class GuardedBackend:
             if on:
                 self.admit()
             self._driven, self._obeyed = on, None
-            return self.backend.set_torque(on)
+            state = self.backend.set_torque(on)
+            if on:
+                self._refresh()
+            return state
 
     def rearm(self) -> TorqueState:
         """Switch torque on at the present pose after a port was gone; return what was read back.
@@ -129,7 +133,9 @@ class GuardedBackend:
             try:
                 self.admit()
                 self._driven = True
-                return backend.rearm()
+                state = backend.rearm()
+                self._refresh()
+                return state
             except PortError:
                 if self.clock.now() >= until:
                     raise
@@ -144,6 +150,11 @@ class GuardedBackend:
         with self.lock:
             self.backend.request()
             return self.collect()
+
+    def peek(self) -> Observation:
+        """Return the present state, however old it is and however unwell the joints are."""
+        with self.lock:
+            return self.backend.read()
 
     def collect(self) -> Observation:
         """Return the state last asked for.
@@ -245,7 +256,7 @@ class GuardedBackend:
         seen = []
         for _ in range(2):
             self.backend.read_health()
-            seen.append(self.backend.read())
+            seen.append(self.peek())
         if (unwell := self.watch.refuse(seen, self.limits.max_age)) is not None:
             raise unwell
 
@@ -259,6 +270,12 @@ class GuardedBackend:
                 break
             self.backend.read()
         return bool(watched.lost_joints or watched.doubtful_joints)
+
+    def _refresh(self) -> None:
+        """Read until everybody has answered lately: arming took its time, and answers get lost."""
+        for _ in range(ATTEMPTS):
+            if self.peek().joints.age.max() < 0.5 * self.limits.max_age:
+                return
 
     def _pose(self) -> Array:
         last = self._last or self.read()
