@@ -10,7 +10,7 @@ from hal.errors import PortError, StaleStateError, TorqueLostError
 from hal.guard import GuardedBackend, SafetyLimits
 from hal.observation import Observation
 from hal.torque_loss import SWITCHED_OFF, Loss
-from tests.small_world import JOINTS, N, FakeBackend
+from tests.small_world import JOINTS, FakeBackend, N
 
 GONE = "port x went away"
 
@@ -56,7 +56,7 @@ def test_a_joint_without_torque_ends_a_run_once() -> None:
 
 def test_a_port_that_is_gone_ends_a_run_at_once_with_the_joints_behind_it() -> None:
     backend = Watched(lost={"x": GONE})
-    with pytest.raises(PortError, match="^all joints cannot be reached: port x went away$"):
+    with pytest.raises(PortError, match=r"^all joints cannot be reached: port x went away$"):
         guarded(backend).read()
 
 
