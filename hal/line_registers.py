@@ -10,7 +10,7 @@ from hal.joints import Array, Mask
 from hal.registers import Register
 from hal.servo_line import Rows, ServoLine
 
-ATTEMPTS = 6
+ATTEMPTS = 8
 BACKOFF = 4e-3
 """How much longer to wait before each further attempt, s: adapters hold answers back for 16 ms."""
 
