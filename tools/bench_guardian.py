@@ -84,36 +84,42 @@ def _walk(name: str, speed: float, seconds: float, tell: Connection) -> None:
             with Robot.open(name, port=ours.recv(), arm=True) as robot:
                 gaps = Gaps(tell, seconds)
                 robot.watch = gaps.look
-                robot.walk(speed, steps=STEPS, on_step=gaps.end_in_time(robot))
-                gaps.tell(robot.loop.reason)
+                try:
+                    robot.walk(speed, steps=STEPS, on_step=gaps.end_in_time())
+                finally:
+                    robot.watch = None
+                    gaps.tell("done" if gaps.over else robot.loop.reason)
         except (WindupError, KeyboardInterrupt) as error:
-            gaps.tell("done" if gaps.over else str(error))
+            console.print(f"windup: {error}", markup=False, soft_wrap=True)
         finally:
             emulator.kill()
 
 
 class Gaps:
-    """The time between ticks, told once a second."""
+    """The time between the ticks of a walk, from its first step on, told once a second."""
 
     def __init__(self, tell: Connection, seconds: float) -> None:
         self._tell, self._seconds = tell, seconds
         self._began = self._last = self._told = time.monotonic()
         self._longest = 0.0
+        self._walking = False
         self.over = False
 
     def look(self, observation: Observation) -> None:
         """Take note of a tick."""
         now = time.monotonic()
-        self._longest = max(self._longest, now - self._last)
+        if self._walking:
+            self._longest = max(self._longest, now - self._last)
         self._last = now
         if now - self._told > 1.0:
             self._told = now
             self.tell("killed")
 
-    def end_in_time(self, robot: Robot) -> Callable[[int, float], None]:
+    def end_in_time(self) -> Callable[[int, float], None]:
         """Return what ends the walk when it has lasted long enough."""
 
         def on_step(number: int, speed: float) -> None:
+            self._walking = True
             if time.monotonic() - self._began > self._seconds:
                 self.over = True
                 raise KeyboardInterrupt

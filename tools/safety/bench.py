@@ -17,6 +17,7 @@ from tools.output import console
 from tools.safety.refusals import measure_refusals
 from tools.safety.row import Row
 from tools.safety.rows import ROWS
+from tools.safety.scripts import BY_ITSELF
 from tools.safety.trial import Moment, NotMeasuredError, trial, under_way
 from tools.safety.verdict import Verdict, judge
 
@@ -126,12 +127,15 @@ def _one(name: str, row: Row, moment: Moment) -> Verdict:
         under_way(running)
         if not row.fault or row.do.__name__ != "own_fault":
             running.journal.listen(moment.after)
+            if BY_ITSELF in (said := running.errors()):
+                raise NotMeasuredError(said)
         return judge(running, row, load_robot(name), row.do(running))
 
 
 def _table(result: dict[str, Any]) -> Table:
     """Return the table for people."""
     table = Table("fault", "t0", "state", "safe", "s", "of", "status", "read", box=None)
+    table.columns[0].no_wrap = True
     for name, row in result.items():
         table.add_row(
             name,

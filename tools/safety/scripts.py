@@ -10,7 +10,9 @@ from hal.observation import Observation
 from tools.robot import Robot
 from tools.safety.begin import Begin
 from tools.safety.row import Activity
+from tools.session import Watch
 
+BY_ITSELF = "its walk ended by itself"
 FOR_EVER = 3600.0
 """Longer than anything here, s."""
 WARM_UP = 1.3
@@ -23,13 +25,24 @@ def move(robot: Robot, activity: Activity, begin: Begin) -> None:
     """Stand, walk, or crouch at the end."""
     if activity == "walking":
         robot.walk(steps=1000, on_step=lambda number, _: begin.now("walking"))
-        raise WindupError(f"it walked to its end: {robot.loop.reason}")
+        raise WindupError(f"{BY_ITSELF}: {robot.loop.reason}")
     robot.stand(WARM_UP)
-    begin.now(activity)
+    robot.watch = _beginning(activity, begin, robot.watch)
     if activity == "closing crouch":
         robot.rest()
     else:
         robot.stand(FOR_EVER)
+
+
+def _beginning(activity: Activity, begin: Begin, watch: Watch | None) -> Watch:
+    """Return what says at the first tick that the activity has begun, and then looks on."""
+
+    def look(observation: Observation) -> None:
+        begin.now(activity)
+        if watch is not None:
+            watch(observation)
+
+    return look
 
 
 def _goes_on(robot: Robot, activity: Activity, begin: Begin) -> None:
