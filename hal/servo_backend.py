@@ -212,9 +212,9 @@ class ServoBackend:
             goal = self._couplings.servos(goal)
         counts = np.rint(self.units.counts(goal))
         inside = np.minimum(np.maximum(counts, 0.0), self.units.last)
-        if not np.array_equal(inside, counts):
+        if (inside != counts).any():
             self.clamps["goal"] += 1
-        real = np.zeros_like(block)
+        real = np.zeros(block.shape)
         angle = self.units.angle(inside)
         real[0] = self._couplings.joints(angle) if self._couplings else angle
         real[3:] = self._realised
