@@ -84,6 +84,11 @@ class GuardedBackend:
         """The backend's clock."""
         return self.backend.clock
 
+    @property
+    def last(self) -> tuple[Observation, JointCommand] | None:
+        """What was seen last, and what the joints obey, while somebody drives them."""
+        return (self._last, self._obeyed) if self._last and self._obeyed else None
+
     def connect(self) -> None:
         """Open the backend."""
         self.backend.connect()
@@ -174,7 +179,7 @@ class GuardedBackend:
         if self.watch is not None:
             unwell = self.watch.look(observation, self._obeyed)
             if unwell is not None and (self._driven or self._obeyed is not None):
-                raise unwell
+                raise self.watch.error(unwell)
         return observation
 
     def write(self, command: JointCommand) -> JointCommand:
