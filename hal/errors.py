@@ -108,6 +108,10 @@ class UnwellError(HardwareError):
         self.kind = kind
 
 
+class TorqueLostError(HardwareError):
+    """A joint has no torque any more though nobody of ours switched it off."""
+
+
 class UnhealthyError(UnwellError):
     """A joint is too hot, on the wrong supply, loaded for too long, or blocked."""
 

@@ -13,6 +13,7 @@ import serial
 from serial.tools import list_ports
 
 from hal.errors import PortError, UsageError
+from hal.network_port import NETWORK, NetworkPort
 from hal.port import GONE, DevicePort, Port
 
 BAUD = 1_000_000
@@ -30,7 +31,8 @@ def open_port(url: str, baud: int = BAUD, *, exclusive: bool = True) -> Port:
     """
     if "://" in url:
         _check_handler(url)
-        return Port(_open(url, url, baud, exclusive), url)
+        opened = _open(url, url, baud, exclusive)
+        return NetworkPort(opened, url) if url.startswith(NETWORK) else Port(opened, url)
     device = _by_serial_number(url[4:]) if url.startswith("usb:") else url
     if exclusive:
         _check_holder(device)

@@ -8,8 +8,8 @@ from weakref import WeakMethod
 from hal.clock import WallClock
 from hal.errors import GuardianError, WindupError
 from hal.guard import GuardedBackend
-from hal.guard.guarded import no_heartbeat
 from hal.guardian.handle import Guardian, guardian_for
+from hal.heartbeat import no_heartbeat
 from hal.servo_backend import ServoBackend
 from robots import RobotDescription
 from tools.idle import IdleKeeper

@@ -238,8 +238,8 @@ class Diagnosis:
         for row in self.joints():
             name = row["name"]
             if row["alerts"]:
-                what = f"its servo has shut down: {', '.join(row['alerts'])}"
-                self._complain(name, what, "remove the cause, then switch the power off and on")
+                what = f"its servo signals: {', '.join(row['alerts'])}"
+                self._complain(name, what, "remove the cause before it shuts down")
             if row["age_max_s"] > limits.age:
                 what = f"silent for {row['age_max_s']:.2f} s (limit {limits.age:g} s)"
                 self._complain(name, what, "check its cable and power")

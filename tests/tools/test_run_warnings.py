@@ -113,8 +113,8 @@ def test_late_plans_are_counted_though_the_walk_fails() -> None:
 
 
 def test_a_bus_that_is_too_slow_for_its_rate_is_said(windup: Windup) -> None:
-    ran = windup("stand", "duck", "--port", "twin://duck", "--rate", 250, "--seconds", 1)
+    ran = windup("stand", "duck", "--port", "twin://duck", "--rate", 500, "--seconds", 1)
     assert ran.status == 0
     assert last_line(ran.err).endswith(
-        "of the ticks came late: the bus is too slow for 250 Hz: try a lower --rate"
+        "of the ticks came late: the bus is too slow for 500 Hz: try a lower --rate"
     )

@@ -3,7 +3,9 @@
 import time
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
+from os import cpu_count
 from typing import Any
 
 import numpy as np
@@ -68,14 +70,11 @@ def _measure(
 ) -> dict[str, Any]:
     """Return how one row went."""
     failed: Counter[str] = Counter()
-    seen: list[tuple[str, Verdict]] = []
-    for name, moment in _moments(row, moments, rng, robots):
-        for _ in range(AGAIN):
-            try:
-                seen.append((name, _one(name, row, moment)))
-                break
-            except NotMeasuredError as error:
-                failed[f"{name}: {error}"] += 1
+    todo = list(_moments(row, moments, rng, robots))
+    with ThreadPoolExecutor(cpu_count()) as side_by_side:
+        tried = side_by_side.map(lambda item: _try(item[0], row, item[1], failed), todo)
+        both = zip(todo, tried, strict=True)
+        seen = [(name, verdict) for (name, _), verdict in both if verdict is not None]
     times = [verdict.seconds for _, verdict in seen]
     wrong = [{"robot": name, **asdict(verdict)} for name, verdict in seen if verdict.wrong]
     report = {
@@ -92,8 +91,11 @@ def _measure(
         "not_measured": dict(failed),
     }
     console.print(f"{row.name}: {report['safe']} of {len(seen)} safe, {report['longest_s']} s")
+    for reason, count in failed.items():
+        console.print(f"  not measured, {count} x {reason}", markup=False, soft_wrap=True)
     for each in wrong:
-        console.print(f"  {each['robot']} {each['activity']}: {each['wrong']}", soft_wrap=True)
+        said = f"  {each['robot']} {each['activity']}: {each['wrong']}\n{each['words']}"
+        console.print(said, markup=False, soft_wrap=True)
     return report
 
 
@@ -107,6 +109,16 @@ def _moments(
     for k in range(count):
         activity = row.activities[k // len(mine) % len(row.activities)]
         yield mine[k % len(mine)], Moment(activity, float(rng.uniform(0.0, LONGEST[activity])))
+
+
+def _try(name: str, row: Row, moment: Moment, failed: Counter[str]) -> Verdict | None:
+    """Return the verdict on one trial, or None where its program was never under way."""
+    for _ in range(AGAIN):
+        try:
+            return _one(name, row, moment)
+        except NotMeasuredError as error:
+            failed[f"{name}: {error}"] += 1
+    return None
 
 
 def _one(name: str, row: Row, moment: Moment) -> Verdict:

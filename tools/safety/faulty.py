@@ -3,7 +3,7 @@
 import ctypes
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from hal.command import JointCommand
 from hal.controller import Controller
 from hal.observation import ImuState, Observation
 from hal.servo_backend import ServoBackend
+from hal.servo_link import ServoLink
 from tools.robot import Robot
 from tools.safety.begin import Begin
 
@@ -95,13 +96,14 @@ def break_imu(robot: Robot, begin: Begin) -> None:
     """Let the IMU's driver hand out what is no number when it is time."""
     servos = robot.backend.backend
     assert isinstance(servos, ServoBackend)
-    state = servos._imu_state
+    readings = servos.readings
+    state = readings.imu_state
 
-    def broken(now: float) -> ImuState | None:
-        seen = state(now)
+    def broken(now: float, links: Sequence[ServoLink]) -> ImuState | None:
+        seen = state(now, links)
         nothing = np.full(3, np.nan)
         if seen is None or not begin.due():
             return seen
         return replace(seen, angular_velocity=nothing, acceleration=nothing)
 
-    servos._imu_state = broken  # type: ignore[method-assign]
+    readings.imu_state = broken  # type: ignore[method-assign]

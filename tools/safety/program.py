@@ -1,10 +1,12 @@
 """The process that is ended: somebody's program with a robot."""
 
 import atexit
+import os
 import sys
 from contextlib import ExitStack
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
+from pathlib import Path
 
 from hal.errors import WindupError
 from tools.interrupts import end_on_signals
@@ -24,6 +26,7 @@ class Program:
         robot: The robot.
         port: Its port.
         arm: It may switch torque on.
+        log: Where it and its guardian print.
         activity: What it is busy with when it is ended.
         fault: What it does wrong then: a name of `FAULTS` or `SCRIPTS`, "imu nan", or "".
         after: When, s into the activity.
@@ -35,11 +38,13 @@ class Program:
     fault: str = ""
     after: float = 0.0
     arm: bool = True
+    log: Path = Path(os.devnull)
 
 
 def main(program: Program, tell: Connection) -> None:
     """Run a program to its end; the body of the process, whose exit status is that of a command."""
     end_on_signals()
+    os.dup2(os.open(program.log, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600), 2)
     status = 0
     try:
         _run(program, tell)

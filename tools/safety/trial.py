@@ -25,6 +25,8 @@ LONGEST = 8.0
 AFTERWARDS = 0.4
 """How long nothing may be driven again, and for a guardian to see that torque is off, s."""
 # What a fresh process would import anew each time: nothing of it is kept from trial to trial.
+LINES = 40
+"""Of what program and guardian have printed, at most."""
 PRELOAD = ["tools.robot", "tools.safety.program", "tools.safety.emulated"]
 
 
@@ -58,6 +60,7 @@ class Trial:
         port: Its port.
         moment: When it is ended.
         said: What the program said last.
+        log: What program and guardian print.
     """
 
     def __init__(
@@ -67,6 +70,7 @@ class Trial:
         self.robot = self.port = ""
         self.said = ""
         self.moment = Moment("standing", 0.0)
+        self.log = Path(os.devnull)
         self.guardian: int | None = None
         self.planner: int | None = None
 
@@ -129,6 +133,12 @@ class Trial:
             self.said = f"({what})"
         raise NotMeasuredError(f"the program did not get so far in {seconds:g} s")
 
+    def words(self) -> str:
+        """Return the last lines that program and guardian have printed."""
+        with suppress(OSError):
+            return "\n".join(self.log.read_text(errors="replace").splitlines()[-LINES:])
+        return ""
+
     def errors(self) -> str:
         """Return what error the program has said since, if any."""
         with suppress(EOFError, OSError):
@@ -157,13 +167,14 @@ def trial(
             if not ours.poll(PATIENCE):
                 raise NotMeasuredError("the emulator does not start")
             port = ours.recv()
-            does = Program(name, port, moment.activity, row.fault, moment.after, arm)
+            log = Path(folder) / "log"
+            does = Program(name, port, moment.activity, row.fault, moment.after, arm, log)
             program = context.Process(target=main, args=(does, tell), daemon=False)
             program.start()
             tell.close()
             started.append(program)
             running = Trial(emulator, Journal(ours), program, told)
-            running.robot, running.port, running.moment = name, port, moment
+            running.robot, running.port, running.moment, running.log = name, port, moment, log
             yield running
         except EOFError:
             raise NotMeasuredError("the emulator is gone") from None

@@ -1,7 +1,10 @@
 """What became of a trial: how soon, what the vendor's SDK reads, how the program ended."""
 
+import time
 from dataclasses import dataclass
 from math import inf
+
+from serial import SerialException
 
 from robots import RobotDescription
 from tools.safety.independent import torque_of
@@ -21,6 +24,7 @@ class Verdict:
         status: The program's exit status.
         found: What is found afterwards, as a row's `end`, or what else.
         wrong: What is not as it should be; "" for a safe ending.
+        words: What program and guardian have printed, where something is wrong.
     """
 
     activity: str
@@ -29,6 +33,7 @@ class Verdict:
     status: int | None
     found: str
     wrong: str
+    words: str = ""
 
 
 def judge(trial: Trial, row: Row, robot: RobotDescription, t0: float) -> Verdict:
@@ -45,10 +50,9 @@ def judge(trial: Trial, row: Row, robot: RobotDescription, t0: float) -> Verdict
         f"exit status {status}" * (status not in row.status),
         found * (found != row.end),
     ]
-    moment = trial.moment
-    return Verdict(
-        moment.activity, moment.after, seconds, status, found, ", ".join(filter(None, wrong))
-    )
+    said, moment = ", ".join(filter(None, wrong)), trial.moment
+    words = trial.words() if said else ""
+    return Verdict(moment.activity, moment.after, seconds, status, found, said, words)
 
 
 def _undriven(trial: Trial, t0: float) -> float:
@@ -61,12 +65,25 @@ def _undriven(trial: Trial, t0: float) -> float:
     return max([0.0, *(time - t0 for time in let_go)]) if trial.journal.driven == 0 else inf
 
 
+def _watched(trial: Trial, row: Row) -> bool:
+    """Return whether a guardian is left, once it has had the time to end."""
+    until = time.monotonic() + (LONGEST if row.end == "off" else 0.0)
+    while alive(trial.guardian) and time.monotonic() < until:
+        time.sleep(0.01)
+    return alive(trial.guardian)
+
+
 def _found(trial: Trial, row: Row, robot: RobotDescription) -> str:
     """Return what an independent client finds, and whether a guardian is left."""
-    watched = alive(trial.guardian)
+    watched = _watched(trial, row)
     if row.end in ("unknown", "unattended"):
         return "unknown" if watched else "unattended"
-    torque = torque_of(robot, trial.port) if not row.network else {}
+    if trial.program.is_alive():
+        return "the program goes on"
+    try:
+        torque = torque_of(robot, trial.port) if not row.network else {}
+    except (OSError, SerialException) as error:
+        return f"the port cannot be read: {error}"
     on = [name for name, value in torque.items() if value == 1]
     if on:
         return f"torque on at {', '.join(on)}"
