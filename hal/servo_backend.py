@@ -249,9 +249,7 @@ class ServoBackend:
             self.button.forget()
             wanted = self._couplings.servo_gains(self.joints.stiffness)
             gains, _ = self.units.p_registers(wanted)
-            state = self._torque.on(self.links, gains, self.heartbeat)
-            self._silent()  # what was read before that is old by now
-            return state
+            return self._torque.on(self.links, gains, self.heartbeat)
 
     def rearm(self) -> TorqueState:
         """Check and set every servo again, then switch torque on at the present pose.
