@@ -8,15 +8,11 @@ from threading import RLock
 
 import numpy as np
 
-from hal.backend import Backend, Clock, HealthReader, Rearmable
+from hal.backend import Backend, Clock, Rearmable
 from hal.command import FIELDS, JointCommand
-from hal.errors import (
-    GuardianError,
-    PortError,
-    TorqueOnError,
-    TorqueUnknownError,
-    UnsafeCommandError,
-)
+from hal.errors import GuardianError, PortError, UnsafeCommandError
+from hal.guard.arming import check_health, read_afresh
+from hal.guard.ending import check_off
 from hal.guard.limits import SafetyLimits, StopPolicy
 from hal.guard.presence import Presence
 from hal.guard.watch import HealthWatch
@@ -27,7 +23,6 @@ from hal.torque_state import TorqueState
 
 CROUCH_SECONDS = 1.5
 TICK = 0.008
-ATTEMPTS = 10
 REPLUG_TIME = 2.0
 """What a port that was plugged in again may take until it can be opened, s."""
 
@@ -82,6 +77,11 @@ class GuardedBackend:
         """The backend's clock."""
         return self.backend.clock
 
+    @property
+    def last(self) -> tuple[Observation, JointCommand] | None:
+        """What was seen last, and what the joints obey, while somebody drives them."""
+        return (self._last, self._obeyed) if self._last and self._obeyed else None
+
     def connect(self) -> None:
         """Open the backend."""
         self.backend.connect()
@@ -106,7 +106,7 @@ class GuardedBackend:
             self._driven, self._obeyed = on, None
             state = self.backend.set_torque(on)
             if on:
-                self._refresh()
+                read_afresh(self.backend, self.limits.max_age)
             return state
 
     def rearm(self) -> TorqueState:
@@ -130,7 +130,7 @@ class GuardedBackend:
                 self.admit()
                 self._driven = True
                 state = backend.rearm()
-                self._refresh()
+                read_afresh(self.backend, self.limits.max_age)
                 return state
             except PortError:
                 if self.clock.now() >= until:
@@ -167,7 +167,7 @@ class GuardedBackend:
         if self.watch is not None:
             unwell = self.watch.look(observation, self._obeyed)
             if unwell is not None and (self._driven or self._obeyed is not None):
-                raise unwell
+                raise self.watch.error(unwell)
         return observation
 
     def write(self, command: JointCommand) -> JointCommand:
@@ -222,37 +222,17 @@ class GuardedBackend:
         if policy == "crouch" and self.crouch is not None:
             self._glide(self._pose(), self.crouch, CROUCH_SECONDS, hurry)
         state = self.set_torque(False)
-        if state.on.any():
-            where = state.names(self.joints, state.on)
-            raise TorqueOnError(f"torque is still on at {where}; cut the servo power")
-        if state.unknown.any():
-            where = state.names(self.joints, state.unknown)
-            raise TorqueUnknownError(
-                f"torque is unknown at {where}: no answer; it may be on: cut the servo power, "
-                "or give the port back"
-            )
+        check_off(state, self.joints)
         return state
 
     def admit(self) -> None:
-        """Look twice at every joint before torque comes on.
+        """Look at every joint before torque comes on.
 
         Raises:
             UnhealthyError: A joint is beyond a stop level; nothing has been switched.
         """
-        if self.watch is None or not isinstance(self.backend, HealthReader):
-            return
-        seen = []
-        for _ in range(2):
-            self.backend.read_health()
-            seen.append(self.peek())
-        if (unwell := self.watch.refuse(seen, self.limits.max_age)) is not None:
-            raise unwell
-
-    def _refresh(self) -> None:
-        """Read until everybody has answered lately: arming took its time, and answers get lost."""
-        for _ in range(ATTEMPTS):
-            if self.peek().joints.age.max() < 0.5 * self.limits.max_age:
-                return
+        with self.lock:
+            check_health(self.backend, self.watch, self.limits.max_age)
 
     def _pose(self) -> Array:
         last = self._last or self.read()
