@@ -58,6 +58,7 @@ class ServoBackend:
         clamps: Clamp name to the number of commands it changed; "unarmed" are goals withheld.
         button: The buttons of the OpenCR: any of them is a stop.
         watchdog_trips: Servos that had frozen for silence, and were cleared.
+        arming_stiffness: (n,) N m/rad with which torque comes on.
         heartbeat: Called again and again while torque is switched, which takes a while.
     """
 
@@ -92,6 +93,7 @@ class ServoBackend:
         self._health = np.full((3, n), np.nan)
         self._answered = np.full(n, -np.inf)
         self._imu_at = -np.inf
+        self.arming_stiffness: Array = joints.stiffness
         self._patience = 0.9 * watchdog
         self._contacts = np.zeros(contacts)
         self._realised = np.empty((2, n))
@@ -264,7 +266,7 @@ class ServoBackend:
                 f"{', '.join(barred)} went away since the robot was armed; torque stays off "
                 "until it is armed again"
             )
-        wanted = self._couplings.servo_gains(self.joints.stiffness)
+        wanted = self._couplings.servo_gains(self.arming_stiffness)
         gains, _ = self.units.p_registers(wanted)
         return self._joined([link.torque.on(gains[link.line.rows]) for link in self.links])
 

@@ -21,6 +21,7 @@ from tools.interrupts import (
 from tools.on_stack import OnStack
 from tools.output import console
 from tools.running import Running
+from tools.start import Start
 from tools.stop_request import check_released, how_to_stop
 
 
@@ -32,6 +33,7 @@ class Armed(OnStack):
         loop: Report of the last run.
         armed: Torque was switched on, and has not been read back as off since.
         custody: Who is in charge of the torque.
+        start: What comes before the first command; None without servos.
     """
 
     loop: LoopReport = field(default_factory=LoopReport, init=False)
@@ -39,6 +41,9 @@ class Armed(OnStack):
 
     def __post_init__(self) -> None:
         self.custody = Custody(self.description, self.backend, self._stop_idle)
+        self.start = None
+        if self.stack.wired:
+            self.start = Start(self.description, self.backend, self.stack.port)
         self._running = Running()
         self._failed: WindupError | None = None
         self._closed = False
@@ -91,6 +96,8 @@ class Armed(OnStack):
         if not state.all_on:
             where = state.names(self.description.joints, ~state.on)
             raise HardwareError(f"torque does not come on at {where}; run `windup scan`")
+        if self.start is not None:
+            self.start.begin()
 
     def stop(self, *, limp: bool = False) -> None:
         """Carry out the stop policy at once; with `limp`, just switch the torque off.

@@ -11,7 +11,8 @@ from control.loop import LoopReport, Until, run_loop
 from control.play import PoseHolder
 from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
-from hal.errors import ControllerError, TelemetryError, WindupError
+from hal.errors import ControllerError, PostureError, TelemetryError, WindupError
+from hal.guard import StopPolicy
 from hal.observation import Observation
 from hal.telemetry import TelemetryWriter
 from sim_twin.backend import TwinClock
@@ -99,14 +100,20 @@ class Session(Armed):
 
         Args:
             controller: The controller.
-            seconds: How long, s of the backend's clock; for ever if None.
+            seconds: How long, s of the backend's clock; for ever if None. On servos that were just
+                armed, from the end of the first motion on.
             until: Called with each observation; a reason ends the run.
             rollouts: Time to leave out of the ticks.
             down: The robot may lie: a fall does not end the run.
 
         Raises:
+            PostureError: It was to be armed, needs its feet (not `down`), and sits or lies.
+            FirstMotionError: A joint did not follow in the first motion; the robot is limp.
             WindupError: From the guard, the backend or the controller; the stop policy has run.
         """
+        approach = None
+        if self.start is not None:
+            controller = approach = self.start.before(controller)
         protected = None
         if self.protect and self._protection.possible and not down:
             controller = protected = self._protection.around(controller)
@@ -117,10 +124,11 @@ class Session(Armed):
             self._held_afterwards(),
             wishes as wanted,
         ):
-            self._arm_once()
+            self._get_ready(down, asked)
             begin = self.backend.clock.now()
 
             def end(observation: Observation) -> str | None:
+                nonlocal begin
                 self.base = observation.base
                 if self.watch is not None:
                     self.watch(observation)
@@ -132,6 +140,9 @@ class Session(Armed):
                     return self._landed() if protected.finished else None
                 if self.fallen and not down:
                     return "fell"
+                if approach is not None and approach.active:
+                    begin = observation.time
+                    return None
                 if until is not None and (reason := until(observation)) is not None:
                     return reason
                 over = seconds is not None and observation.time >= begin + seconds - 1e-9
@@ -141,6 +152,24 @@ class Session(Armed):
         if self.loop.reason == INTERRUPTED:
             raise RunInterruptedError(self.loop, asked.by or "robot.stop()")
         return self.loop
+
+    def _get_ready(self, down: bool, asked: Asked) -> None:
+        """Switch torque on where it is off, once the robot is seen to be on its feet or needs not.
+
+        Raises:
+            PostureError: It sits or lies; torque is off.
+        """
+        start = self.start
+        if start is not None and not down and (start.unseen or not self.armed):
+            try:
+                start.check_upright()
+            except PostureError:
+                if self.armed:
+                    self._stop("limp", asked)
+                raise
+        self._arm_once()
+        if start is not None:
+            start.unseen = False
 
     def _landed(self) -> str:
         """Return why a run ends whose fall is over."""
@@ -173,7 +202,7 @@ class Session(Armed):
                 self._stop_after_error(asked)
         except WindupError as error:
             self.loop.reason = str(error)
-            self._stop_after_error(asked)
+            self._stop_after_error(asked, "limp" if error.limp else None)
             raise
         except (KeyboardInterrupt, SystemExit) as ended:  # raised by a controller of one's own
             asked.by = asked.by or type(ended).__name__
@@ -201,10 +230,10 @@ class Session(Armed):
         except TelemetryError as error:
             logging.getLogger(__name__).warning("no telemetry: %s", error)
 
-    def _stop_after_error(self, asked: Asked) -> None:
-        """Carry out the stop policy; a twin that has diverged can no longer do it."""
+    def _stop_after_error(self, asked: Asked, policy: StopPolicy | None = None) -> None:
+        """Carry out the stop policy, or another one; a twin that has diverged can no longer."""
         try:
-            self._stop(None, asked)
+            self._stop(policy, asked)
         except WindupError as error:
             self.loop.reason += f"; and the stop failed: {error}"
 
