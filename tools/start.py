@@ -1,8 +1,7 @@
 """What comes before the first command to an armed robot: how it is, and its first motion."""
 
 from control.first_motion import Approach, FirstMotion
-from control.posture import Posture
-from control.soles import Soles
+from control.posture import Posture, PostureSense
 from hal.controller import Controller
 from hal.errors import PostureError
 from hal.guard import GuardedBackend
@@ -14,6 +13,8 @@ LOOK = 0.3
 """How long the accelerometer is averaged, s."""
 PERIOD = 0.01
 """Between two looks, s."""
+CLEAR = 0.02
+"""A robot of which something else is no higher than this above its feet rests on that too, m."""
 
 
 class Start:
@@ -34,9 +35,9 @@ class Start:
         model, safety = robot.spec().compile(), robot.safety
         share = spread(safety.first_stiffness, leg_joints(robot, model))
         self.motion = FirstMotion(robot.joints, share, safety.first_speed, safety.first_lag)
-        self._soles = None
+        self._sense = None
         if robot.imu is not None and robot.feet:
-            self._soles = Soles(model, [foot.body for foot in robot.feet], robot.contacts)
+            self._sense = PostureSense(model, [foot.body for foot in robot.feet])
         self.unseen = True
         if isinstance(backend.backend, ServoBackend):
             backend.backend.arming_stiffness = share * robot.joints.stiffness
@@ -61,7 +62,7 @@ class Start:
             return
         if posture.tilt > fall.tilt:
             how = f"lies on its {posture.side}"
-        elif posture.height < fall.height:
+        elif posture.height < fall.height or posture.clearance < CLEAR:
             how = "sits"
         else:
             return
@@ -69,7 +70,7 @@ class Start:
 
     def _look(self) -> Posture | None:
         """Return how the robot is, or None where it cannot be told."""
-        if self._soles is None:
+        if self._sense is None:
             return None
         seen, clock = [], self.backend.clock
         servos = self.backend.backend
@@ -79,7 +80,7 @@ class Start:
             clock.wait_until(clock.now() + PERIOD)
         if seen[-1].joints.age.max() > LOOK:
             return None  # arming will say which servo is silent
-        return Posture.of(self._soles, seen)
+        return self._sense.posture(seen)
 
     def _or_rise(self) -> str:
         """Return what else a person can do, for those robots that get up by themselves."""
