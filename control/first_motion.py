@@ -10,8 +10,10 @@ from dataclasses import replace
 import numpy as np
 
 from control.following import Following
+from control.planted import Planted
 from hal.command import JointCommand
 from hal.controller import Begins, Controller, first_pose_of
+from hal.errors import FirstMotionError
 from hal.joints import Array, Joints
 from hal.observation import Observation
 
@@ -36,14 +38,22 @@ class FirstMotion:
         stiffness: (n,) share of each joint's stiffness that it begins with.
         speed: Largest speed of a goal, rad/s.
         lag: How far a joint may be behind its goal, rad.
+        planted: Judges whether the soles lie as the joints say, where they are flat.
 
     Attributes:
         due: The first motion is still to come.
         share: (n,) of each joint's stiffness now.
     """
 
-    def __init__(self, joints: Joints, stiffness: Array, speed: float, lag: float) -> None:
-        self.joints, self.speed, self.lag = joints, speed, lag
+    def __init__(
+        self,
+        joints: Joints,
+        stiffness: Array,
+        speed: float,
+        lag: float,
+        planted: Planted | None = None,
+    ) -> None:
+        self.joints, self.speed, self.lag, self.planted = joints, speed, lag, planted
         self._begins_with = stiffness
         self.begin()
 
@@ -52,9 +62,14 @@ class FirstMotion:
         self.due = True
         self.share = self._begins_with
 
-    def before(self, controller: Controller) -> "Approach":
-        """Return `controller` with the first motion before it, as long as that is due."""
-        return Approach(controller, self)
+    def before(self, controller: Controller, upright: bool) -> "Approach":
+        """Return `controller` with the first motion before it, as long as that is due.
+
+        Args:
+            controller: The controller.
+            upright: The robot is on its feet then, or in somebody's hands.
+        """
+        return Approach(controller, self, self.planted if upright else None)
 
 
 class Approach:
@@ -63,13 +78,17 @@ class Approach:
     Args:
         controller: Whose turn it is then. It is reset once more at the end of the way.
         motion: The robot's first motion.
+        planted: Judges whether the soles lie as the joints say.
 
     Attributes:
         active: Still on the way.
     """
 
-    def __init__(self, controller: Controller, motion: FirstMotion) -> None:
+    def __init__(
+        self, controller: Controller, motion: FirstMotion, planted: Planted | None = None
+    ) -> None:
         self.controller, self.motion, self.joints = controller, motion, motion.joints
+        self._planted = planted
         self.active = motion.due
 
     def reset(self, observation: Observation) -> None:
@@ -115,6 +134,8 @@ class Approach:
         weak = STIFFENING if (self._share < 1.0).any() else 0.0
         self._seconds = max(PEAK * longest / self.motion.speed, weak)
         self._following = Following(joints, self._from, self._way, self.motion.lag)
+        if self._planted is not None:
+            self._planted.begin()
 
     def _on_the_way(self, observation: Observation, dt: float) -> JointCommand:
         passed = observation.time - self._began
@@ -126,6 +147,8 @@ class Approach:
             self._following.conclude(observation.joints.position)
             return self._hand_over(observation, goal, dt)
         self._following.look(observation, goal)
+        if self._planted is not None and (wrong := self._planted.look(observation)) is not None:
+            raise FirstMotionError(wrong)
         self.motion.share = self._share + smooth * (1.0 - self._share)
         command = JointCommand.hold(self.joints, goal)
         command.stiffness[:] *= self.motion.share

@@ -117,7 +117,7 @@ class FirstMotionError(HardwareError):
 
 
 class PostureError(UsageError):
-    """The robot does not stand, and what it was to do needs that; nothing has moved."""
+    """The robot is in no posture to do what it was to do; nothing has moved."""
 
 
 class RefusedError(HardwareError):

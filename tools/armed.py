@@ -43,7 +43,7 @@ class Armed(OnStack):
         self.custody = Custody(self.description, self.backend, self._stop_idle)
         self.start = None
         if self.stack.wired:
-            self.start = Start(self.description, self.backend, self.stack.port)
+            self.start = Start(self.description, self.stack)
         self._running = Running()
         self._failed: WindupError | None = None
         self._closed = False

@@ -107,13 +107,14 @@ class Session(Armed):
             down: The robot may lie: a fall does not end the run.
 
         Raises:
-            PostureError: It was to be armed, needs its feet (not `down`), and sits or lies.
+            PostureError: It was to be armed, and a joint is outside of its limits, or it needs its
+                feet (not `down`) and sits or lies.
             FirstMotionError: A joint did not follow in the first motion; the robot is limp.
             WindupError: From the guard, the backend or the controller; the stop policy has run.
         """
         approach = None
         if self.start is not None:
-            controller = approach = self.start.before(controller)
+            controller = approach = self.start.before(controller, down)
         protected = None
         if self.protect and self._protection.possible and not down:
             controller = protected = self._protection.around(controller)
@@ -154,15 +155,15 @@ class Session(Armed):
         return self.loop
 
     def _get_ready(self, down: bool, asked: Asked) -> None:
-        """Switch torque on where it is off, once the robot is seen to be on its feet or needs not.
+        """Switch torque on where it is off, once the robot is seen to be in a posture for it.
 
         Raises:
-            PostureError: It sits or lies; torque is off.
+            PostureError: It is not; torque is off.
         """
         start = self.start
-        if start is not None and not down and (start.unseen or not self.armed):
+        if start is not None and (start.unseen or not self.armed):
             try:
-                start.check_upright()
+                start.check(down)
             except PostureError:
                 if self.armed:
                     self._stop("limp", asked)

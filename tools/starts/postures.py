@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 from scipy.optimize import brentq, least_squares
 
+from control.legs import legs_of
 from control.posture import PostureSense
 from hal.joints import Array
 from robots import RobotDescription
@@ -87,13 +88,11 @@ def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Array]:
     """
     model = robot.spec().compile()
     data = mujoco.MjData(model)
-    base = model.body(robot.base).id
-    sites = [model.site(foot.site).id for foot in robot.feet]
+    base, sites = model.body(robot.base).id, [model.site(foot.site).id for foot in robot.feet]
+    feet = [foot.body for foot in robot.feet]
+    legs = legs_of(model, robot.base, feet, robot.joints, robot.stance)
+    assert legs is not None, "soles of the robots that are tried are flat"
     ankles = _ankles(robot, model)
-    data.qpos[3:7], data.qpos[7:] = [1.0, 0.0, 0.0, 0.0], robot.stance
-    mujoco.mj_kinematics(model, data)
-    # The axis of each sole that points up in the stance.
-    normals = data.site_xmat[sites].reshape(-1, 3, 3)[:, 2, :].copy()
 
     def put(x: Array) -> Array:
         data.qpos[3:7] = after(turned([0.0, 1.0, 0.0], x[0]), turned([1.0, 0.0, 0.0], x[1]))
@@ -105,9 +104,8 @@ def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Array]:
         return moved
 
     def off(x: Array) -> Array:
-        put(x)
-        frames = data.site_xmat[sites].reshape(-1, 3, 3)
-        tilts = np.einsum("fij,fj->fi", frames, normals)[:, :2].ravel()
+        moved, frame = put(x), data.xmat[base].reshape(3, 3)
+        tilts = (legs.soles(moved[None])[0][0] @ frame.T)[:, :2].ravel()
         soles = data.site_xpos[sites]
         weight = data.subtree_com[base] - soles.mean(axis=0)
         step = soles[:, 2] - soles[0, 2]
