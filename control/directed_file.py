@@ -1,14 +1,9 @@
 """`footprints.toml` of a robot: how it walks footprints. SI units."""
 
 from math import inf
-from typing import Annotated
 
-from msgspec import Meta
-
-from hal.config import Record
-
-Positive = Annotated[float, Meta(gt=0.0)]
-Gain = Annotated[float, Meta(ge=0.0)]
+from hal.config import NotNegative as Gain
+from hal.config import Positive, Record
 
 
 class Directed(Record, frozen=True, kw_only=True):

@@ -4,13 +4,13 @@ A place is (x m, y m, yaw rad) on the ground: x forward, y to the left, yaw to t
 """
 
 from dataclasses import dataclass
-from math import atan2, cos, inf, isfinite, radians, sin
+from math import atan2, cos, radians, sin
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
-from hal.config import Record, load_toml
+from hal.config import Positive, Record, load_toml
 from hal.errors import UnknownNameError, UsageError
 from hal.joints import Array
 
@@ -24,7 +24,7 @@ class StepRecord(Record, frozen=True, kw_only=True):
     x: float
     y: float
     yaw: float = 0.0
-    duration: float | None = None
+    duration: Positive | None = None
 
 
 class FootprintFile(Record, frozen=True, kw_only=True):
@@ -62,7 +62,7 @@ def read_footprints(path: Path, feet: tuple[str, ...]) -> list[Footprint]:
 
     Raises:
         ConfigError: The file cannot be read, or is no footprint file.
-        UsageError: It has no step, or one of a foot or with a number that cannot be.
+        UsageError: It has no step, or one of a foot that is not there.
     """
     file = load_toml(path, FootprintFile)
     if not file.step:
@@ -80,12 +80,8 @@ def footprint(row: StepRecord, frame: Frame, feet: tuple[str, ...]) -> Footprint
     """Return what a row says, for a robot with these feet.
 
     Raises:
-        UsageError: The robot has no such foot, or a number cannot be.
+        UsageError: The robot has no such foot.
     """
-    if not all(map(isfinite, (row.x, row.y, row.yaw))):
-        raise UsageError("x, y and yaw have to be numbers of m, m and degrees")
-    if row.duration is not None and not 0.0 < row.duration < inf:
-        raise UsageError(f"duration {row.duration:g}: give more than 0 s")
     place = np.array([row.x, row.y, radians(row.yaw)])
     return Footprint(foot_index(row.foot, feet), place, frame, row.duration)
 

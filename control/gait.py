@@ -161,8 +161,6 @@ class _Reader:
         if (until.time is None) == (until.contact is None):
             where = f"state.{state.name}.until"
             raise self._error(where, "give either `time` or `contact`, and only one of them")
-        if until.time is not None and until.time < 0.0:
-            raise self._error(f"state.{state.name}.until.time", "a hold time cannot be negative")
         return _or_forever(until.time)
 
     def _sensors(self, state: State) -> Mask:

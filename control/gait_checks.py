@@ -58,8 +58,6 @@ def _check_stages(path: Path, file: GaitFile, joints: Joints) -> None:
         raise _error(
             path, "state", "`move`, `reach` and `upright` are for graphs without balance and mirror"
         )
-    if file.tries < 1:
-        raise _error(path, "tries", f"{file.tries}: give 1 or more")
     names = [state.name for state in file.state]
     if file.upright is not None:
         _known(path, "upright.states", file.upright.states or [], names, "state")

@@ -4,9 +4,11 @@ Angles are in degrees and times in seconds, as the literature prints them. The r
 the format; `control.gait` turns them into arrays.
 """
 
-from typing import Literal
+from typing import Annotated, Literal
 
-from hal.config import Record
+from msgspec import Meta
+
+from hal.config import Count, NotNegative, Part, Positive, Record, Seconds
 
 Axis = Literal["forward", "lateral"]
 Sampling = Literal["sp", "fl", "lf", "full"]
@@ -16,9 +18,9 @@ Pose = dict[str, float] | list[float]
 class Until(Record, frozen=True):
     """What ends a state: a hold time, or a contact with an optional time-out."""
 
-    time: float | None = None
+    time: Seconds | None = None
     contact: str | None = None
-    timeout: float | None = None
+    timeout: Seconds | None = None
 
 
 class Reach(Record, frozen=True):
@@ -30,12 +32,12 @@ class Reach(Record, frozen=True):
     state's own time is tried again from the state `again` (this one by default).
     """
 
-    joints: float | None = None
-    still: float | None = None
+    joints: Positive | None = None
+    still: Positive | None = None
     lean: tuple[float, float] | None = None
-    side: float | None = None
+    side: Positive | None = None
     feet: bool = False
-    within: float = 1.0
+    within: Seconds = 1.0
     again: str | None = None
 
 
@@ -47,7 +49,7 @@ class State(Record, frozen=True):
 
     name: str
     until: Until
-    move: float = 0.0
+    move: Seconds = 0.0
     reach: Reach | None = None
     pose: Pose = {}
     next: str | None = None
@@ -70,8 +72,8 @@ class Perturbation(Record, frozen=True):
     pose: dict[str, float] = {}
     opposite: bool = False
     hold: float = 0.0
-    sample: float = 1.0
-    limit: float = 20.0
+    sample: Positive = 1.0
+    limit: NotNegative = 20.0
 
 
 class Balance(Record, frozen=True):
@@ -89,15 +91,15 @@ class Balance(Record, frozen=True):
     sampling: Sampling = "full"
     centred: bool = False
     from_last: bool = True
-    keep: float = 0.7
-    regularisation: float = 1e-3
-    weights: dict[str, float] = {}
-    drift: float = 0.5
-    replan: float | None = None
-    footfalls: int = 0
-    rounds: int = 0
-    miss: float = 0.3
-    horizon: float = 1.5
+    keep: NotNegative = 0.7
+    regularisation: NotNegative = 1e-3
+    weights: dict[str, NotNegative] = {}
+    drift: NotNegative = 0.5
+    replan: Positive | None = None
+    footfalls: Count = 0
+    rounds: Count = 0
+    miss: NotNegative = 0.3
+    horizon: Annotated[float, Meta(gt=0.0, le=60.0)] = 1.5
 
 
 class SpeedRow(Record, frozen=True):
@@ -120,11 +122,11 @@ class Speed(Record, frozen=True):
     rows: list[SpeedRow]
     default: float | None = None
     begin: float = 0.0
-    ramp: float = 1.0
+    ramp: Positive = 1.0
     correct: str | None = None
     also: dict[str, float] = {}
     gain: float = 0.0
-    limit: float = 0.0
+    limit: NotNegative = 0.0
 
 
 class Side(Record, frozen=True):
@@ -135,8 +137,8 @@ class Side(Record, frozen=True):
     subtracted in the others. `limit` is the largest speed, m/s; it grows by `ramp` a step.
     """
 
-    limit: float
-    ramp: float = 1.0
+    limit: NotNegative
+    ramp: Positive = 1.0
     scale: dict[str, float] = {}
     spread: dict[str, float] = {}
     targets: dict[str, float] = {}
@@ -153,13 +155,13 @@ class Turn(Record, frozen=True):
     `speed` m/s, and none tighter than `radius` m.
     """
 
-    limit: float
-    ramp: float = 1000.0
+    limit: NotNegative
+    ramp: Positive = 1000.0
     feed: float = 0.0
     spread: dict[str, float] = {}
     perturbation: str | None = None
-    speed: float = 0.0
-    radius: float = 0.0
+    speed: NotNegative = 0.0
+    radius: NotNegative = 0.0
 
 
 class Heading(Record, frozen=True):
@@ -167,7 +169,7 @@ class Heading(Record, frozen=True):
 
     perturbation: str
     gain: float
-    limit: float = 10.0
+    limit: NotNegative = 10.0
 
 
 class Incline(Record, frozen=True):
@@ -178,9 +180,9 @@ class Incline(Record, frozen=True):
 
     perturbation: str
     gain: float
-    limit: float
+    limit: NotNegative
     variable: str = "up.forward"
-    rate: float = 0.1
+    rate: Part = 0.1
 
 
 class Slip(Record, frozen=True):
@@ -192,7 +194,7 @@ class Slip(Record, frozen=True):
 
     states: list[str]
     style: str
-    least: float
+    least: NotNegative
 
 
 class Style(Record, frozen=True):
@@ -205,7 +207,7 @@ class Style(Record, frozen=True):
     name: str
     scale: dict[str, float] = {}
     targets: dict[str, float] = {}
-    steps: float = 8.0
+    steps: Positive = 8.0
     least: float = 0.0
     most: float = 1.0
 
@@ -229,7 +231,7 @@ class Upright(Record, frozen=True):
     forward_rate: dict[str, float] = {}
     right: dict[str, float] = {}
     right_rate: dict[str, float] = {}
-    limit: float = 25.0
+    limit: NotNegative = 25.0
     states: list[str] | None = None
 
 
@@ -248,7 +250,7 @@ class GaitFile(Record, frozen=True):
     pose: dict[str, float] = {}
     mirror: bool = False
     loop: bool = True
-    tries: int = 3
+    tries: Annotated[int, Meta(ge=1, le=1_000)] = 3
     lying: Literal["front", "back"] | None = None
     down: bool = False
     upright: Upright | None = None
@@ -262,6 +264,13 @@ class GaitFile(Record, frozen=True):
     slip: Slip | None = None
     style: list[Style] = []
     torso_servo: TorsoServo | None = None
+
+    @property
+    def attitude(self) -> bool:
+        """True where the base's attitude decides: feedback balances, or a state asks for a lean."""
+        reaches = (state.reach for state in self.state if state.reach is not None)
+        leans = any(reach.lean is not None or reach.side is not None for reach in reaches)
+        return self.upright is not None or leans
 
     @property
     def staged(self) -> bool:

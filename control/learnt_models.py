@@ -5,13 +5,16 @@ With them every step is planned from one rollout, the first one too: a small com
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Annotated
 
 import msgspec
 import numpy as np
+from msgspec import Meta
 
-from hal.config import Record
+from hal.config import Count, Record, check_finite
 from hal.errors import ConfigError
 from hal.joints import Array
+from hal.small_file import read_small
 
 
 class LearntModel(Record, frozen=True):
@@ -24,10 +27,10 @@ class LearntModel(Record, frozen=True):
         steps: Steps that both are the mean of.
     """
 
-    phase: int
+    phase: Count
     start: list[float]
     jacobian: list[list[float]]
-    steps: int = 1
+    steps: Annotated[int, Meta(ge=1)] = 1
 
 
 class ModelFile(Record, frozen=True):
@@ -85,15 +88,20 @@ class LearntModels:
             ConfigError: It is no such file, or its models are of other variables.
         """
         try:
-            file = msgspec.json.decode(path.read_bytes(), type=ModelFile)
-        except (OSError, msgspec.DecodeError) as error:
+            text = read_small(path)
+            file = msgspec.json.decode(text, type=ModelFile)
+            check_finite(path, msgspec.json.decode(text))
+        except OSError as error:
+            raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
+        except msgspec.DecodeError as error:
             raise ConfigError(f"{path}: no file of step models: {error}") from None
         if (file.regulation, file.perturbations) != (regulation, perturbations):
             raise ConfigError(
                 f"{path}: models of {', '.join(file.regulation)} by {', '.join(file.perturbations)}"
                 "; the walk has others. Learn them anew: `windup walk ... --learn FILE`"
             )
-        for model in file.models:
+        for number, model in enumerate(file.models):
+            _check_shape(path, number, model, file)
             self.add(model.phase, np.array(model.start), np.array(model.jacobian), model.steps)
 
     def write(self, path: Path, regulation: list[str], perturbations: list[str]) -> None:
@@ -114,3 +122,17 @@ class LearntModels:
     @staticmethod
     def _nearest(entries: list[tuple[Array, Array, int]], start: Array) -> int:
         return int(np.argmin([float(np.linalg.norm(known - start)) for known, _, _ in entries]))
+
+
+def _check_shape(path: Path, number: int, model: LearntModel, file: ModelFile) -> None:
+    """Raise unless a model is as large as its file says, and its start as those of the others.
+
+    Raises:
+        ConfigError: It is not.
+    """
+    rows, columns = len(file.regulation), len(file.perturbations)
+    if [len(row) for row in model.jacobian] != [columns] * rows:
+        raise ConfigError(f"{path}: models[{number}].jacobian: give {rows} x {columns} numbers")
+    if len(model.start) != len(file.models[0].start):
+        wanted = len(file.models[0].start)
+        raise ConfigError(f"{path}: models[{number}].start: give {wanted} numbers, as the first")

@@ -115,4 +115,5 @@ class Planted:
                 said.append(f"{names[0]} turns the other way (is its sign right in robot.toml?)")
             else:
                 said.append(f"{' and '.join(names)} are swapped (are their ids right there?)")
-        return f"{', or '.join(said)}: the soles seem {np.degrees(self._worst):.0f} degrees off the floor"
+        seen = f"the soles seem {np.degrees(self._worst):.0f} degrees off the floor"
+        return f"{', or '.join(said)}: {seen}"

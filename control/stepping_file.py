@@ -5,12 +5,10 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from control.step_decision import Damping, Reach, StepRule, find_rule
-from hal.config import Record
+from hal.config import Part, Positive, Record, Seconds
 from hal.joints import Array
 
-Part = Annotated[float, Meta(ge=0.0, le=1.0)]
-Seconds = Annotated[float, Meta(ge=0.0)]
-Metres = Annotated[float, Meta(ge=0.0)]
+Metres = Annotated[float, Meta(ge=0.0, le=100.0)]
 Support = Literal["hull", "capsule"]
 
 
@@ -42,8 +40,8 @@ class CatchTable(Record, frozen=True):
         slant: But to the side by no more than this part of that.
     """
 
-    back: Annotated[float, Meta(gt=0.0)]
-    slant: Annotated[float, Meta(gt=0.0)]
+    back: Positive
+    slant: Positive
 
     def meets(self, thrown: Array) -> bool:
         """Return whether it is `thrown` (2,) m, ahead and to the left, far enough."""
@@ -85,7 +83,7 @@ class Stepping(Record, frozen=True):
 
     stance: str
     reach: ReachTable
-    duration: Annotated[float, Meta(gt=0.0)]
+    duration: Positive
     lift: Metres
     up: Part = 0.5
     early: Part = 0.6
@@ -94,18 +92,18 @@ class Stepping(Record, frozen=True):
     settle: Seconds = 0.4
     lead: Seconds = 0.0
     slack: float = 0.0
-    gain: Annotated[float, Meta(gt=0.0)] = 1.0
+    gain: Positive = 1.0
     balance: float = 0.0
     trunk: float = 0.0
     way: str = "momentum"
     rule: dict[str, RuleTable] = {}
     patience: Seconds = 0.6
     comfort: Metres = 0.015
-    rate: Annotated[float, Meta(gt=0.0)] | None = None
+    rate: Positive | None = None
     support: Support = "hull"
     clear: Metres = 0.015
     catch: CatchTable | None = None
-    torque: Annotated[float, Meta(gt=0.0)] = 1e3
+    torque: Positive = 1e3
 
     def find_rule(self, name: str) -> StepRule:
         """Return a rule by its name, with the dampings of this robot where it has its own.

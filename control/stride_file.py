@@ -1,15 +1,8 @@
 """`stride.toml` of a robot: how it walks as the inverted pendulum plans it. SI units."""
 
-from typing import Annotated
-
-from msgspec import Meta
-
 from control.pendulum import Pace
-from hal.config import Record
-
-Positive = Annotated[float, Meta(gt=0.0)]
-Gain = Annotated[float, Meta(ge=0.0)]
-Part = Annotated[float, Meta(ge=0.0, le=1.0)]
+from hal.config import NotNegative as Gain
+from hal.config import Part, Positive, Record
 
 
 class Stride(Record, frozen=True, kw_only=True):

@@ -11,6 +11,7 @@ import numpy as np
 
 from control.gait_file import TorsoServo as TorsoServoRecord
 from hal.controller import PolicyInput
+from hal.errors import UsageError
 from hal.joints import Array, Joints
 
 
@@ -33,8 +34,17 @@ class TorsoServo:
 
     @classmethod
     def of(cls, record: TorsoServoRecord, joints: Joints) -> "TorsoServo":
-        """Return the servo that a gait file describes."""
+        """Return the servo that a gait file describes.
+
+        Raises:
+            UsageError: Its joint has no stiffness, so that no goal moves it.
+        """
         j = joints.index(record.joint)
+        if not joints.stiffness[j] > 0.0:
+            raise UsageError(
+                f"joint {record.joint!r} has no stiffness and cannot keep the torso upright; "
+                "give it some in robot.toml, or walk with --no-torso-servo"
+            )
         return cls(j, radians(record.angle), float(joints.damping[j] / joints.stiffness[j]))
 
     def apply(self, pose: Array, state: PolicyInput) -> Array:

@@ -6,6 +6,7 @@ from typing import Protocol, runtime_checkable
 from hal.command import JointCommand
 from hal.joints import Joints
 from hal.observation import Observation
+from hal.torque_loss import Loss
 from hal.torque_state import TorqueState
 
 
@@ -82,6 +83,26 @@ class Rearmable(Protocol):
         Raises:
             PortError: A port is still gone.
         """
+        ...
+
+
+@runtime_checkable
+class TorqueWatched(Protocol):
+    """A backend that sees whether its joints still have their torque; a twin's always do."""
+
+    @property
+    def lost(self) -> Mapping[str, str]:
+        """URL of each port that is gone, to what was seen of it."""
+        ...
+
+    @property
+    def lost_joints(self) -> Mapping[str, Loss]:
+        """Joint name to how it has lost its torque since it was armed."""
+        ...
+
+    @property
+    def doubtful_joints(self) -> Mapping[str, str]:
+        """The joints of which nobody knows whether they have torque, and what to do about each."""
         ...
 
 

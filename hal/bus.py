@@ -10,16 +10,19 @@ import numpy.typing as npt
 from hal.errors import HardwareError, NoAnswerError, UsageError
 from hal.exchange import Exchange
 from hal.families import DYNAMIXEL_X, Family
+from hal.heartbeat import Heartbeat
 from hal.joints import Mask
 from hal.port import Port
 from hal.protocols.cyclic import CyclicRead
-from hal.protocols.protocol2 import Span
+from hal.protocols.protocol2 import Span, Status
 from hal.registers import Register
 
 Counts = npt.NDArray[np.int64]
 
 REBOOT_TIME = 0.6
 """How long a servo is deaf after a reboot, s."""
+BEAT = 20e-3
+"""Longest time between two heartbeats while waiting, s."""
 EEPROM_TIME = 20e-3
 """How long a Feetech servo writes its EEPROM after it has answered, s."""
 
@@ -45,6 +48,8 @@ class Bus:
         port: The port.
         family: Its servos.
         exchange: Its cyclic traffic and error statistics.
+        heartbeat: Called before every transaction but those of the exchange itself, and while
+            `wait` waits: somebody may be watching that this program lives.
     """
 
     def __init__(self, port: Port, family: Family = DYNAMIXEL_X) -> None:
@@ -57,7 +62,17 @@ class Bus:
         """Go on over another port, as after an adapter was unplugged; statistics go on too."""
         self.port = port
         self.exchange.move_to(port)
-        self._link = self.family.dialect.link(port)
+        heartbeat, self._link = self.heartbeat, self.family.dialect.link(port)
+        self.heartbeat = heartbeat
+
+    @property
+    def heartbeat(self) -> Heartbeat:
+        """What is called meanwhile; the maker's SDK calls it before each attempt."""
+        return self._link.heartbeat
+
+    @heartbeat.setter
+    def heartbeat(self, heartbeat: Heartbeat) -> None:
+        self._link.heartbeat = heartbeat
 
     def ping(self, id: int) -> int:
         """Return the model number of servo `id`.
@@ -107,6 +122,7 @@ class Bus:
 
         Plain by default: behind a missing servo a fast answer is silent.
         """
+        self.heartbeat()
         spans = [Span(id, register.address, register.size) for id in ids]
         read = self.family.dialect.read(spans, fast and self.fast(ids))
         self.exchange.request(read)
@@ -118,16 +134,33 @@ class Bus:
 
         One transaction in protocol 2 and on MX that answered `probe_fast`, else one a servo.
         """
+        return {id: status.params for id, status in self.statuses(spans).items()}
+
+    def statuses(self, spans: Sequence[Span]) -> dict[int, Status]:
+        """Return the same with the error bytes of the answers."""
+        self.heartbeat()
         read = self.family.dialect.read(spans, self.fast([span.id for span in spans]))
         self.exchange.request(read)
         valid = self.exchange.collect()
-        return {span.id: read.params(row) for row, span in enumerate(spans) if valid[row]}
+        return {
+            span.id: Status(span.id, int(read.error[row]), read.params(row))
+            for row, span in enumerate(spans)
+            if valid[row]
+        }
 
     def sync_write(self, register: Register, counts: Mapping[int, int]) -> None:
         """Write one register of several servos at once. Nobody answers: read back what matters."""
         data = {id: register.encode(value) for id, value in counts.items()}
         frames = self.family.dialect.sync_write(data, register.address, register.size)
         self.exchange.send(frames)
+
+    def wait(self, seconds: float) -> None:
+        """Let time pass."""
+        clock = self.port.clock
+        until = clock.now() + seconds
+        while (now := clock.now()) < until:
+            self.heartbeat()
+            clock.wait_until(min(now + BEAT, until))
 
     def fast(self, ids: Sequence[int]) -> bool:
         """Return whether these servos answered `probe_fast`."""
@@ -150,7 +183,7 @@ class Bus:
     def reboot(self, id: int) -> None:
         """Restart a servo (torque off, RAM registers at their defaults) and wait for it."""
         self._link.reboot(id)
-        self._wait(REBOOT_TIME)
+        self.wait(REBOOT_TIME)
         self._link.ping(id)
 
     def set_id(self, id: int, new: int) -> None:
@@ -184,7 +217,7 @@ class Bus:
     def factory_reset(self, id: int, keep: int = 0x02) -> None:
         """Reset a servo; `keep` 0xFF nothing, 0x01 the id, 0x02 id and baud rate."""
         self._link.factory_reset(id, keep)
-        self._wait(REBOOT_TIME)
+        self.wait(REBOOT_TIME)
 
     def _scan(self, baud: int) -> list[Found]:
         self.port.baud = baud
@@ -203,7 +236,7 @@ class Bus:
         self._link.write(id, lock.address, bytes([0]))
         try:
             yield
-            self._wait(EEPROM_TIME)
+            self.wait(EEPROM_TIME)
         finally:
             self._link.write(id if after is None else after, lock.address, bytes([1]))
 
@@ -222,6 +255,3 @@ class Bus:
         except HardwareError:
             return True
         return True
-
-    def _wait(self, seconds: float) -> None:
-        self.port.clock.wait_until(self.port.clock.now() + seconds)

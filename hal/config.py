@@ -2,14 +2,29 @@
 
 import re
 import tomllib
+from collections.abc import Iterator
+from math import isfinite
 from pathlib import Path
-from typing import TypeVar
+from typing import Annotated, Any, Final, TypeVar
 
 import msgspec
+from msgspec import Meta
 
 from hal.errors import ConfigError, suggest
+from hal.small_file import read_small
 
 T = TypeVar("T")
+LARGEST: Final = 1e12
+"""No number of a file is beyond this, in any unit."""
+
+Positive = Annotated[float, Meta(gt=0.0)]
+NotNegative = Annotated[float, Meta(ge=0.0)]
+Part = Annotated[float, Meta(ge=0.0, le=1.0)]
+Count = Annotated[int, Meta(ge=0, le=10_000)]
+Seconds = Annotated[float, Meta(ge=0.0, le=86_400.0)]
+Delay = Annotated[float, Meta(ge=0.0, le=1.0)]
+Length = Annotated[float, Meta(gt=0.0, le=100.0)]
+Tilt = Annotated[float, Meta(gt=0.0, le=4.0)]
 
 
 class Record(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
@@ -19,11 +34,13 @@ class Record(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tr
 def load_toml(path: Path, record: type[T]) -> T:
     """Return the file at `path` as a `record`.
 
+    Numbers have to be finite: TOML knows `nan` and `inf`, and no key of ours does.
+
     Raises:
         ConfigError: The file is missing, is not TOML, or does not fit the record.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_small(path).decode()
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
@@ -32,10 +49,36 @@ def load_toml(path: Path, record: type[T]) -> T:
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ConfigError(f"{path}: not TOML: {error}") from None
+    check_finite(path, data)
     try:
         return msgspec.convert(data, record)
     except msgspec.ValidationError as error:
         raise ConfigError(f"{path}: {_explain(str(error), record)}") from None
+
+
+def check_finite(path: Path, data: Any) -> None:
+    """Raise unless every number in the `data` of a file is finite.
+
+    Raises:
+        ConfigError: One is not; the message names the file and the key.
+    """
+    for key, number in _numbers(data, ""):
+        if not -LARGEST <= number <= LARGEST:
+            infinite = isinstance(number, float) and not isfinite(number)
+            why = f"{number:g} is not finite" if infinite else f"no number is beyond {LARGEST:g}"
+            raise ConfigError(f"{path}: {key}: {why}")
+
+
+def _numbers(data: Any, key: str) -> Iterator[tuple[str, float]]:
+    """Yield every number with its key, as `joint[3].lower`."""
+    if isinstance(data, dict):
+        for name, item in data.items():
+            yield from _numbers(item, f"{key}.{name}" if key else name)
+    elif isinstance(data, list):
+        for index, item in enumerate(data):
+            yield from _numbers(item, f"{key}[{index}]")
+    elif isinstance(data, int | float):
+        yield key, data
 
 
 def _explain(message: str, record: type) -> str:

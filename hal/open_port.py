@@ -7,11 +7,13 @@ import importlib
 import os
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import serial
 from serial.tools import list_ports
 
 from hal.errors import PortError, UsageError
+from hal.network_port import NETWORK, NetworkPort
 from hal.port import GONE, DevicePort, Port
 
 BAUD = 1_000_000
@@ -29,7 +31,8 @@ def open_port(url: str, baud: int = BAUD, *, exclusive: bool = True) -> Port:
     """
     if "://" in url:
         _check_handler(url)
-        return Port(_open(url, url, baud, exclusive), url)
+        opened = _open(url, url, baud, exclusive)
+        return NetworkPort(opened, url) if url.startswith(NETWORK) else Port(opened, url)
     device = _by_serial_number(url[4:]) if url.startswith("usb:") else url
     if exclusive:
         _check_holder(device)
@@ -54,6 +57,10 @@ def _open(target: str, url: str, baud: int, exclusive: bool) -> Any:
 def _check_handler(url: str) -> None:
     """Find what pyserial hides: a handler that is missing, or whose import fails."""
     scheme = url.split("://", 1)[0].lower()
+    try:
+        _ = urlsplit(url).port
+    except ValueError as error:
+        raise UsageError(f"{url}: {error}") from None
     name = f"protocol_{scheme}"
     for package in serial.protocol_handler_packages:
         module = f"{package}.{name}"

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from hal.errors import PortError, UsageError
+from hal.network_port import NETWORK
 from hal.open_port import stable_url
 from hal.port import Port
 
@@ -35,14 +36,26 @@ class Replug:
         self._url = stable_url(url)
         self._next = 0.0
 
+    @property
+    def returns(self) -> bool:
+        """False for a network: connecting may take seconds, in which a loop would stand still."""
+        return not self._url.startswith(NETWORK)
+
     def lose(self, now: float) -> None:
         """Close the port, which has failed."""
         self.close()
         self._next = now + RETRY
 
+    def hurry(self) -> None:
+        """Try at the next moment: somebody waits."""
+        self._next = 0.0
+
     def again(self, now: float) -> Port | None:
-        """Return the port opened anew, or None if it is not back or was tried a moment ago."""
-        if now < self._next:
+        """Return the port opened anew, or None if it is not back or was tried a moment ago.
+
+        A port that does not return is not tried.
+        """
+        if now < self._next or not self.returns:
             return None
         self._next = now + RETRY
         try:

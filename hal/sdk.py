@@ -16,6 +16,7 @@ from dynamixel_sdk.port_handler import PortHandler
 from dynamixel_sdk.protocol2_packet_handler import Protocol2PacketHandler
 
 from hal.errors import CorruptAnswerError, NoAnswerError, RefusedError
+from hal.heartbeat import no_heartbeat
 from hal.port import Port
 from hal.protocols import protocol2
 
@@ -110,6 +111,9 @@ class Link(ABC):
     """One servo at a time, verified and slow: what configuration needs.
 
     Everything raises `NoAnswerError`, `CorruptAnswerError`, `RefusedError` or `PortError`.
+
+    Attributes:
+        heartbeat: Called before each attempt: a silent servo takes several.
     """
 
     timed_out: int = COMM_RX_TIMEOUT
@@ -117,6 +121,7 @@ class Link(ABC):
 
     def __init__(self, port: Port, packets: Any) -> None:
         self._port, self._packets = SdkPort(port), packets
+        self.heartbeat = no_heartbeat
 
     @abstractmethod
     def ping(self, id: int, attempts: int = ATTEMPTS) -> int:
@@ -151,6 +156,7 @@ class Link(ABC):
         """Return value and error byte of a call that ends in (value, result, error)."""
         result = COMM_SUCCESS
         for _ in range(attempts):
+            self.heartbeat()
             with self._released():
                 value, result, error = call()
             if result == COMM_SUCCESS:

@@ -1,12 +1,12 @@
 """Which joint's servo is unwell, and what of."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 
 import numpy as np
 import numpy.typing as npt
 
-from hal.bus import Bus
-from hal.errors import HardwareError
+from hal.errors import PortError
 from hal.families import family_of
 from hal.joints import Joints
 from hal.servo_line import ServoLine
@@ -19,6 +19,8 @@ ERROR_KINDS = ("no answer", "corrupt", "resynchronised", "implausible")
 
 class ServoAlerts:
     """The servos that signal an error, by joint name, while it lasts.
+
+    An alert is no shutdown: whether a servo still drives, `TorqueCheck` finds out.
 
     Attributes:
         errors: (n,) error bytes of the last answers.
@@ -41,29 +43,31 @@ class ServoAlerts:
             self._mask[line.rows] = line.bus.family.alert
 
     def update(self, links: Sequence[ServoLink]) -> None:
-        """Explain the servos that newly signal an error, and forget the others."""
+        """Explain the servos that newly signal an error, and forget those that do not any more."""
         if not self.now and not self.errors.any():
             return
         alert = (self.errors & self._mask) != 0
-        known = {name for name in self.now if alert[self._joints.index(name)]}
-        self.now = {name: self.now[name] for name in known}
-        lines = [link.line for link in links if link.lost is None]
-        for line in lines:
-            for id, row in zip(line.ids, line.rows.tolist(), strict=True):
-                name = self._joints.names[row]
-                if alert[row] and name not in known:
-                    self.now[name] = _explain(line.bus, id, int(self.errors[row] & self._mask[row]))
+        self.now = {n: said for n, said in self.now.items() if alert[self._joints.index(n)]}
+        for line in [link.line for link in links if link.lost is None]:
+            rows = np.flatnonzero(alert[line.rows]).tolist()
+            if new := [row for row in rows if self._name(line, row) not in self.now]:
+                with suppress(PortError):  # the next request sees that too
+                    self._explain(line, new)
 
+    def _name(self, line: ServoLine, row: int) -> str:
+        return self._joints.names[line.rows[row]]
 
-def _explain(bus: Bus, id: int, error: int) -> tuple[str, ...]:
-    family = bus.family
-    bits = error
-    if not family.errors_in_answers:
-        try:
-            bits = bus.read(id, family.registers["hardware_error"])
-        except HardwareError:
-            bits = 0
-    return family.explain(bits) or (UNKNOWN,)
+    def _explain(self, line: ServoLine, rows: Sequence[int]) -> None:
+        """Take down what the servos in `rows` of a line signal; who does not say is asked again."""
+        family = line.bus.family
+        bits = self.errors[line.rows[rows]] & family.alert
+        said = np.ones(len(rows), dtype=bool)
+        if not family.errors_in_answers:
+            ids = [line.ids[row] for row in rows]
+            counts, said = line.bus.sync_read(ids, family.registers["hardware_error"])
+            bits = counts.astype(np.uint8)
+        for row, code in zip(np.array(rows)[said], bits[said].tolist(), strict=True):
+            self.now[self._name(line, row)] = family.explain(code) or (UNKNOWN,)
 
 
 def count_errors(links: Sequence[ServoLink], watchdog_trips: int) -> dict[str, int]:

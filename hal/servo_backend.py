@@ -6,30 +6,36 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from hal.backend import Clock
+from hal.bus import Bus
 from hal.clock import WallClock
 from hal.command import JointCommand, shifted_goal
 from hal.coupling import Coupling, Couplings
 from hal.errors import HardwareError, PortError
 from hal.exchange import TURNAROUND
+from hal.heartbeat import Heartbeat, beating, no_heartbeat
 from hal.imu.opencr import OpenCr
 from hal.imu.source import ImuSource
-from hal.joints import Array, Joints, Mask
-from hal.observation import ImuState, JointState, Observation
+from hal.imu_link import ImuLink
+from hal.joint_readings import JointReadings
+from hal.joint_torque import JointTorque
+from hal.joints import Array, Joints
+from hal.observation import Observation
 from hal.open_port import open_port
 from hal.port import Port
 from hal.servo_alerts import ServoAlerts, count_errors
 from hal.servo_line import ServoLine
-from hal.servo_link import BusPort, ImuLink, ServoLink
+from hal.servo_link import BusPort, ServoLink
 from hal.servo_model import ServoMount
 from hal.servo_setup import lines_of, names_of, open_links, set_up
 from hal.stop_button import StopButton
+from hal.torque_loss import Loss
 from hal.torque_state import TorqueState
 from hal.units import Units
 from hal.wiring import check_mounts
 
 __all__ = ["BusPort", "ServoBackend"]
 
-ATTEMPTS = 10
+ATTEMPTS = 30
 
 
 class ServoBackend:
@@ -55,8 +61,12 @@ class ServoBackend:
 
     Attributes:
         links: The buses, from `connect` to `disconnect`.
-        clamps: Clamp name to the number of commands it changed; "unarmed" are goals withheld.
+        readings: What the servos last said.
         button: The buttons of the OpenCR: any of them is a stop.
+        clamps: Clamp name to the number of commands it changed; "unarmed" and "lost" are goals
+            withheld, of a bus, and of joints that may have lost their torque.
+        lost_joints: Joint name to how it has lost its torque since the robot was armed. It gets
+            no goal until `rearm`.
         watchdog_trips: Servos that had frozen for silence, and were cleared.
         arming_stiffness: (n,) N m/rad with which torque comes on.
         heartbeat: Called again and again while torque is switched, which takes a while.
@@ -86,25 +96,26 @@ class ServoBackend:
         self._imu_link: ImuLink | None = None
         self._alerts = ServoAlerts(joints, self.mounts)
         self.button = StopButton()
+        self._torque = JointTorque(joints, self._couplings)
+        self.lost_joints: Mapping[str, Loss] = {}
         self.clamps: Counter[str] = Counter({"goal": 0, "gain": 0})
         self.watchdog_trips = 0
         n = len(joints)
-        self._counts = np.full((3, n), np.nan)
-        self._health = np.full((3, n), np.nan)
-        self._answered = np.full(n, -np.inf)
-        self._imu_at = -np.inf
+        self.readings = JointReadings(self.units, self._couplings, imu, contacts)
         self.arming_stiffness: Array = joints.stiffness
-        self._patience = 0.9 * watchdog
-        self._contacts = np.zeros(contacts)
         self._realised = np.empty((2, n))
         self._realised[1] = self._couplings.joint_gains(self.units.damping)
         self._gains = b""
-        self.heartbeat: Callable[[], None] = lambda: None
+        self.heartbeat: Heartbeat = no_heartbeat
 
     @property
     def lines(self) -> list[ServoLine]:
         """The servos of each bus."""
         return [link.line for link in self.links]
+
+    @property
+    def _buses(self) -> list[Bus]:
+        return [link.bus for link in self.links]
 
     @property
     def alert_kinds(self) -> tuple[str, ...]:
@@ -121,6 +132,11 @@ class ServoBackend:
         """URL of each port that is gone, to what was seen of it."""
         return {link.bus.port.url: link.lost for link in self.links if link.lost is not None}
 
+    @property
+    def doubtful_joints(self) -> Mapping[str, str]:
+        """The joints that are silent, or whose port is gone, and what to do about each."""
+        return self._torque.doubts(self.links)
+
     def connect(self) -> None:
         """Open the ports. Nothing moves.
 
@@ -129,7 +145,7 @@ class ServoBackend:
             UsageError: Some ports live on the wall's time and some in a virtual world.
         """
         self.disconnect()
-        build = lines_of(self.mounts, self.units, self.board)
+        build = lines_of(self.joints, self.mounts, self.units, self.board)
         self.links, self._imu_link, self.clock = open_links(
             build, self._ports, self.imu, self._watchdog, self._opener
         )
@@ -142,24 +158,27 @@ class ServoBackend:
             HardwareError: Something is not as wired; nothing has been written.
         """
         buses = {link.line.mounts[0].bus: link.bus for link in self.links}
-        set_up(self.joints, self.mounts, buses, self.board)
+        with beating(self._buses, self.heartbeat):
+            set_up(self.joints, self.mounts, buses, self.board)
         for line in self.lines:
             line.bus.exchange.turnaround = TURNAROUND
-            line.probe_fast()
-        began = self.clock.now()
-        for _ in range(ATTEMPTS):
-            self.read()
-            if (self._answered > began).all():
-                break
-        else:
-            silent = names_of(self.joints, self._answered <= began)
+            line.reads.probe_fast()
+        if silent := self._silent():
             raise HardwareError(f"no answer to cyclic reads from {silent}; run `windup scan`")
         self.read_health()
 
     def read_health(self) -> None:
         """Read voltage and temperature of every servo now, where its port is there."""
-        for link in self.links:
-            link.read_health(self._health)
+        self.readings.read_health(self.links)
+
+    def _silent(self) -> str:
+        """Read until every joint has answered, some times at most; return the names of others."""
+        began = self.clock.now()
+        for _ in range(ATTEMPTS):
+            self.read()
+            if (self.readings.answered > began).all():
+                break
+        return names_of(self.joints, self.readings.answered <= began)
 
     def request(self) -> None:
         """Ask every joint for its state."""
@@ -168,18 +187,17 @@ class ServoBackend:
 
     def collect(self) -> Observation:
         """Return the state last asked for."""
-        late = False
+        calm = True
         for link in self.links:
-            valid = link.collect(self._counts, self._health, self._alerts.errors)
-            late |= self._note_answers(link.line, valid, link.torque.armed)
-        if late:
-            self.watchdog_trips += sum(link.clear_watchdogs() for link in self.links)
-        self._alerts.update(self.links)
+            self.readings.collect(link, self._alerts.errors)
+            calm &= link.calm
+        if not calm or self._alerts.now:
+            self._see_to(self.links)
         if self.board is not None:
             self.button.look(self.links)
         if self._imu_link is not None:
             self._imu_link.poll()
-        return self._observe()
+        return self.readings.observe(self.clock.now(), self.links)
 
     def read(self) -> Observation:
         """Return the present state: `request` and `collect`."""
@@ -196,15 +214,17 @@ class ServoBackend:
             goal = self._couplings.servos(goal)
         counts = np.rint(self.units.counts(goal))
         inside = np.minimum(np.maximum(counts, 0.0), self.units.last)
-        if not np.array_equal(inside, counts):
+        if (inside != counts).any():
             self.clamps["goal"] += 1
-        for link in self.links:
-            if not link.send_goals(inside[link.line.rows]):
-                self.clamps["unarmed"] += 1
-        real = np.zeros_like(block)
+        real = np.zeros(block.shape)
         angle = self.units.angle(inside)
         real[0] = self._couplings.joints(angle) if self._couplings else angle
         real[3:] = self._realised
+        for link in self.links:
+            if (clamp := link.send_goals(inside[link.line.rows])) is not None:
+                self.clamps[clamp] += 1
+            if link.check.withheld is not None:
+                real[3:, link.line.rows[link.check.withheld]] = 0.0
         return JointCommand(real)
 
     def goal_counts(self, pose: Array) -> Array:
@@ -221,18 +241,17 @@ class ServoBackend:
         """Switch all torque, on at the present pose only, and return what was read back.
 
         Raises:
-            HardwareError: Torque on, and a servo cannot be read, or a port was gone since the
-                robot was armed; all torque is off.
+            HardwareError: Torque on, and a servo cannot be read, or a port was gone or a joint
+                lost its torque since the robot was armed; all torque is off.
         """
         self._gains = b""
-        if on:
+        with beating(self._buses, self.heartbeat):
+            if not on:
+                return self._torque.off(self.links, self.heartbeat)
             self.button.forget()
-            try:
-                return self._switch_on()
-            except HardwareError:
-                self.set_torque(False)
-                raise
-        return self._joined([link.switch_off() for link in self.links])
+            wanted = self._couplings.servo_gains(self.arming_stiffness)
+            gains, _ = self.units.p_registers(wanted)
+            return self._torque.on(self.links, gains, self.heartbeat)
 
     def rearm(self) -> TorqueState:
         """Check and set every servo again, then switch torque on at the present pose.
@@ -243,6 +262,7 @@ class ServoBackend:
             PortError: A port is still gone.
             HardwareError: Something is not as wired; torque stays off.
         """
+        self.heartbeat()
         if self.lost:
             gone = "; ".join(self.lost.values())
             raise PortError(f"cannot arm again: {gone}")
@@ -250,6 +270,7 @@ class ServoBackend:
         self.configure()
         for link in self.links:
             link.rearmed()
+        self.lost_joints = {}
         return self.set_torque(True)
 
     def disconnect(self) -> None:
@@ -260,59 +281,12 @@ class ServoBackend:
             self._imu_link.close()
         self.links, self._imu_link = [], None
 
-    def _switch_on(self) -> TorqueState:
-        if barred := [link.bus.port.url for link in self.links if link.barred]:
-            raise HardwareError(
-                f"{', '.join(barred)} went away since the robot was armed; torque stays off "
-                "until it is armed again"
-            )
-        wanted = self._couplings.servo_gains(self.arming_stiffness)
-        gains, _ = self.units.p_registers(wanted)
-        return self._joined([link.torque.on(gains[link.line.rows]) for link in self.links])
-
-    def _joined(self, states: list[TorqueState]) -> TorqueState:
-        """Return the torque of the joints from that of the servos of each bus.
-
-        A joint that two servos move is on, or unknown, if one of them is.
-        """
-        on: Mask = np.zeros(len(self.joints), dtype=bool)
-        unknown: Mask = np.zeros_like(on)
-        for link, state in zip(self.links, states, strict=True):
-            on[link.line.rows], unknown[link.line.rows] = state.on, state.unknown
-        on, unknown = self._couplings.any(on), self._couplings.any(unknown)
-        return TorqueState(on, unknown & ~on)
-
-    def _note_answers(self, line: ServoLine, valid: Mask, armed: bool) -> bool:
-        """Date the answers that came; return whether a watchdog may have fired before them."""
-        now = self.clock.now()
-        rows = line.rows if valid.all() else line.rows[valid]
-        silent = armed and rows.size > 0 and now - self._answered[rows].min() > self._patience
-        self._answered[rows] = now
-        if line.imu_fresh:
-            self._imu_at = now
-        return bool(silent)
-
-    def _observe(self) -> Observation:
-        now = self.clock.now()
-        position, velocity, torque = self.units.si(self._counts)
-        voltage, temperature, measured = self._health.copy()
-        answered = self._answered
-        if self._couplings:
-            position, velocity = map(self._couplings.joints, (position, velocity))
-            torque = self._couplings.torques(torque)
-            answered = self._couplings.oldest(answered)
-        age = now - answered
-        state = JointState(position, velocity, torque, voltage, temperature, age, now - measured)
-        return Observation(now, state, self._imu_state(now), self._contacts, None)
-
-    def _imu_state(self, now: float) -> ImuState | None:
-        if self.imu is not None:
-            return self.imu.state(now)
-        for link in self.links:
-            line = link.line
-            if line.board is not None and line.imu is not None:
-                return line.board.decode(line.imu, now - self._imu_at)
-        return None
+    def _see_to(self, links: Sequence[ServoLink]) -> None:
+        """Look after whoever was silent, signals an error or has lost its torque."""
+        self.lost_joints = self._torque.losses(links)
+        if any(link.check.woke for link in links):
+            self.watchdog_trips += sum(link.clear_watchdogs() for link in links)
+        self._alerts.update(links)
 
     def _send_gains(self, stiffness: Array) -> None:
         wanted = self._couplings.servo_gains(stiffness)

@@ -1,61 +1,46 @@
-"""The joints on one bus: which frames a cycle sends, and where in the arrays its answers go."""
+"""The joints on one bus: what their answers mean, and where in the arrays they go."""
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple
+from collections import deque
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from hal.bus import Bus
-from hal.families.family import Block
 from hal.imu.opencr import OpenCr
 from hal.joints import Array, Mask
+from hal.line_reads import Asked, LineReads, Longer
 from hal.plausibility import Plausibility
-from hal.protocols.cyclic import CyclicRead
-from hal.protocols.protocol2 import Span
+from hal.protocols.cyclic import CyclicWrite
 from hal.servo_model import ServoMount
 from hal.units import gain_groups
 
-HEALTH_EVERY = 10
-"""Voltage and temperature are read every so many cycles."""
-HEALTH = ("present_voltage", "present_temperature")
+LOWEST_OF = 2.0
+"""How far back `lowest_supply` looks, s."""
+ATTEMPTS = 5
+"""How often voltage and temperature are read until all have answered."""
 
 Rows = slice | npt.NDArray[np.intp]
-
-
-class Asked(NamedTuple):
-    """One of the reads of a line.
-
-    Attributes:
-        read: The read.
-        state_at: Which bytes of its payload are the servos' state; None where they are its
-            beginning.
-        block: What is read of each servo.
-        long: Rows read on to voltage and temperature, or None.
-    """
-
-    read: CyclicRead
-    state_at: npt.NDArray[np.intp] | None
-    block: Block
-    long: slice | None = None
 
 
 class ServoLine:
     """The servos of one bus within a robot of n joints.
 
-    A cycle is one transaction: the common read of the family, the fast one where all servos know
-    it, one read a servo where they know none. On a bus with an OpenCR it is a bulk read of servos
-    and board. Now and then servos are read further on, to their voltage and temperature: one
-    where the protocol lets a read differ between servos, else all.
-
     Attributes:
         bus: The bus.
         ids: Their ids.
         rows: Their joints' indices.
+        where: The same, as a slice where they are one.
         mounts: How they sit.
+        names: Their joints' names; () where nobody knows them.
+        reads: What a cycle asks.
         check: The plausibility of readings; None where nobody reads them.
         imu: The last bytes of the OpenCR, or None while there are none.
         imu_fresh: Did they come with the last answers?
+        answered: (servos,) bool: who answered the last cycle, believably or not.
+        calm: Did all servos answer, believably, and does none signal an error or lack torque?
+        slack: (servos,) bool: whose registers said that it does not drive, or has restarted; who
+            sees to it clears it.
         goals: Goal positions, counts.
         gains: How stiffness is set, on which rows, and the frames that do it.
     """
@@ -67,48 +52,44 @@ class ServoLine:
         rows: Sequence[int],
         board: OpenCr | None = None,
         check: Plausibility | None = None,
+        names: Sequence[str] = (),
     ) -> None:
         self.bus, self.mounts, self.check = bus, tuple(mounts), check
         self.ids = tuple(mount.id for mount in mounts)
         self.rows: npt.NDArray[np.intp] = np.array(rows, dtype=np.intp)
         # One bus in joint order is the rule, and a slice costs less than an index.
         whole = self.rows.tolist() == list(range(len(self.ids)))
-        self._where: Rows = slice(len(self.ids)) if whole else self.rows
-        self.board = board
+        self.where: Rows = slice(len(self.ids)) if whole else self.rows
+        self.names, self.board = tuple(names), board
         self.imu: bytes | None = None
-        self.imu_fresh = False
+        self.imu_fresh = self.calm = False
+        self.answered: Mask = np.zeros(len(self.ids), dtype=bool)
+        self.slack: Mask = np.zeros(len(self.ids), dtype=bool)
+        self._volt = bus.family.registers["present_voltage"].unit
+        self._volts: deque[tuple[float, float]] = deque(maxlen=100)
         family = bus.family
-        self.goals = family.dialect.write(self.ids, family.registers["goal_position"])
+        self.goals = self.goals_of(self.ids)
         self.gains = [
             (gain, at, family.dialect.write([self.ids[row] for row in at], gain.register))
             for gain, at in gain_groups(mounts)
         ]
-        self._block, self._long_block = family.cycle([mount.model for mount in mounts])
-        self._state = self._plain()
-        self._health = self._health_reads()
-        self._fast: Asked | None = None
-        self._fast_health = self._health
-        self._cycle = 0
-        self._broken_chain = False
-        self._asked = self._state
+        self.reads = LineReads(bus, self.ids, [mount.model for mount in mounts], board)
+        self._asked = self.reads.next()
 
-    def probe_fast(self) -> bool:
-        """Use the fast read from now on if all servos know it."""
-        if self.board is None and self.bus.probe_fast(self.ids):
-            self._fast = self._plain(fast=True)
-            if not self.bus.family.health_alone:
-                self._fast_health = self._health_reads(fast=True)
-        return self._fast is not None
+    def who(self, rows: Iterable[int]) -> str:
+        """Return the names of some servos, as "l_knee (id 13)" or "id 13"."""
+        if not self.names:
+            return ", ".join(f"id {self.ids[row]}" for row in rows)
+        return ", ".join(f"{self.names[row]} (id {self.ids[row]})" for row in rows)
+
+    def goals_of(self, ids: Sequence[int]) -> CyclicWrite:
+        """Return what sends goals, counts, to some of the servos."""
+        family = self.bus.family
+        return family.dialect.write(ids, family.registers["goal_position"])
 
     def request(self) -> None:
         """Ask all servos of the line, and the board."""
-        self._cycle += 1
-        fast = self._fast if not self._broken_chain else None
-        if self._cycle % HEALTH_EVERY == 0:
-            health = self._health if fast is None else self._fast_health
-            self._asked = health[self._cycle // HEALTH_EVERY % len(health)]
-        else:
-            self._asked = fast or self._state
+        self._asked = self.reads.next()
         self.bus.exchange.request(self._asked.read)
 
     def collect(self, counts: Array, health: Array, error: npt.NDArray[np.uint8]) -> Mask:
@@ -121,30 +102,45 @@ class ServoLine:
         """
         asked, servos = self._asked, len(self.ids)
         answered = self.bus.exchange.collect()
+        self.calm = False
         if not answered.size:
-            return np.zeros(servos, dtype=bool)
-        valid = answered[:servos]
+            self.answered = np.zeros(servos, dtype=bool)
+            return self.answered
+        self.answered = valid = answered[:servos]
         self.imu_fresh = self.board is not None and bool(answered[-1])
         if self.imu_fresh:
             self.imu = asked.read.params(servos)
-        # In a fast answer all are silent behind a missing one: ask plainly until all are back.
-        self._broken_chain = not asked.read.complete
+        self.reads.broken_chain = not asked.read.complete
         believed = self._put(asked, valid, counts, error)
-        if asked.long is not None:
-            self._take_health(asked, asked.long, believed, health)
+        if asked.longer is not None and (fresh := believed[asked.longer.rows]).any():
+            self._take_health(asked.longer, fresh, health)
+            self._look_at_torque(asked.longer, fresh)
         return believed
+
+    def errors(self, error: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
+        """Return the (servos,) error bytes of the line out of those of all joints (n,)."""
+        return error[self.where]
+
+    def lowest_supply(self) -> float:
+        """Return the lowest voltage that any servo read a moment ago, V; nan without a reading."""
+        since = self.bus.port.clock.now() - LOWEST_OF
+        return min((volts for time, volts in self._volts if time >= since), default=np.nan)
 
     def read_health(self, health: Array) -> None:
         """Read voltage and temperature of all servos into (3, n), as of `collect`, out of turn."""
-        for row, name in enumerate(HEALTH):
-            register = self.bus.family.registers[name]
-            counts, valid = self.bus.sync_read(self.ids, register)
-            health[row, self.rows[valid]] = counts[valid] * register.unit
-            health[-1, self.rows[valid]] = self.bus.port.clock.now()
+        asked = self.reads.health()
+        for _ in range(ATTEMPTS):
+            self.bus.exchange.request(asked.read)
+            fresh = self.bus.exchange.collect()[: len(self.ids)]
+            if asked.longer is not None and fresh.any():
+                self._take_health(asked.longer, fresh, health)
+            if fresh.all():
+                break
 
     def forget(self) -> None:
         """Take nothing for granted: servos may have been turned by hand, or be missing."""
-        self._broken_chain = True
+        self.reads.broken_chain = True
+        self.calm = self.imu_fresh = False
         if self.check is not None:
             self.check.forget()
 
@@ -158,11 +154,12 @@ class ServoLine:
             valid = self.check.accept(position, velocity, valid, self.bus.port.clock.now())
             complete = bool(valid.all())
             self.bus.exchange.errors["implausible"] = self.check.rejected
-        rows: Rows = self._where
+        rows: Rows = self.where
         if not complete:
             rows = self.rows[valid]
             position, velocity, effort = position[valid], velocity[valid], effort[valid]
             errors = errors[valid]
+        self.calm = complete and not errors.any()
         counts[0, rows] = position
         counts[1, rows] = velocity
         counts[2, rows] = effort
@@ -176,43 +173,19 @@ class ServoLine:
             payload = payload.take(asked.state_at)
         return payload[: len(self.ids) * block.size].view(block.dtype)
 
-    def _take_health(self, asked: Asked, long: slice, valid: Mask, health: Array) -> None:
-        """Put the voltage and temperature of the rows `long` where they belong."""
-        fresh = valid[long]
-        rows = self.rows[long][fresh]
-        for row, name in enumerate(HEALTH):
-            register = self.bus.family.registers[name]
-            offset = register.address - self._block.address
-            raw = asked.read.column(offset, register.dtype, long)
-            health[row, rows] = raw[fresh] * register.unit
-        health[-1, rows] = self.bus.port.clock.now()
+    def _take_health(self, longer: Longer, fresh: Mask, health: Array) -> None:
+        """Put voltage and temperature where they belong."""
+        rows = self.rows[longer.rows][fresh]
+        volts = longer.volts[fresh] * self._volt
+        health[0, rows] = volts
+        health[1, rows] = longer.degrees[fresh]
+        health[2, rows] = now = self.bus.port.clock.now()
+        self._volts.append((now, float(volts.min())))
 
-    def _plain(self, fast: bool = False) -> Asked:
-        return Asked(self._read(self._spans(self._block), fast), None, self._block)
-
-    def _health_reads(self, fast: bool = False) -> list[Asked]:
-        everybody = slice(0, len(self.ids))
-        if not self.bus.family.health_alone:
-            block = self._long_block
-            return [Asked(self._read(self._spans(block), fast), None, block, everybody)]
-        reads = []
-        for row, id in enumerate(self.ids):
-            spans = self._spans(self._block)
-            spans[row] = self._long_block.span(id)
-            at = _state_of(spans, self._block.size)
-            reads.append(Asked(self._read(spans), at, self._block, slice(row, row + 1)))
-        return reads
-
-    def _spans(self, block: Block) -> list[Span]:
-        return [block.span(id) for id in self.ids]
-
-    def _read(self, spans: list[Span], fast: bool = False) -> CyclicRead:
-        board = [self.board.span] if self.board is not None else []
-        return self.bus.family.dialect.read([*spans, *board], fast)
-
-
-def _state_of(spans: Sequence[Span], size: int) -> npt.NDArray[Any]:
-    """Return which bytes of a payload of uneven `spans` are the first `size` of each."""
-    sizes = [span.size for span in spans]
-    starts = np.cumsum([0, *sizes[:-1]])
-    return (starts[:, None] + np.arange(size)).ravel()
+    def _look_at_torque(self, longer: Longer, fresh: Mask) -> None:
+        """Note who does not drive, or has restarted, where that was read."""
+        for counts, restarted in longer.torque:
+            gone = fresh & ((counts == 0) | (counts == restarted))
+            if gone.any():
+                self.slack[longer.rows] |= gone
+                self.calm = False

@@ -8,13 +8,15 @@ import numpy.typing as npt
 
 from hal.backend import Clock
 from hal.bus import Bus
-from hal.errors import HardwareError, PortError
-from hal.imu.source import ImuSource
+from hal.errors import PortError
 from hal.joints import Array, Mask
 from hal.port import Port
+from hal.protocols.cyclic import CyclicWrite
 from hal.replug import RETRY, Opener, Replug
 from hal.servo_line import ServoLine
 from hal.servo_torque import ServoTorque
+from hal.torque_check import TorqueCheck
+from hal.torque_loss import UNPLUGGED
 from hal.torque_state import TorqueState
 
 
@@ -35,8 +37,11 @@ class ServoLink:
     Attributes:
         line: The servos.
         torque: Their torque.
+        check: Who of them still has it, while it should be on.
         lost: What was seen when the port went, or None while it is there.
         losses: How often it went.
+        heard: When the last answers were in, s.
+        calm: Is there nothing to see to, as of the last `collect`?
         barred: Are goals withheld because the port was gone and nobody has armed the robot again?
     """
 
@@ -46,9 +51,12 @@ class ServoLink:
         self._replug = Replug(where.url, where.baud, opener)
         self.line = line(self._replug.opened)
         self.torque = ServoTorque(self.line, watchdog)
+        self.check = TorqueCheck(self.line)
+        self._some = b"", self.line.goals
         self.lost: str | None = None
         self.losses = 0
-        self.barred = self._unsure = False
+        self.heard, self.calm = -np.inf, False
+        self.barred = self._unsure = self._dropped = False
         self._look_again = 0.0
         # These may switch torque on by themselves.
         self._goal_wakes = self.line.bus.family.goal_wakes
@@ -77,9 +85,16 @@ class ServoLink:
         """Return (servos,) bool: whose answers came; see `ServoLine.collect`."""
         if self.lost is None:
             try:
-                return self.line.collect(counts, health, error)
+                valid = self.line.collect(counts, health, error)
+                self.heard = self.clock.now()
+                if self.torque.powered:
+                    watchdog = self.torque.watchdog if self.torque.armed else 0.0
+                    self.check.update(error, self.heard, watchdog)
+                self.calm = self.line.calm and self.check.calm and not self.check.woke
+                return valid
             except PortError as gone:
                 self._lose(gone)
+        self.calm = False
         return np.zeros(len(self.line.ids), dtype=bool)
 
     def read_health(self, health: Array) -> None:
@@ -90,12 +105,22 @@ class ServoLink:
             except PortError as error:
                 self._lose(error)
 
-    def send_goals(self, counts: Array) -> bool:
-        """Send goals, (servos,) counts; return whether they were sent."""
+    def send_goals(self, counts: Array) -> str | None:
+        """Send goals, (servos,) counts, to all that have their torque.
+
+        Returns the name of the clamp that withheld some, or None.
+        """
         if self.barred or self.lost is not None or (self._goal_wakes and not self.torque.powered):
-            return False
-        self.line.goals.values[:] = counts
-        return self._send(self.line.goals.frames())
+            return "unarmed"
+        withheld = self.check.withheld
+        if withheld is None:
+            self.line.goals.values[:] = counts
+            return None if self._send(self.line.goals.frames()) else "unarmed"
+        if not withheld.all():
+            goals = self._goals_but(withheld)
+            goals.values[:] = counts[~withheld]
+            self._send(goals.frames())
+        return "lost"
 
     def send_gains(self, registers: Array) -> None:
         """Send P registers, (servos,)."""
@@ -105,14 +130,46 @@ class ServoLink:
             write.values[:] = gain.counts(registers[rows])
             self._send(write.frames())
 
+    def switch_on(self, gains: Array) -> TorqueState:
+        """Switch torque on at the present pose; see `ServoTorque.on`."""
+        self.check.clear()
+        return self.torque.on(gains)
+
+    def send_off(self) -> None:
+        """Tell all servos to go off, and wait for nobody."""
+        if self.lost is None:
+            try:
+                self.torque.send_off()
+            except PortError as error:
+                self._lose(error)
+
     def switch_off(self) -> TorqueState:
         """Switch torque off and return what was read back of the servos."""
+        self._dropped = False  # from now on it is not lost, but off
         if self.lost is None:
             try:
                 return self.torque.off()
             except PortError as error:
                 self._lose(error)
         return TorqueState.unread(len(self.line.ids))
+
+    @property
+    def gone_for_good(self) -> bool:
+        """True when the port is gone and this process does not open it again."""
+        return self.lost is not None and not self._replug.returns
+
+    def insist_off(self, state: TorqueState) -> TorqueState:
+        """Switch off once more who was not read as off; open a port that is back for that."""
+        if state.all_off:
+            return state
+        try:
+            if self.lost is not None:
+                self._replug.hurry()
+                self._open(self.clock.now())
+            return state if self.lost is not None else self.torque.insist(state)
+        except PortError as error:
+            self._lose(error)
+            return state
 
     def clear_watchdogs(self) -> int:
         """Clear watchdogs that have fired; return how many had."""
@@ -125,10 +182,19 @@ class ServoLink:
     def rearmed(self) -> None:
         """Let goals through again."""
         self.barred = self._unsure = False
+        self.check.clear()
 
     def close(self) -> None:
         """Give the port back."""
         self._replug.close()
+
+    def _goals_but(self, withheld: Mask) -> CyclicWrite:
+        """Return what sends goals to all but some servos (servos,)."""
+        key = withheld.tobytes()
+        if self._some[0] != key:
+            ids = [id for id, held in zip(self.line.ids, withheld, strict=True) if not held]
+            self._some = key, self.line.goals_of(ids)
+        return self._some[1]
 
     def _send(self, frames: list[bytes]) -> bool:
         try:
@@ -142,6 +208,7 @@ class ServoLink:
         self.lost = str(error)
         self.losses += 1
         self.barred = self._unsure = True
+        self._dropped |= self.torque.powered
         self.torque.armed = self.torque.powered = False
         self.line.forget()
         self._replug.lose(self.clock.now())
@@ -149,44 +216,24 @@ class ServoLink:
     def _revive(self) -> None:
         """Open the port, if it is back, and make sure that torque is off."""
         now = self.clock.now()
-        if self.lost is not None:
-            port = self._replug.again(now)
-            if port is None:
-                return
-            self.line.bus.move_to(port)
-            self.lost, self._look_again = None, now
-        if now >= self._look_again:
+        self._open(now)
+        if self.lost is None and now >= self._look_again:
             self._look_again = now + RETRY
             try:
                 self._unsure = not self.torque.off(attempts=1).all_off
+                self._tell_dropped()
             except PortError as error:
                 self._lose(error)
-            except HardwareError:
-                self._unsure = True
 
+    def _open(self, now: float) -> None:
+        """Open the port if it is gone and has come back."""
+        port = self._replug.again(now) if self.lost is not None else None
+        if port is not None:
+            self.line.bus.move_to(port)
+            self.lost, self._look_again = None, now
 
-class ImuLink:
-    """An IMU and its port, which may go and come back too."""
-
-    def __init__(self, imu: ImuSource, opener: Opener) -> None:
-        self.imu = imu
-        self._replug = Replug(imu.url, imu.baud, opener)
-        imu.attach(self._replug.opened)
-        self.clock = self._replug.opened.clock
-
-    def poll(self) -> None:
-        """Take in what has come, if the port is there."""
-        now = self.clock.now()
-        if self._replug.port is None:
-            port = self._replug.again(now)
-            if port is None:
-                return
-            self.imu.attach(port)
-        try:
-            self.imu.poll()
-        except PortError:
-            self._replug.lose(now)
-
-    def close(self) -> None:
-        """Give the port back."""
-        self._replug.close()
+    def _tell_dropped(self) -> None:
+        """Once torque has read as off again, say that it was lost with the port."""
+        if self._dropped and not self._unsure:
+            self._dropped = False
+            self.check.lose_all(UNPLUGGED)

@@ -12,12 +12,13 @@ from hal.families import family_of
 from hal.guardian.lock import wait_while_guarded
 from hal.imu.opencr import POWER, POWER_UP_TIME, OpenCr
 from hal.imu.source import ImuSource
+from hal.imu_link import ImuLink
 from hal.joints import Joints, Mask
 from hal.plausibility import Plausibility
 from hal.port import Port
 from hal.replug import Opener
 from hal.servo_line import ServoLine
-from hal.servo_link import BusPort, ImuLink, ServoLink
+from hal.servo_link import BusPort, ServoLink
 from hal.servo_model import ServoMount
 from hal.servo_settings import assert_settings
 from hal.units import Units
@@ -41,7 +42,7 @@ def one_clock(clocks: Sequence[Clock]) -> Clock:
 
 
 def lines_of(
-    mounts: Sequence[ServoMount], units: Units, board: OpenCr | None
+    joints: Joints, mounts: Sequence[ServoMount], units: Units, board: OpenCr | None
 ) -> dict[str, BuildLine]:
     """Return bus name to what makes its line from its port."""
 
@@ -51,7 +52,8 @@ def lines_of(
         bounds = units.last[rows], units.speed[rows], units.speed_unit[rows]
         check = Plausibility(*bounds, weak=family.dialect.weak)
         ours = board if board is not None and board.bus == name else None
-        return lambda port: ServoLine(Bus(port, family), here, rows, ours, check)
+        names = [joints.names[row] for row in rows]
+        return lambda port: ServoLine(Bus(port, family), here, rows, ours, check, names)
 
     return {name: build(name, rows) for name, rows in row_groups(mounts).items()}
 
@@ -104,8 +106,7 @@ def power_up(bus: Bus, board: OpenCr) -> None:
     """Give the servos power where an OpenCR switches it."""
     if bus.read(board.id, POWER) != 1:
         bus.write(board.id, POWER, 1)
-        clock = bus.port.clock
-        clock.wait_until(clock.now() + POWER_UP_TIME)
+        bus.wait(POWER_UP_TIME)
 
 
 def names_of(joints: Joints, which: Mask) -> str:

@@ -1,25 +1,27 @@
 """Torque on at the present pose, off and read back, and the servos' watch over their host."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from hal.errors import HardwareError
 from hal.joints import Array
+from hal.line_registers import ATTEMPTS, LineRegisters
 from hal.plausibility import MARGIN
 from hal.registers import Register
 from hal.servo_line import Rows, ServoLine
+from hal.torque_cause import Suspect, examine
+from hal.torque_loss import SWITCHED_OFF, UNEXPLAINED
 from hal.torque_state import TorqueState
 
-ATTEMPTS = 5
-HELD_BACK = 0.016
-"""An adapter may hold answers back for so long, and those to all that is asked meanwhile, s."""
 TRIPPED = -1
 """What a Bus Watchdog reads that has fired.
 
 In position mode the servo holds the place where it was then, and refuses goals until the register
 is set to 0: the pose is frozen, the torque is not off.
 """
+INRUSH = 5e-3
+"""Pause after a servo was switched on, s: all at once may pull the supply down."""
+OFF_TIME = 0.12
+"""How long servos are told to go off and read before those that answer are through with it, s."""
 
 
 class ServoTorque:
@@ -35,37 +37,106 @@ class ServoTorque:
         self.line, self.watchdog = line, watchdog
         self.armed = self.powered = False
         self._registers = line.bus.family.registers
+        self._values = LineRegisters(line)
         self._watch = self._registers.get("bus_watchdog")
         self._last = np.array([mount.model.last_count for mount in line.mounts], dtype=np.float64)
 
     def on(self, gains: Array) -> TorqueState:
-        """Switch torque on where the joints are now; their P registers are `gains`.
+        """Switch torque on where the joints are now, one after the other.
 
-        The goal is the present position before the torque comes on, so that nothing moves.
-        Returns what was read back of the servos.
+        The goal of each is its present position before its torque comes on, so that nothing moves.
+
+        Args:
+            gains: (servos,) P registers.
 
         Raises:
-            HardwareError: A servo cannot be read, or does not take its goal; no torque comes on.
+            HardwareError: A servo cannot be read, does not take its goal, or its torque does not
+                come on or stay on: others have torque.
         """
-        here = np.clip(self._here(), 0, self._last)
-        if self._watch is not None:
-            self._set(self._watch, np.zeros_like(here))
-        for gain, rows, _ in self.line.gains:
-            self._set(gain.register, gain.counts(gains[rows]), rows)
+        self._prepare(gains)
         self.powered = True
-        self._set(self._registers["goal_position"], here)
+        for row in range(len(self.line.ids)):
+            self._switch_on(row)
+        state = self.state()
+        if state.unknown.any():
+            silent = self.line.who(np.flatnonzero(state.unknown))
+            raise HardwareError(f"{self.line.bus.port.url}: no answer from {silent}")
+        if state.off.any():
+            raise HardwareError(self._off_again(int(np.argmax(state.off)), "stay"))
+        return state
+
+    def _prepare(self, gains: Array) -> None:
+        """Set all that torque needs to come on at the present pose."""
+        here = self._here()
+        mark = self.line.bus.family.mark
+        if self._watch is not None:
+            self._values.set(self._watch, np.zeros_like(here))
+        if mark is not None and mark.armed is not None:
+            self._values.set(self._registers[mark.name], np.full_like(here, mark.armed))
+        for gain, rows, _ in self.line.gains:
+            self._values.set(gain.register, gain.counts(gains[rows]), rows)
+        if not self.line.bus.family.goal_wakes:
+            self._values.set(self._registers["goal_position"], here)
         if self._watch is not None and self.watchdog > 0.0:
-            self._set(self._watch, np.full_like(here, self._ticks(self._watch)))
+            self._values.set(self._watch, np.full_like(here, self._ticks(self._watch)))
             self.armed = True
-        return self._switch(True)
+
+    def _switch_on(self, row: int) -> None:
+        """Switch one servo on at its present position; the goal may be what does it."""
+        enable, rows = self._registers["torque_enable"], slice(row, row + 1)
+        self._values.set(self._registers["goal_position"], self._here(rows), rows)
+        for attempt in range(ATTEMPTS):
+            self._values.pause(attempt)
+            self._values.write(enable, 1, rows)
+            if self._values.ask_torque(rows)[0].all():
+                self.line.bus.wait(INRUSH)
+                return
+        raise HardwareError(self._off_again(row, "come"))
+
+    def _off_again(self, row: int, verb: str) -> str:
+        """Return that the torque of a servo does not `verb` on, with what it signals."""
+        url, id = self.line.bus.port.url, self.line.ids[row]
+        what = f"{url}: torque does not {verb} on at {self.line.who([row])}"
+        loss = examine(self.line, [Suspect(id, False)], self.armed).get(id)
+        if loss is None or loss in (SWITCHED_OFF, UNEXPLAINED):
+            return f"{what}; run `windup scan {url}`"
+        return f"{what}: {loss}; {loss.remedy}"
+
+    def send_off(self) -> None:
+        """Tell all servos to go off, and wait for nobody."""
+        self._values.write(self._registers["torque_enable"], 0)
 
     def off(self, attempts: int = ATTEMPTS) -> TorqueState:
-        """Switch torque off and return what was read back of the servos."""
-        state = self._switch(False, attempts)
+        """Switch torque off and return what was read back of the servos.
+
+        Those that answer are off and read within 0.12 s, whoever else is silent.
+        """
+        self.send_off()
+        clock = self.line.bus.port.clock
+        until = clock.now() + OFF_TIME
+        state = TorqueState.unread(len(self.line.ids))
+        for attempt in range(attempts):
+            state = self.insist(state, attempt)
+            if state.all_off or clock.now() >= until:
+                break
         self.armed = self.powered = False
         if self._watch is not None:
-            self._write(self._watch, 0)
+            self._values.write(self._watch, 0)
         return state
+
+    def insist(self, state: TorqueState, attempt: int = 0) -> TorqueState:
+        """Switch off once more who was not read as off, and return what is known then."""
+        left = np.flatnonzero(~state.off)
+        self._values.write(self._registers["torque_enable"], 0, left)
+        return self._learn(state, left, attempt)
+
+    def _learn(self, state: TorqueState, rows: Rows, attempt: int) -> TorqueState:
+        """Return `state` with what the servos at `rows` say of their torque now."""
+        seen, fresh = self._values.ask_torque(rows, attempt)
+        on, unknown = state.on.copy(), state.unknown.copy()
+        on[rows] = np.where(fresh, seen, on[rows])
+        unknown[rows] &= ~fresh
+        return TorqueState(on, unknown)
 
     def stay(self) -> Array:
         """Have the servos stay where they are, watching no host, and return (servos,) counts.
@@ -76,47 +147,39 @@ class ServoTorque:
         if not self.state().all_on:
             raise HardwareError(f"{self.line.bus.port.url}: a servo has no torque, or is silent")
         if self._watch is not None:
-            self._set(self._watch, np.zeros(len(self.line.ids)))
-        here: Array = np.clip(self._here(), 0, self._last)
-        self._set(self._registers["goal_position"], here)
+            self._values.set(self._watch, np.zeros(len(self.line.ids)))
+        here = self._here()
+        self._values.set(self._registers["goal_position"], here)
         return here
-
-    def _here(self) -> Array:
-        """Return (servos,) present positions; behind a weak checksum two readings must agree."""
-        register = self._registers["present_position"]
-        here = self._read_all(register)
-        if not self.line.bus.family.dialect.weak:
-            return here
-        for _ in range(ATTEMPTS):
-            before, here = here, self._read_all(register)
-            if (np.abs(here - before) <= MARGIN * self._last).all():
-                return here
-        raise HardwareError(
-            f"{self.line.bus.port.url}: positions that jump or cannot be; torque stays off; "
-            "hold the robot still and check the wiring"
-        )
-
-    def _switch(self, on: bool, attempts: int = ATTEMPTS) -> TorqueState:
-        """Write and read back until all servos obey; a lost frame is sent again."""
-        for _ in range(attempts):
-            self._write(self._registers["torque_enable"], int(on))
-            state = self.state(attempts)
-            if state.all_on if on else state.all_off:
-                break
-        return state
 
     def state(self, attempts: int = ATTEMPTS) -> TorqueState:
         """Return what can be read of the servos' torque now."""
-        register = self._registers["torque_enable"]
-        on = np.zeros(len(self.line.ids), dtype=bool)
-        unread = np.ones_like(on)
-        for _ in range(attempts):
-            counts, valid = self.line.bus.sync_read(self.line.ids, register)
-            on[valid & unread] = counts[valid & unread] != 0
-            unread &= ~valid
-            if not unread.any():
+        state = TorqueState.unread(len(self.line.ids))
+        for attempt in range(attempts):
+            self._values.pause(attempt)
+            state = self._learn(state, np.flatnonzero(state.unknown), attempt)
+            if not state.unknown.any():
                 break
-        return TorqueState(on, unread)
+        return state
+
+    def _here(self, rows: Rows = slice(None)) -> Array:
+        """Return (rows,) present positions; behind a weak checksum two readings must agree.
+
+        Raises:
+            HardwareError: They do not, or a servo does not answer.
+        """
+        register, last = self._registers["present_position"], self._last[rows]
+        here = self._values.read(register, rows)
+        if not self.line.bus.family.dialect.weak:
+            return np.clip(here, 0.0, last)
+        for _ in range(ATTEMPTS):
+            before, here = here, self._values.read(register, rows)
+            if (np.abs(here - before) <= MARGIN * last).all():
+                return np.clip(here, 0.0, last)
+        raise HardwareError(
+            f"{self.line.bus.port.url}: positions that jump or cannot be; "
+            "hold the robot still and check the wiring"
+        )
 
     def revive(self) -> int:
         """Clear the watchdogs that have fired, at the present pose; return how many had.
@@ -144,40 +207,3 @@ class ServoTorque:
 
     def _ticks(self, register: Register) -> int:
         return min(127, max(1, round(self.watchdog / register.unit)))
-
-    def _write(self, register: Register, value: int) -> None:
-        self.line.bus.sync_write(register, dict.fromkeys(self.line.ids, value))
-
-    def _set(self, register: Register, values: Array, rows: Rows = slice(None)) -> None:
-        """Write one register of the servos at `rows` and read it back.
-
-        Raises:
-            HardwareError: A servo keeps another value.
-        """
-        ids = np.array(self.line.ids)[rows].tolist()
-        rounded = dict(zip(ids, np.rint(values).astype(int).tolist(), strict=True))
-        for _ in range(ATTEMPTS):
-            self.line.bus.sync_write(register, rounded)
-            wrong = self._read_all(register, ids) != np.rint(values)
-            if not wrong.any():
-                return
-        stubborn = ", ".join(str(ids[row]) for row in np.flatnonzero(wrong))
-        raise HardwareError(
-            f"{self.line.bus.port.url}: id {stubborn} does not take {register.name}; "
-            "torque stays off"
-        )
-
-    def _read_all(self, register: Register, ids: Sequence[int] | None = None) -> Array:
-        ids = self.line.ids if ids is None else ids
-        for _ in range(ATTEMPTS):
-            counts, valid = self.line.bus.sync_read(ids, register)
-            if valid.all():
-                return counts.astype(np.float64)
-            clock = self.line.bus.port.clock
-            clock.wait_until(clock.now() + HELD_BACK)
-        missing = [id for id, has in zip(ids, valid, strict=True) if not has]
-        url = self.line.bus.port.url
-        raise HardwareError(
-            f"{url}: no answer from id {', '.join(map(str, missing))}; torque stays off; "
-            f"run `windup scan {url}`"
-        )

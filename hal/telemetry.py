@@ -6,7 +6,6 @@ keeps what it has. A tick that is overwritten while it is read shows in its sequ
 checksum; readers then take the next one.
 """
 
-import contextlib
 import mmap
 import os
 import time as wall
@@ -23,18 +22,17 @@ from hal.contacts import ContactSensors
 from hal.errors import TelemetryError
 from hal.guard import GuardedBackend
 from hal.observation import Observation
+from hal.telemetry_file import make_ring, read_header
 from hal.telemetry_layout import (
-    ALIGNMENT,
+    CLOSED,
     ENDED,
     ENDED_AT,
-    FIXED,
     HEAD,
     HEAD_AT,
-    MAGIC,
+    OVER,
     PAYLOAD_AT,
-    SIZES,
-    SIZES_AT,
-    VERSION,
+    RUNS,
+    STATE,
     Header,
     checksum,
     ring_path,
@@ -55,6 +53,10 @@ class TelemetryWriter:
         rate_hz: Rate of the loop, Hz.
         port: The URL of its port, or None for a twin.
         path: The file, by default where `ring_path` says.
+        estimated: The base state comes from the IMU.
+
+    Attributes:
+        plans: Steps planned in this run, and plans that came late.
 
     Raises:
         TelemetryError: The file cannot be made.
@@ -69,6 +71,7 @@ class TelemetryWriter:
         *,
         port: str | None = None,
         path: Path | None = None,
+        estimated: bool = False,
     ) -> None:
         self._backend = backend
         self._bus = backend.backend if isinstance(backend.backend, BusHealth) else None
@@ -83,11 +86,13 @@ class TelemetryWriter:
             pid=os.getpid(),
             started=wall.time(),
             clamps=tuple(backend.clamps),
+            estimated=estimated,
         )
         self.path = path or ring_path(robot, port)
         self._prepare()
-        self._map, self._first = _create(self.path, self.header, self._slots, len(self._bytes))
+        self._map, self._first = make_ring(self.path, self.header, self._slots, len(self._bytes))
         self._sequence = 0
+        self.plans = (0, 0)
 
     def _prepare(self) -> None:
         """Make the one record that every tick is written through, and views of its parts."""
@@ -97,14 +102,16 @@ class TelemetryWriter:
         self._payload = self._bytes[PAYLOAD_AT:]
         self._head = record.view(np.uint64)[:2]
         self._numbers = record.view(np.float64)[2:]
-        self._few = np.zeros(7 + len(header.clamps) + len(header.errors))
+        self._few = np.zeros(9 + len(header.clamps) + len(header.errors))
         self._alert = np.zeros(len(header.joints))
+        self._no_age = np.zeros(len(header.joints))
         self._none = {size: np.full(size, np.nan) for size in (3, 4)}
         self._slots = max(2, round(SECONDS * header.rate_hz))
 
     def begin(self) -> None:
         """A run begins (again)."""
-        ENDED.pack_into(self._map, ENDED_AT, 0, b"")
+        self.plans = (0, 0)
+        ENDED.pack_into(self._map, ENDED_AT, RUNS, b"")
 
     def record(
         self,
@@ -118,7 +125,7 @@ class TelemetryWriter:
         joints, imu, base = observation.joints, observation.imu, observation.base
         no3, no4 = self._none[3], self._none[4]
         bus = self._bus
-        few: list[float] = [observation.time, wall.time(), tick, missed, seconds]
+        few: list[float] = [observation.time, wall.time(), tick, missed, seconds, *self.plans]
         few += [imu.age if imu else np.nan, base.confidence if base else 0.0]
         few += self._backend.clamps.values()
         if bus is not None:
@@ -134,7 +141,9 @@ class TelemetryWriter:
                 joints.voltage,
                 joints.temperature,
                 joints.age,
+                self._no_age if joints.health_age is None else joints.health_age,
                 command.block[0],
+                command.block[3],
                 self._backend.clamped_joints,
                 self._alert,
                 observation.contacts,
@@ -153,10 +162,11 @@ class TelemetryWriter:
     def end(self, reason: str) -> None:
         """The run is over; the ring stays for whoever wants to know how it went."""
         text = reason.encode()[:127].decode(errors="ignore").encode()
-        ENDED.pack_into(self._map, ENDED_AT, 1, text)
+        ENDED.pack_into(self._map, ENDED_AT, OVER, text)
 
     def close(self) -> None:
-        """Give the mapping back. The file stays."""
+        """Give the mapping back. The file stays, until newer ones have taken its place."""
+        STATE.pack_into(self._map, ENDED_AT, CLOSED)
         self._map.close()
 
     def _publish(self) -> None:
@@ -201,7 +211,7 @@ class TelemetryReader:
         except (OSError, ValueError) as error:
             raise TelemetryError(f"{path}: cannot be read: {error}") from None
         try:
-            self.header, self._first, self._slots = _parse(self._map)
+            self.header, self._first, self._slots = read_header(self._map)
         except (ValueError, msgspec.DecodeError) as error:
             self._map.close()
             raise TelemetryError(f"{path}: is no telemetry of this version: {error}") from None
@@ -217,6 +227,11 @@ class TelemetryReader:
         """Why the run ended, or None while it lasts."""
         over, reason = ENDED.unpack_from(self._map, ENDED_AT)
         return reason.rstrip(b"\0").decode(errors="replace") if over else None
+
+    @property
+    def closed(self) -> bool:
+        """True when its writer has gone in good order."""
+        return int(STATE.unpack_from(self._map, ENDED_AT)[0]) == CLOSED
 
     @property
     def replaced(self) -> bool:
@@ -256,41 +271,3 @@ class TelemetryReader:
         head = np.frombuffer(data, dtype=np.uint64, count=2)
         whole = int(head[0]) == sequence and int(head[1]) == checksum(sequence, data[PAYLOAD_AT:])
         return data if whole else None
-
-
-def _create(path: Path, header: Header, slots: int, size: int) -> tuple[mmap.mmap, int]:
-    """Make a ring and move it to `path`; return its mapping and the offset of the first slot."""
-    text = msgspec.json.encode(header)
-    first = -(-(FIXED.size + len(text)) // ALIGNMENT) * ALIGNMENT
-    head = FIXED.pack(MAGIC, VERSION, first, slots, size, 0, 0, b"", len(text)) + text
-    fresh = path.with_suffix(f".{os.getpid()}")
-    try:
-        with fresh.open("wb+") as file:
-            # Room is taken now: a full disk must not show as a bus error in mid-run.
-            os.posix_fallocate(file.fileno(), 0, first + slots * size)
-            ring = mmap.mmap(file.fileno(), first + slots * size)
-        ring[:] = head.ljust(len(ring), b"\0")
-        fresh.replace(path)
-    except OSError as error:
-        with contextlib.suppress(OSError):
-            fresh.unlink()
-        raise TelemetryError(f"{path}: cannot be made: {error.strerror}") from None
-    return ring, first
-
-
-def _parse(ring: mmap.mmap) -> tuple[Header, int, int]:
-    """Return the header, the offset of the first slot and the number of slots.
-
-    Raises:
-        ValueError: It is not a ring.
-    """
-    if len(ring) < FIXED.size or ring[: len(MAGIC)] != MAGIC:
-        raise ValueError("other magic")
-    version, first, slots, size = SIZES.unpack_from(ring, SIZES_AT)
-    if version != VERSION:
-        raise ValueError(f"version {version}, this is {VERSION}")
-    *_, length = FIXED.unpack_from(ring)
-    header = msgspec.json.decode(ring[FIXED.size : FIXED.size + length], type=Header)
-    if header.dtype().itemsize != size or len(ring) < first + slots * size:
-        raise ValueError("its size is not what its header says")
-    return header, first, slots

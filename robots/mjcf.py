@@ -7,6 +7,8 @@ import numpy as np
 
 from hal.errors import ConfigError
 from hal.joints import Array
+from hal.small_file import MOST
+from robots.mjcf_numbers import wrong_number
 
 OBJECTS = {
     "body": mujoco.mjtObj.mjOBJ_BODY,
@@ -26,6 +28,8 @@ def parse_mjcf(path: Path) -> mujoco.MjSpec:
     """
     if not path.is_file():
         raise ConfigError(f"{path}: cannot be read: no such file")
+    if path.stat().st_size > MOST:
+        raise ConfigError(f"{path}: cannot be read: longer than {MOST >> 20} MB")
     try:
         return mujoco.MjSpec.from_file(str(path))
     except ValueError as error:
@@ -36,12 +40,15 @@ def compile_mjcf(path: Path) -> mujoco.MjModel:
     """Return the MJCF at `path` as a model.
 
     Raises:
-        ConfigError: The file is missing, or MuJoCo refuses it.
+        ConfigError: The file is missing, MuJoCo refuses it, or a number in it cannot be.
     """
     try:
-        return parse_mjcf(path).compile()
+        model = parse_mjcf(path).compile()
     except ValueError as error:
         raise ConfigError(f"{path}: {_one_line(error)}") from None
+    if wrong := wrong_number(model):
+        raise ConfigError(f"{path}: {wrong}")
+    return model
 
 
 def names(model: mujoco.MjModel, kind: str) -> tuple[str, ...]:

@@ -5,12 +5,10 @@ from typing import Annotated, Literal
 from msgspec import Meta
 from msgspec.structs import replace
 
-from hal.config import Record
+from hal.config import Delay, Length, NotNegative, Positive, Record, Tilt
 from hal.guard import StopPolicy
 from robots.levels import JointLevels
 
-Positive = Annotated[float, Meta(gt=0.0)]
-NotNegative = Annotated[float, Meta(ge=0.0)]
 Share = Annotated[float, Meta(ge=0.05, le=1.0)]
 
 
@@ -31,10 +29,10 @@ class Drive(Record, frozen=True):
     """
 
     kind: Literal["servo", "torque"]
-    supply: Positive = 12.0
-    command_delay: NotNegative = 0.0
-    sensor_delay: NotNegative = 0.0
-    wire_delay: NotNegative = 0.0
+    supply: Annotated[float, Meta(gt=0.0, le=60.0)] = 12.0
+    command_delay: Delay = 0.0
+    sensor_delay: Delay = 0.0
+    wire_delay: Delay = 0.0
     servo: str | None = None
     bus: str | None = None
     stiffness: NotNegative | None = None
@@ -73,7 +71,7 @@ class JointEntry(Record, frozen=True):
     id: Annotated[int, Meta(ge=0, le=253)] | None = None
     sign: Literal[1, -1] = 1
     zero: int | None = None
-    ratio: Positive = 1.0
+    ratio: Annotated[float, Meta(gt=0.0, le=1_000.0)] = 1.0
 
 
 class Foot(Record, frozen=True):
@@ -117,7 +115,7 @@ class FallWay(Record, frozen=True):
 
     toward: Annotated[float, Meta(ge=-4.0, le=4.0)]
     pose: str
-    soften: Positive
+    soften: Tilt
     falling: Shares
     impact: Shares
 
@@ -130,9 +128,9 @@ class Fall(Record, frozen=True):
         way: How it falls when it must; without any it falls as it is.
     """
 
-    height: Positive
-    tilt: Positive
-    reach: Positive | None = None
+    height: Length
+    tilt: Tilt
+    reach: Length | None = None
     way: tuple[FallWay, ...] = ()
 
 
@@ -202,7 +200,7 @@ class RobotFile(Record, frozen=True):
     sources: tuple[str, ...] = ()
     bus: tuple[Bus, ...] = ()
     foot: tuple[Foot, ...] = ()
-    model_latency: NotNegative = 0.06
+    model_latency: Delay = 0.06
     contact_threshold: Positive = 1.0
     imu: Imu | None = None
     safety: Safety = Safety()

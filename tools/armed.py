@@ -133,7 +133,12 @@ class Armed(OnStack):
                 self.custody.idle()
 
     def _stop(self, policy: StopPolicy | None, asked: Asked) -> None:
-        """Stop; the guardian is let go only if torque has been read back as off."""
+        """Stop; the guardian is let go only if torque has been read back as off.
+
+        A robot that has fallen goes limp whatever its policy is.
+        """
+        if self.fallen:
+            policy = "limp"
         self.armed = not self.backend.stop(policy, lambda: asked.impatient).all_off
         if not self.armed:
             self.custody.end(off=True)

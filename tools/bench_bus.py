@@ -9,6 +9,7 @@ no emulator is in them.
 import contextlib
 import os
 import pty
+import struct
 import subprocess
 import sys
 import time
@@ -37,6 +38,8 @@ STATE, SIZE = 126, 10
 GOAL = 116
 BAUD = 4_000_000
 READY = b"r"
+MEMORY = bytes(64) + b"\x01" + bytes(61) + struct.pack("<hii", -12, 34, 2048) + bytes(range(80, 96))
+"""What the servos' registers hold: torque on, and from 126 on what they measure."""
 Cycle = Callable[[], None]
 
 
@@ -141,27 +144,21 @@ def respond(descriptor: int) -> None:
 def _answer(request: bytes) -> bytes:
     """Return what healthy servos say to a request of one of the cyclic kinds."""
     kind, body = request[7], request[8:-2]
-    size = int.from_bytes(body[2:4], "little")
+    start, size = struct.unpack_from("<HH", body)
+    data = MEMORY[start : start + size]
     if kind == Instruction.SYNC_READ:
-        return b"".join(protocol2.status(id, _state(size)) for id in body[4:])
+        return b"".join(protocol2.status(id, data) for id in body[4:])
     if kind == Instruction.BULK_READ:
-        return b"".join(
-            protocol2.status(body[at], _state(int.from_bytes(body[at + 3 : at + 5], "little")))
-            for at in range(0, len(body), 5)
-        )
+        rows = struct.iter_unpack("<BHH", body)
+        return b"".join(protocol2.status(id, MEMORY[at : at + length]) for id, at, length in rows)
     if kind == Instruction.FAST_SYNC_READ:
         frame = protocol2.HEADER + b"\xfe"
         frame += (len(body[4:]) * (size + 4) + 1).to_bytes(2, "little") + b"\x55"
         for id in body[4:]:
-            frame += bytes([0, id]) + _state(size)
+            frame += bytes([0, id]) + data
             frame += crc16(frame).to_bytes(2, "little")
         return frame
     return b""
-
-
-def _state(size: int) -> bytes:
-    present = (-12).to_bytes(2, "little", signed=True) + (34).to_bytes(4, "little")
-    return (present + (2048).to_bytes(4, "little") + bytes(range(80, 96))).ljust(size, b"\0")[:size]
 
 
 class _Canned:
@@ -255,6 +252,7 @@ def _backend_cycle(port: Port, ids: list[int]) -> Cycle:
         joints, mounts, {"body": BusPort("canned", BAUD)}, opener=lambda url, baud: port
     )
     backend.connect()
+    backend.links[0].torque.powered = backend.links[0].torque.armed = True
     command = JointCommand.hold(joints, np.zeros(len(ids)))
 
     def cycle() -> None:

@@ -32,6 +32,9 @@ BAUD = 1_000_000
 ATTEMPTS = 5
 STATE = b"\x00\x08\x00\x00\x00\x00\x4a\x23"
 """Position 2048, no velocity, no load, 7.4 V, 35 degrees C."""
+STS_MEMORY = bytes(40) + b"\x01".ljust(8, b"\0") + b"\xe7\x03".ljust(8, b"\0") + STATE
+MX_MEMORY = bytes(24) + b"\x01".ljust(10, b"\0") + b"\xfe\x03" + STATE
+"""The same where the servos have it, behind torque that is on, with the mark of an armed one."""
 
 
 @dataclass(frozen=True)
@@ -87,13 +90,13 @@ def answer(request: bytes) -> bytes:
     """Return what healthy servos say to a request of one of the cyclic kinds."""
     kind, body = request[4], request[5:-1]
     if kind == Instruction.SYNC_READ:
-        return b"".join(protocol1.status(id, STATE[: body[1]]) for id in body[2:])
+        data = STS_MEMORY[body[0] : body[0] + body[1]]
+        return b"".join(protocol1.status(id, data) for id in body[2:])
     if kind == Instruction.BULK_READ:
-        return b"".join(
-            protocol1.status(body[at + 1], STATE[: body[at]]) for at in range(1, len(body), 3)
-        )
+        rows = [body[at : at + 3] for at in range(1, len(body), 3)]
+        return b"".join(protocol1.status(id, MX_MEMORY[at : at + size]) for size, id, at in rows)
     if kind == Instruction.READ:
-        return protocol1.status(request[2], STATE[: body[1]])
+        return protocol1.status(request[2], STS_MEMORY[body[0] : body[0] + body[1]])
     return b""
 
 
@@ -125,7 +128,7 @@ def backend_cycle(port: Port, ids: list[int], maker: Maker) -> Cycle:
         joints, mounts, {"body": BusPort("canned", BAUD)}, opener=lambda url, baud: port
     )
     backend.connect()
-    backend.lines[0].probe_fast()
+    backend.lines[0].reads.probe_fast()
     backend.links[0].torque.powered = True
     command = JointCommand.hold(joints, np.zeros(len(ids)))
 

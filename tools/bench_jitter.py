@@ -16,7 +16,7 @@ from hal.errors import UsageError, WindupError
 from hal.servo_backend import ServoBackend
 from tools.output import console
 from tools.robot import Robot
-from tools.stop_rig import serve
+from tools.safety.emulated import serve
 
 RATE = 125.0  # Hz
 FACTOR, MARGIN = 2.0, 0.2  # of the C loop's p99.9, and ms beside it, that ours may have

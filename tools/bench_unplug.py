@@ -21,8 +21,8 @@ from hal.errors import HardwareError, PortError, WindupError
 from hal.servo_backend import ServoBackend
 from robots import load_robot
 from tools.output import console
+from tools.safety.emulated import serve
 from tools.stack import servo_backend
-from tools.stop_rig import serve
 
 FIRST = 3.0  # s; the robot is armed by then
 OUT = (0.1, 0.6)  # s that the adapter is out

@@ -1,7 +1,6 @@
 """Putting a walking controller together from a robot, a gait and what the user asked for."""
 
 from dataclasses import replace
-from math import isfinite
 
 import msgspec
 import numpy as np
@@ -23,6 +22,7 @@ from control.tilt_filter import GRAVITY, ImuNoise
 from control.torso_servo import TorsoServo
 from hal.controller import Predictor
 from hal.errors import StateMissingError, UnknownNameError, UsageError
+from hal.ranges import Range, read_number
 from robots import RobotDescription
 from sim_twin.imu_errors import OPENCR
 from tools.gaits import find_gait
@@ -30,6 +30,8 @@ from tools.spells import blended
 from tools.steer import steering_of
 from tools.step_models import memory_for
 from tools.walk_options import WalkOptions
+
+TARGET = Range(-1_000.0, 1_000.0)
 
 
 def body_of(robot: RobotDescription) -> Body:
@@ -247,10 +249,5 @@ def _targets(given: tuple[str, ...], variables: list[RegulationVariable]) -> dic
             name = f"{name}.forward"
         if name not in names:
             raise UnknownNameError("--target", name, names)
-        try:
-            targets[name] = float(value)
-        except ValueError:
-            raise UsageError(f"--target {text}: {value!r} is no number") from None
-        if not isfinite(targets[name]):
-            raise UsageError(f"--target {text}: {value!r} is no number to aim at")
+        targets[name] = read_number(f"--target {text}", value, TARGET)
     return targets

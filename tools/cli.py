@@ -1,29 +1,31 @@
 """The `windup` command: parse, run, and turn errors into one line and an exit status."""
 
+import io
 import logging
 import os
 import sys
-from contextlib import suppress
+from contextlib import redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
 from typing import Annotated, Any
 
 import mujoco
 import tyro
 
-from hal.errors import UsageError, WindupError
+from hal.errors import UnwellError, UsageError, WindupError
 from tools.bench import Bench
 from tools.emulate import Emulate
 from tools.estimate import Estimate
 from tools.footprints import Footprints
 from tools.health import Health
 from tools.interrupts import end_on_signals
-from tools.options import Common
 from tools.output import check_writable, console, error_record, write_json
+from tools.parse_errors import wrong_number
 from tools.play import Play
 from tools.push import Push
 from tools.reproduce import Reproduce
 from tools.rise import Rise
 from tools.robots_list import Robots
+from tools.run_notes import NOTES
 from tools.scan import Scan
 from tools.stand import Stand
 from tools.step import Step
@@ -67,18 +69,26 @@ def run(arguments: list[str] | None = None) -> int:
     # so itself.
     mujoco.set_mju_user_warning(logging.getLogger("mujoco").debug)
     command = None
+    NOTES.begin()
+    words = list(sys.argv[1:] if arguments is None else arguments)
     end_on_signals()
     try:
-        command = parse(separate(arguments))
-        if isinstance(command, Common):
-            command.check()
+        command = parse(separate(words))
+        command.check()
         check_writable(getattr(command, "json", None), getattr(command, "plot", None))
-        return int(command.run())
+        status = int(command.run())
+        _say_warnings()
+        return status
     except WindupError as error:
+        _say_warnings(error.kind if isinstance(error, UnwellError) else "")
         console.print(f"windup: {error}", markup=False, soft_wrap=True)
-        _write_error(command, error)
+        if command is None:
+            _write_unparsed(words, error)
+        else:
+            _write_error(command, error)
         return error.exit_status
     except KeyboardInterrupt:
+        _say_warnings()
         console.print("windup: interrupted")
         return 130
     except BrokenPipeError:
@@ -88,21 +98,42 @@ def run(arguments: list[str] | None = None) -> int:
     except SystemExit as parsed:
         status = parsed.code if isinstance(parsed.code, int) else 2
         if status != 0:
-            _write_unparsed(sys.argv[1:] if arguments is None else arguments)
+            said = f"the command line cannot be understood: {' '.join(words)}"
+            _write_unparsed(words, UsageError(said))
         return status
 
 
-def _write_unparsed(arguments: list[str]) -> None:
+def _say_warnings(ended_by: str = "") -> None:
+    """Print what there was to warn about, but for the kind of what ended the run."""
+    if said := NOTES.said(ended_by):
+        console.print(f"warning: {said}", markup=False, soft_wrap=True)
+
+
+def _write_unparsed(arguments: list[str], error: WindupError) -> None:
     """Tell programs that their command line could not be understood."""
     if "--json" in arguments[:-1]:
         target = Path(arguments[arguments.index("--json") + 1])
-        message = f"the command line cannot be understood: {' '.join(arguments)}"
         with suppress(OSError):
-            write_json(target, arguments[0], error_record(UsageError(message)))
+            write_json(target, arguments[0], error_record(error))
 
 
 def parse(arguments: list[str]) -> Any:
-    """Return the command that the arguments mean; exits with status 2 if they mean none."""
+    """Return the command that the arguments mean; exits with status 2 if they mean none.
+
+    Raises:
+        UsageError: An option that takes numbers has another word.
+    """
+    said = io.StringIO()
+    try:
+        with redirect_stderr(said), redirect_stdout(said):
+            return _parse(arguments)
+    except SystemExit:
+        if wrong := wrong_number(said.getvalue()):
+            raise UsageError(wrong) from None
+    return _parse(arguments)  # help, or an error: said again as the terminal shows it best
+
+
+def _parse(arguments: list[str]) -> Any:
     return tyro.cli(
         Command,
         prog="windup",

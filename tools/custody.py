@@ -3,12 +3,13 @@
 import logging
 from collections.abc import Callable
 from contextlib import suppress
+from weakref import WeakMethod
 
 from hal.clock import WallClock
 from hal.errors import GuardianError, WindupError
 from hal.guard import GuardedBackend
-from hal.guard.guarded import no_heartbeat
 from hal.guardian.handle import Guardian, guardian_for
+from hal.heartbeat import no_heartbeat
 from hal.servo_backend import ServoBackend
 from robots import RobotDescription
 from tools.idle import IdleKeeper
@@ -33,7 +34,8 @@ class Custody:
         backend: GuardedBackend,
         give_up: Callable[[WindupError | None], None],
     ) -> None:
-        self._robot, self._backend, self._give_up = robot, backend, give_up
+        self._robot, self._backend = robot, backend
+        self._give_up = WeakMethod(give_up)  # a robot that is closed and forgotten is freed at once
         self.guardian: Guardian | None = None
         self._keeper: IdleKeeper | None = None
 
@@ -59,7 +61,7 @@ class Custody:
         if self._keeper is None and isinstance(self._backend.clock, WallClock):
             safety = self._robot.safety
             seconds = safety.hold if self._robot.stop == "hold" else safety.idle
-            self._keeper = IdleKeeper(self._backend, seconds, self._beat, self._give_up)
+            self._keeper = IdleKeeper(self._backend, seconds, self._beat, self._let_go)
 
     def busy(self) -> None:
         """Hold it no more: somebody commands it from now on."""
@@ -99,6 +101,12 @@ class Custody:
         self._backend.heartbeat = no_heartbeat
         if isinstance(self._backend.backend, ServoBackend):
             self._backend.backend.heartbeat = no_heartbeat
+
+    def _let_go(self, error: WindupError | None) -> None:
+        """Have the robot stopped, whose program holds on to it while it is armed."""
+        give_up = self._give_up()
+        if give_up is not None:
+            give_up(error)
 
     def _beat(self) -> None:
         """Tell the guardian that this process lives.

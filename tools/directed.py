@@ -235,7 +235,7 @@ def walk_prints(robot: Robot, controller: DirectedController) -> DirectedWalk:
         return "done" if controller.finished else None
 
     with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far it came
-        walk.reason = robot.run(controller, until=until).reason
+        walk.reason = robot.run(controller, until=until, needs_imu=True).reason
     walk.seconds = robot.loop.sim_time
     return walk
 

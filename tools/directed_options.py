@@ -27,6 +27,11 @@ class DirectedOptions(TwinOptions, Common, ABC):
     def prints(self, seed: int) -> list[Footprint]:
         """Return what to walk with this seed."""
 
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        build_directed(load_robot(self.robot), self.prints(self.all_seeds[0]))
+
     def walk(self, command: str) -> int:
         """Walk on every seed; returns the exit status."""
         rows: list[dict[str, Any]] = []
@@ -50,7 +55,7 @@ class DirectedOptions(TwinOptions, Common, ABC):
         controller = build_directed(description, self.prints(seed))
         paced = replace(self, rate=self.rate or loop_rate(description))
         with paced.open_robot(seed, world=self.world(description, seed)) as robot:
-            robot.start_at(controller.how.stance)
+            robot.start_at(controller.how.stance, needs_imu=True)
             if (disturb := self.disturb()) is not None:
                 disturb(robot)
             return walk_prints(robot, controller)

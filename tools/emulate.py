@@ -7,34 +7,40 @@ from typing import Annotated
 
 import tyro
 
-from hal.errors import UsageError
+from hal.ranges import Range
 from sim_twin.wire import Address, parse_address
 from sim_twin.wire.address import SCHEME
 from sim_twin.wire.emulate import Emulator, Outlet, emulate
+from sim_twin.wire.fault_text import parse_rules
+from tools.command import Command
 from tools.output import console
+from tools.quantities import Seed
 
 
 @dataclass(frozen=True, kw_only=True)
-class Emulate:
+class Emulate(Command):
     """Serve the servos of a robot's twin to any program, until Ctrl-C."""
 
     robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
     """A robot's name, the path of its folder, or a whole twin:// URL (twin://bench?servos=...)."""
     pty: Path | None = None
     """Serve on a pseudo-terminal, to be found under this path."""
-    tcp: int | None = None
+    tcp: Annotated[int, Range(0, 65_535)] | None = None
     """Serve on this TCP port of this machine; 0: any."""
     faults: str = ""
     """What goes wrong: drop:0.01,unplug:at=5:seconds=1,...; a wrong word gets the list."""
-    seed: int = 0
+    seed: Seed = 0
     """Seed of the faults."""
-    supply: float | None = None
+    supply: Annotated[float, Range(0.0, 60.0, "V", above=True)] | None = None
     """Voltage of the servos, V; the robot's own by default."""
+
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        parse_rules(self._address().faults)
 
     def run(self) -> int:
         """Serve; returns the exit status."""
-        if self.supply is not None and not self.supply > 0.0:
-            raise UsageError(f"--supply {self.supply:g}: give more than 0 V")
         emulate(self._address(), self.pty, self.tcp, on_ready=_on_ready)
         console.print("windup emulate: stopped")
         return 0

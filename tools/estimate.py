@@ -14,14 +14,18 @@ from control.loop import Estimator
 from hal.errors import UsageError
 from hal.joints import Array
 from hal.observation import BaseState, Observation
+from robots import load_robot
 from sim_twin.backend import TwinBackend
 from sim_twin.imu_errors import OPENCR, ImuErrors
 from sim_twin.sensors import Sensors
-from tools.build import build_estimator
+from tools.build import build_estimator, build_walk
+from tools.command import Command
 from tools.faults import with_faults
 from tools.output import console, write_json
+from tools.quantities import Count, Delay, Impulse, Rate, Seed, Some
 from tools.robot import Robot
-from tools.stack import TWIN, Truth
+from tools.stack import TWIN, Truth, check_port
+from tools.walk_options import WalkOptions
 
 ATTITUDE_LIMIT = 1.0  # degrees rms
 VELOCITY_LIMIT = 0.03  # m/s rms
@@ -81,7 +85,7 @@ class Referee:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Estimate:
+class Estimate(Command):
     """Measure the estimated state against the twin's truth: standing, pushed, walking, and both.
 
     Behind a port the truth is that of the tick, so the time that the wire takes counts as error.
@@ -93,26 +97,25 @@ class Estimate:
     """Emulated servo bus to measure through: twin://ROBOT. Only a twin knows the truth."""
     faults: str = ""
     """What goes wrong on that port, as of `windup walk`."""
-    steps: int = 40
+    steps: Count = 40
     """How many steps to walk."""
-    pushes: int = 6
+    pushes: Some = 6
     """How many times to push."""
-    impulse: float | None = None
+    impulse: Impulse | None = None
     """Impulse of the pushes, N s; by default 0.2 m/s times the robot's mass."""
     switches: bool = True
     """Use the contact sensors; without, and on a port, the soles' heights tell who stands."""
-    rate: float | None = None
+    rate: Rate | None = None
     """Rate of the control loop, Hz; the robot's own by default."""
-    delay: float | None = None
+    delay: Delay | None = None
     """Delay of the servos, s; on a port it is what it is."""
-    seed: int = 0
+    seed: Seed = 0
     """Seed of pushes, start pose, and of the IMU's noise and bias."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
     def run(self) -> int:
         """Measure; returns the exit status."""
-        self._check()
         rows = list(self._trials())
         good = [_good(row) for row in rows]
         write_json(
@@ -131,16 +134,18 @@ class Estimate:
         )
         return 0 if all(good) else 1
 
-    def _check(self) -> None:
-        if self.steps < 1 or self.pushes < 1:
-            raise UsageError("--steps and --pushes: give 1 or more")
-        with_faults(self.port, self.faults)
-        if self.port is None:
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        url, robot = with_faults(self.port, self.faults), load_robot(self.robot)
+        build_walk(robot, WalkOptions(), None)
+        if url is None or self.port is None:
             return
         if not self.port.startswith(TWIN):
             raise UsageError(f"--port {self.port}: only a twin knows the truth; give {TWIN}ROBOT")
         if self.delay is not None:
             raise UsageError("--delay is that of a twin without a wire; leave it or --port away")
+        check_port(robot, url)
 
     def _trials(self) -> Iterable[dict[str, Any]]:
         """Run every trial under both states; yield a row for each."""

@@ -10,6 +10,7 @@ import tyro
 
 from control.footprints import Footprint, read_footprints, write_footprints
 from hal.errors import UsageError
+from hal.ranges import Range
 from robots import load_robot
 from tools.directed import build_checks, feet_of
 from tools.directed_options import DirectedOptions
@@ -26,19 +27,21 @@ class Footprints(DirectedOptions):
 
     file: Annotated[Path | None, tyro.conf.Positional, tyro.conf.arg(metavar="FILE")] = None
     """The file."""
-    random: int = 0
+    random: Annotated[int, Range(0, 10_000)] = 0
     """Walk so many random steps instead: any length up to 0.3 of the height of the hips forward or
     back, beside the other foot up to 0.2 of it farther than it has to be, turned up to 20
     degrees."""
     write: bool = False
     """Write what would be walked to standard output, as a file; nothing moves."""
 
-    def run(self) -> int:
-        """Walk; returns the exit status."""
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
         if (self.file is None) == (self.random == 0):
             raise UsageError("give a FILE of footprints, or --random N")
-        if self.random < 0:
-            raise UsageError(f"--random {self.random}: give 1 or more")
+        super().check()
+
+    def run(self) -> int:
+        """Walk; returns the exit status."""
         if not self.write:
             return self.walk("footprints")
         robot, prints = load_robot(self.robot), self.prints(self.seed)

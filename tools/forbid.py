@@ -8,7 +8,9 @@ from shapely import Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
 from hal.errors import UsageError
+from hal.ranges import Range, read_number
 
+NEAR: Final = Range(-1_000.0, 1_000.0, "m")
 FORMS: Final = (
     "X,Y,R (circle), X,Y,W,H (rectangle, X,Y its middle) or X1,Y1,X2,Y2,X3,Y3,.. (polygon)"
 )
@@ -27,12 +29,10 @@ def forbidden(texts: Sequence[str]) -> list[BaseGeometry]:
 
 
 def _region(text: str) -> BaseGeometry:
-    try:
-        numbers = [float(word) for word in text.split(",")]
-    except ValueError:
-        numbers = []
-    if len(numbers) < 3 or len(numbers) == 5 or not np.isfinite(numbers).all():
+    words = text.split(",")
+    if len(words) < 3 or len(words) == 5:
         raise UsageError(f"--forbid {text}: write {FORMS}, in m")
+    numbers = [read_number(f"--forbid {text}", word, NEAR) for word in words]
     region = _shape(text, numbers)
     if not region.is_valid or region.area <= 0.0:
         raise UsageError(f"--forbid {text}: it has no area, or its border crosses itself")

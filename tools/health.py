@@ -15,6 +15,7 @@ from hal.errors import TelemetryError, UsageError
 from hal.telemetry import TelemetryReader
 from hal.telemetry_layout import ring_path
 from robots import RobotDescription, load_robot
+from tools.command import Command
 from tools.diagnosis import Diagnosis, Limits
 from tools.faults import with_faults
 from tools.output import console, write_json
@@ -24,7 +25,7 @@ INTERVAL = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
-class Health:
+class Health(Command):
     """Say whether a robot is well, from the telemetry of its present run or its last."""
 
     robot: Annotated[str, tyro.conf.Positional]
@@ -40,10 +41,14 @@ class Health:
     watch: bool = False
     """Look twice a second until Ctrl-C."""
 
-    def run(self) -> int:
-        """Look; returns the exit status: 0 well, 1 not, 2 nothing to look at."""
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
         if self.once and self.watch:
             raise UsageError("--once and --watch: give one of them")
+
+    def run(self) -> int:
+        """Look; returns the exit status: 0 well, 1 not, 2 nothing to look at."""
         robot = load_robot(self.robot)
         diagnosis = self._look(robot)
         if self.watch:

@@ -7,6 +7,7 @@ import numpy as np
 from hal.errors import UsageError
 from hal.guard import GuardedBackend
 from hal.observation import BaseState
+from hal.ranges import numbers_checked
 from robots import RobotDescription
 from sim_twin.push import Push
 from sim_twin.twin import Twin
@@ -55,6 +56,7 @@ class OnStack:
             raise UsageError("only a twin can do that; leave --port away")
         return self.stack.twin
 
+    @numbers_checked
     def push(
         self, impulse: float, direction: float = 0.0, *, duration: float = 0.1, delay: float = 0.0
     ) -> None:
@@ -69,6 +71,7 @@ class OnStack:
         start = self.twin.time + delay
         self.twin.push(Push.impulse(self.description.torso, impulse, direction, start, duration))
 
+    @numbers_checked
     def shove(self, speed: float, direction: float = 0.0, *, delay: float = 0.0) -> None:
         """Give a whole twin `speed` m/s toward `direction` rad, `delay` s from now."""
         mass = float(self.twin.model.body_mass.sum())

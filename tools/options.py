@@ -1,20 +1,21 @@
 """Options that every command takes, and what they mean together."""
 
 from dataclasses import dataclass
-from math import inf
 from pathlib import Path
 from typing import Annotated, Any
 
 import tyro
 
-from hal.errors import UsageError
+from robots import load_robot
+from tools.command import Command
 from tools.faults import with_faults
+from tools.quantities import Noise, Rate, Seed, Seeds
 from tools.robot import Robot
-from tools.stack import State
+from tools.stack import State, check_port
 
 
 @dataclass(frozen=True, kw_only=True)
-class Common:
+class Common(Command):
     """Options of every command that runs a robot."""
 
     robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
@@ -29,39 +30,30 @@ class Common:
     state: State | None = None
     """Where the base state comes from: the twin's truth (the default without a port), or an
     estimate from the sensors (the default on a port)."""
-    rate: float | None = None
+    rate: Rate | None = None
     """Rate of the control loop, Hz; the robot's own by default."""
     realtime: bool = False
     """Let simulated time pass no faster than real time."""
-    seed: int = 0
+    seed: Seed = 0
     """Seed of everything random."""
-    seeds: int | None = None
+    seeds: Seeds | None = None
     """Run seeds 0 .. N-1, one row each, with a summary."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
     plot: Path | None = None
     """Draw the run into an image file."""
 
-    noise: float = 0.0
+    noise: Noise = 0.0
     """Standard deviation of noise on the start pose, degrees."""
     protect: bool = True
     """Soften a fall that cannot be prevented, where robot.toml says how."""
 
     def check(self) -> None:
-        """Raise what cannot be, before anything is opened.
-
-        Raises:
-            UsageError: An option is out of its range.
-        """
-        with_faults(self.port, self.faults)
-        if self.seeds is not None and self.seeds < 1:
-            raise UsageError(f"--seeds {self.seeds}: give 1 or more")
-        if self.seed < 0:
-            raise UsageError(f"--seed {self.seed}: give 0 or more")
-        if self.rate is not None and not 0.0 < self.rate < inf:
-            raise UsageError(f"--rate {self.rate:g}: give a rate above 0 Hz")
-        if not 0.0 <= self.noise < inf:
-            raise UsageError(f"--noise {self.noise:g}: give 0 degrees or more")
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        url, robot = self.url, load_robot(self.robot)
+        if url is not None:
+            check_port(robot, url)
 
     @property
     def url(self) -> str | None:

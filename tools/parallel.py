@@ -19,7 +19,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from hal.errors import UsageError, WindupError
+from hal.errors import WindupError
 from tools.output import console
 
 Item = TypeVar("Item")
@@ -45,11 +45,9 @@ def side_by_side(
         jobs: Number of processes; one a core by default.
 
     Raises:
-        UsageError: `jobs` is below 1.
         WindupError: From `work`, or a process has died.
     """
     if not items:
-        check_jobs(jobs)
         return
     with Workers(label, total=len(items), jobs=jobs) as workers:
         yield from workers.run(work, items)
@@ -63,13 +61,9 @@ class Workers:
         total: Items to come, in all the lists.
         done: Items of them that were done before.
         jobs: Number of processes; one a core by default, and never more than items.
-
-    Raises:
-        UsageError: `jobs` is below 1.
     """
 
     def __init__(self, label: str, *, total: int, done: int = 0, jobs: int | None = None) -> None:
-        check_jobs(jobs)
         count = max(min(total, jobs or cpu_count() or 1), 1)
         self._pool = ProcessPoolExecutor(max_workers=count, initializer=_quiet_worker)
         self._progress = _bar()
@@ -114,16 +108,6 @@ class Workers:
     def say(self, text: str) -> None:
         """Let the progress bar say how it is going."""
         self._progress.update(self._bar, said=text)
-
-
-def check_jobs(jobs: int | None) -> None:
-    """Raise a number of processes that cannot be.
-
-    Raises:
-        UsageError: It is below 1.
-    """
-    if jobs is not None and jobs < 1:
-        raise UsageError(f"--jobs {jobs}: give 1 or more")
 
 
 def _quiet_worker() -> None:

@@ -2,16 +2,16 @@
 
 from contextlib import suppress
 from dataclasses import dataclass
-from math import inf
 from typing import Annotated, Any
 
 import tyro
 
 from control.staged import StagedPlayer
-from hal.errors import UsageError
 from robots import load_robot
+from tools.gaits import find_gait
 from tools.options import Common
 from tools.output import console, write_json
+from tools.quantities import Duration
 from tools.twin_options import TwinOptions
 
 
@@ -21,13 +21,16 @@ class Play(TwinOptions, Common):
 
     graph: Annotated[str, tyro.conf.Positional]
     """Name of the graph: a file in the robot's gaits."""
-    seconds: float | None = None
+    seconds: Duration | None = None
     """How long; to its end, or 5 s for a graph that has none."""
+
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        find_gait(load_robot(self.robot), self.graph)
 
     def run(self) -> int:
         """Play; returns the exit status."""
-        if self.seconds is not None and not 0.0 < self.seconds < inf:
-            raise UsageError(f"--seconds {self.seconds:g}: give more than 0")
         rows = []
         for seed in self.all_seeds:
             rows.append(self._one(seed))

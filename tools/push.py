@@ -2,7 +2,6 @@
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from math import inf
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -10,6 +9,7 @@ import tyro
 
 from control.stepping_file import Support
 from hal.errors import UsageError
+from hal.ranges import Range
 from robots import load_robot
 from sim_twin.impact import ImpactGauge
 from tools.fall_report import fall_result, fall_said
@@ -20,44 +20,47 @@ from tools.output import console, write_json
 from tools.push_envelope import Envelope
 from tools.push_trial import PushPlan, push_robot
 from tools.push_walk import push_walking, walking_said
+from tools.quantities import Degrees, Delay, Duration, Height, Jobs, Seconds, Some, Speed
 from tools.robot import Robot
 from tools.stepping import WAYS, check_way, find_stepping, stepping_stance
 from tools.twin_options import WorldOptions
 from tools.walk_options import WalkOptions
+
+Strength = Annotated[float, Range(0.0, 10_000.0, "N s")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Push(WorldOptions, Common):
     """Push a robot; it survives when only feet touch the ground and it rests, or walks on."""
 
-    impulse: float | None = None
+    impulse: Strength | None = None
     """Impulse, N s."""
-    direction: float | Literal["random"] = 0.0
+    direction: Degrees | Literal["random"] = 0.0
     """Where to, degrees: 0 forward, 90 to the left; random draws one for each push."""
-    duration: float = 0.1
+    duration: Duration = 0.1
     """How long a push lasts, s."""
-    height: float | None = None
+    height: Height | None = None
     """Where it meets the body, m above the ground; its centre of mass by default."""
     body: str | None = None
     """Which body is pushed; the torso by default."""
-    at: float | None = None
+    at: Seconds | None = None
     """When the first push begins, s; 1 in a stand and 4 in a walk by default."""
     during: Literal["stand", "walk"] = "stand"
     """What the robot is at."""
-    speed: float | None = None
+    speed: Speed | None = None
     """Speed of the walk, m/s; the gait's default otherwise."""
     catch: bool = True
     """Hand over to the stepper what the walk cannot absorb."""
-    times: int = 1
+    times: Some = 1
     """How many pushes."""
-    every: float = 1.0
+    every: Duration = 1.0
     """From one push to the next, s."""
     way: str | None = None
     """How the robot meets it: hold, feet, capture, ip, momentum or predictive; that of its stepping
     by default."""
     stance: str | None = None
     """Pose to stand in; that of the robot's stepping by default."""
-    delay: float | None = None
+    delay: Delay | None = None
     """Delay of the servos, s."""
     support: Support | None = None
     """What the soles are taken to support: the hull of their points, or Kenwright's circles and
@@ -67,16 +70,15 @@ class Push(WorldOptions, Common):
     X,Y) or X1,Y1,X2,Y2,X3,Y3,.. (polygon), m, seen from between the feet at the start; several."""
     envelope: bool = False
     """Find the largest impulse that it survives in each direction, for each of --ways."""
-    directions: int = 16
+    directions: Some = 16
     """Directions of the envelope."""
     ways: tuple[str, ...] = WAYS
     """Ways of the envelope."""
-    jobs: int | None = None
+    jobs: Jobs | None = None
     """Processes of the envelope; one a core by default."""
 
     def run(self) -> int:
         """Push; returns the exit status."""
-        self._check()
         if self.envelope:
             return Envelope(self).run()
         rows = []
@@ -144,21 +146,11 @@ class Push(WorldOptions, Common):
         """When the first push begins, s."""
         return self.at if self.at is not None else 1.0 if self.during == "stand" else 4.0
 
-    def _check(self) -> None:
-        """Raise what cannot be, before anything is opened."""
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
         if self.envelope == (self.impulse is not None):
             raise UsageError("give --impulse N_S, or --envelope to find the largest ones")
-        if self.impulse is not None and not 0.0 <= self.impulse < inf:
-            raise UsageError(f"--impulse {self.impulse:g}: give 0 N s or more")
-        for name, value in (("duration", self.duration), ("every", self.every)):
-            if not 0.0 < value < inf:
-                raise UsageError(f"--{name} {value:g}: give more than 0 s")
-        if not 0.0 <= self._first < inf:
-            raise UsageError(f"--at {self._first:g}: give 0 s or more")
-        if self.times < 1:
-            raise UsageError(f"--times {self.times}: give 1 or more")
-        if self.directions < 1:
-            raise UsageError(f"--directions {self.directions}: give 1 or more")
         self._check_walk()
         forbidden(self.forbid)
         for way in self.ways if self.way is None else (self.way, *self.ways):

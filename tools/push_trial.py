@@ -143,8 +143,8 @@ def push_robot(
     touch = TouchWatch(description, robot.twin.model, robot.twin.data)
     landings = Landings(robot, footing_of(description, stance), regions) if regions else None
     watch = PushWatch(plan, touch, controller, to_the_end, look, landings)
-    report = robot.run(controller, until=watch)
     stepper = controller if isinstance(controller, STEPPERS) else None
+    report = robot.run(controller, until=watch, needs_imu=stepper is not None)
     survived = report.reason == "done" and not (robot.fallen or touch.touched)
     if to_the_end and robot.fallen and not robot.protect:
         robot.run(PoseHolder(robot.description.joints, stance, ramp=0.0), LANDING, down=True)

@@ -13,8 +13,10 @@ from hal.errors import UsageError
 from hal.observation import Observation
 from robots import load_robot
 from sim_twin.wire.twin_shaft import TwinPhysics
+from tools.gaits import find_gait
 from tools.options import Common
 from tools.output import console, write_json
+from tools.quantities import Some
 from tools.robot import Robot
 from tools.twin_options import TwinOptions
 
@@ -30,16 +32,21 @@ class Rise(TwinOptions, Common):
 
     lying: Side | None = None
     """Lay the twin on this side first; a robot lies as it does."""
-    tries: int = 3
+    tries: Some = 3
     """How often, before it is given up."""
+
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        robot = load_robot(self.robot)
+        motions = [f"get_up_{side}" for side in get_args(Side)]
+        if missing := set(motions) - set(robot.gaits()):
+            raise UsageError(f"{self.robot} has no {', '.join(sorted(missing))} in its gaits")
+        for motion in motions:
+            find_gait(robot, motion)
 
     def run(self) -> int:
         """Get up; returns the exit status."""
-        if self.tries < 1:
-            raise UsageError(f"--tries {self.tries}: give 1 or more")
-        motions = [f"get_up_{side}" for side in get_args(Side)]
-        if missing := set(motions) - set(load_robot(self.robot).gaits()):
-            raise UsageError(f"{self.robot} has no {', '.join(sorted(missing))} in its gaits")
         rows = []
         for seed in self.all_seeds:
             rows.append(self._one(seed))
@@ -103,7 +110,7 @@ def side_of(robot: Robot) -> Side | None:
     seen: list[Observation] = []
     watch, robot.watch = robot.watch, lambda observation: seen.append(observation)
     pose = robot.backend.read().joints.position
-    robot.run(PoseHolder(robot.description.joints, pose, ramp=0.0), LOOK, down=True)
+    robot.run(PoseHolder(robot.description.joints, pose, ramp=0.0), LOOK, down=True, needs_imu=True)
     robot.watch = watch
     if not robot.fallen:
         return None

@@ -9,14 +9,16 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from typing import Self
 
+from control.balancer import Balancer
 from control.loop import LoopReport, Until
 from control.play import GraphPlayer, PoseHolder
 from control.staged import StagedPlayer
 from control.supervisor import Supervisor
 from hal.controller import Stopwatch
-from hal.errors import UnknownNameError, UsageError
+from hal.errors import UnknownNameError
 from hal.joints import Array
 from hal.observation import Observation
+from hal.ranges import check_numbers, numbers_checked
 from robots import load_robot
 from sim_twin.clearance import FootClearance
 from sim_twin.rollouts import RolloutPredictor
@@ -27,6 +29,7 @@ from tools.gauges import Gauges
 from tools.interrupts import RunInterruptedError
 from tools.load_gauge import LoadGauge
 from tools.plan_process import ProcessPlanner, plan_aside
+from tools.quantities import Count, Delay, Noise, Rate, Seconds, Seed, Speed
 from tools.report import WalkReport
 from tools.session import Session
 from tools.stack import State, twin_stack, wire_stack
@@ -63,6 +66,7 @@ class Robot(Session):
     load: LoadGauge | None = field(default=None, init=False)
 
     @classmethod
+    @numbers_checked
     def open(
         cls,
         name: str,
@@ -70,11 +74,11 @@ class Robot(Session):
         port: str | None = None,
         arm: bool = False,
         state: State | None = None,
-        rate: float | None = None,
+        rate: Rate | None = None,
         realtime: bool = False,
-        seed: int = 0,
-        noise: float = 0.0,
-        delay: float | None = None,
+        seed: Seed = 0,
+        noise: Noise = 0.0,
+        delay: Delay | None = None,
         world: World | None = None,
         known_ground: bool = False,
         protect: bool = True,
@@ -135,14 +139,16 @@ class Robot(Session):
             protect=protect,
         )
 
-    def stand(self, seconds: float = 2.0) -> LoopReport:
+    @numbers_checked
+    def stand(self, seconds: Seconds = 2.0) -> LoopReport:
         """Hold the stance for `seconds` s of the robot's time."""
         return self.run(PoseHolder(self.description.joints, self.description.stance), seconds)
 
+    @numbers_checked
     def play(
         self,
         graph: str,
-        seconds: float | None = None,
+        seconds: Seconds | None = None,
         disturb: Callable[["Robot"], None] | None = None,
     ) -> LoopReport:
         """Play a pose graph of the robot to its end, or for `seconds` s.
@@ -161,7 +167,7 @@ class Robot(Session):
         kind = StagedPlayer if gait.file.staged else GraphPlayer
         player = self.player = kind(gait, self.description.joints, self.description.contacts)
         if gait.file.lying is None:
-            self.start_at(gait.file.start)
+            self.start_at(gait.file.start, needs_imu=gait.file.attitude)
         if disturb is not None:
             disturb(self)
         load = self.load = LoadGauge(self.description.joints)
@@ -171,16 +177,17 @@ class Robot(Session):
             return "done" if player.finished else player.failed
 
         down = gait.file.down or gait.file.lying is not None
-        return self.run(player, seconds, until=until, down=down)
+        return self.run(player, seconds, until=until, down=down, needs_imu=gait.file.attitude)
 
+    @numbers_checked
     def walk(
         self,
-        speed: float | None = None,
-        steps: int = 40,
+        speed: Speed | None = None,
+        steps: Count = 40,
         options: WalkOptions | None = None,
         on_step: OnStep | None = None,
         disturb: Callable[["Robot"], None] | None = None,
-        stand: float = 0.0,
+        stand: Seconds = 0.0,
     ) -> WalkReport:
         """Walk a number of steps and return how it went.
 
@@ -196,9 +203,8 @@ class Robot(Session):
             UsageError: The options do not fit the gait; nothing has moved.
             RunInterruptedError: By a signal; the robot has stopped, and the report is attached.
         """
-        if steps < 1:
-            raise UsageError(f"--steps {steps}: give 1 or more")
         options = options or WalkOptions()
+        check_numbers(options)
         if speed is not None:
             options = replace(options, speed=speed)
         self.predictor.stopwatch = Stopwatch()
@@ -212,14 +218,15 @@ class Robot(Session):
             if self.paced and walker.planner is not None:
                 aside = plan_aside(self.description, options, self.predictor, self.period)
                 walker.planner = self._when_ready(stack.enter_context(aside))
-            self.start_at(walker.gait.file.start)
+            self.start_at(walker.gait.file.start, needs_imu=True)
             self._watch_feet()
             if disturb is not None:
                 disturb(self)
             report = WalkReport(self, walker, options, steps)
             try:
                 walking = self.supervisor or walker
-                walked = self.run(walking, until=self._looking(end), rollouts=stopwatch)
+                until = self._looking(end, walker)
+                walked = self.run(walking, until=until, rollouts=stopwatch, needs_imu=True)
                 if stand > 0.0 and walked.reason == "done":
                     walked.reason = self.stand(stand).reason
                     self.loop = walked
@@ -227,6 +234,10 @@ class Robot(Session):
                 report.loop = self.loop
                 stopped.report = report
                 raise
+            finally:
+                self.slowness.plans += walker.begun
+                self.slowness.late += walker.late
+                self.slowness.library = options.model == "library"
         report.loop = self.loop
         return report
 
@@ -246,10 +257,12 @@ class Robot(Session):
         if twin is not None:
             self.clearance = FootClearance(self.description, twin.model, twin.data)
 
-    def _looking(self, end: Until) -> Until:
-        """Return `end`, with a look at the feet first."""
+    def _looking(self, end: Until, walker: Balancer) -> Until:
+        """Return `end`, with a look at the feet and at the plans first."""
 
         def until(observation: Observation) -> str | None:
+            if self.telemetry is not None:
+                self.telemetry.plans = walker.begun, walker.late
             if self.clearance is not None:
                 self.clearance.look()
             if self.gauges is not None:
@@ -258,16 +271,21 @@ class Robot(Session):
 
         return until
 
-    def start_at(self, name: str | None) -> None:
+    def start_at(self, name: str | None, *, needs_imu: bool = False) -> None:
         """Put a fresh twin into a start pose, with noise; let anything else move there."""
         poses = self.description.poses
         if name is not None and name not in poses:
             raise UnknownNameError(f"pose of {self.description.name}", name, poses)
-        self.start_in(self.description.stance if name is None else poses[name])
+        pose = self.description.stance if name is None else poses[name]
+        self.start_in(pose, needs_imu=needs_imu)
 
-    def start_in(self, pose: Array) -> None:
-        """Put a fresh twin into a pose (n,) rad, with noise; let anything else move there."""
+    def start_in(self, pose: Array, *, needs_imu: bool = False) -> None:
+        """Put a fresh twin into a pose (n,) rad, with noise; let anything else move there.
+
+        What comes next may need the IMU: then this does not begin without it either.
+        """
         if not self.stack.wired and self.twin.time == 0.0:
             self.twin.reset(pose, noise=self.noise, seed=self.seed)
         else:
-            self.run(PoseHolder(self.description.joints, pose), START_SECONDS)
+            holder = PoseHolder(self.description.joints, pose)
+            self.run(holder, START_SECONDS, needs_imu=needs_imu)

@@ -6,11 +6,12 @@ from pathlib import Path
 from rich.table import Table
 
 from robots import load_robot, robot_names
+from tools.command import Command
 from tools.output import console, write_json
 
 
 @dataclass(frozen=True)
-class Robots:
+class Robots(Command):
     """List the robots and what they can do."""
 
     json: Path | None = None

@@ -11,7 +11,14 @@ from control.guide import Guide
 from control.navigation import Agility, PathFollower, PointFollower, circle, square
 from hal.errors import UsageError
 from hal.joints import Array
+from hal.ranges import Range, read_number
+from hal.small_file import read_small
 from robots import RobotDescription
+
+MOST = 10_000
+"""Points of a path."""
+WHERE = Range(-10_000.0, 10_000.0, "m")
+SIZE = Range(0.0, 10_000.0, "m", above=True)
 
 
 def guide_of(
@@ -74,13 +81,15 @@ def read_path(text: str) -> tuple[Array, bool]:
     if colon and kind in ("circle", "square"):
         return (circle if kind == "circle" else square)(_metres(text, size)), True
     try:
-        rows = list(csv.reader(Path(text).read_text(encoding="utf-8").splitlines()))
-    except (OSError, UnicodeDecodeError) as error:
-        why = getattr(error, "strerror", None) or "not text"
+        rows = list(csv.reader(read_small(Path(text)).decode().splitlines()))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        why = getattr(error, "strerror", None) or str(error)
         raise UsageError(
             f"--path {text}: {why}; give a CSV of x,y, circle:RADIUS or square:SIDE"
         ) from None
     points = [_point(text, number, row) for number, row in enumerate(rows, 1) if _holds_point(row)]
+    if not 2 <= len(points) <= MOST:
+        raise UsageError(f"--path {text}: {len(points)} points; give 2 .. {MOST} lines of x,y")
     return np.array(points).reshape(-1, 2), False
 
 
@@ -90,18 +99,10 @@ def _holds_point(row: list[str]) -> bool:
 
 
 def _point(text: str, number: int, row: list[str]) -> list[float]:
-    try:
-        x, y = (float(value) for value in row)
-    except ValueError:
-        raise UsageError(f"--path {text}: line {number} is not x,y") from None
-    return [x, y]
+    if len(row) != 2:
+        raise UsageError(f"--path {text}: line {number} is not x,y")
+    return [read_number(f"--path {text}: line {number}", value, WHERE) for value in row]
 
 
 def _metres(text: str, size: str) -> float:
-    try:
-        value = float(size)
-    except ValueError:
-        value = 0.0
-    if not value > 0.0:
-        raise UsageError(f"--path {text}: {size!r} is no length in metres")
-    return value
+    return read_number(f"--path {text}", size, SIZE)

@@ -8,16 +8,20 @@ import tyro
 from rich.table import Table
 
 from hal.bus import Bus, Found
-from hal.errors import HardwareError
+from hal.errors import HardwareError, UsageError
 from hal.families import DYNAMIXEL_X, FAMILIES
 from hal.open_port import open_port
+from hal.ranges import Range
 from robots import load_robot
+from sim_twin.wire import parse_address
+from sim_twin.wire.address import SCHEME
+from tools.command import Command
 from tools.faults import with_faults
 from tools.output import console, write_json
 
 
 @dataclass(frozen=True, kw_only=True)
-class Scan:
+class Scan(Command):
     """Look for servos on a port, at every baud rate. Nothing moves."""
 
     url: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="URL")]
@@ -27,15 +31,28 @@ class Scan:
     faults: str = ""
     """What goes wrong on a twin:// port: drop:0.01,unplug:at=5:seconds=1,...; a wrong word gets the
     list."""
-    baud: int | None = None
+    baud: Annotated[int, Range(1, 10_000_000, "baud")] | None = None
     """Look at this baud rate only."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        if self._url.startswith(f"{SCHEME}://"):
+            parse_address(self._url)
+        known = sorted({baud for family in FAMILIES for baud in family.bauds})
+        if self.baud is not None and self.baud not in known:
+            raise UsageError(f"--baud {self.baud}: give one of {', '.join(map(str, known))}")
+
+    @property
+    def _url(self) -> str:
+        return with_faults(self.url, self.faults) or self.url
+
     def run(self) -> int:
         """Scan; returns the exit status."""
         expected = _expected(self.robot)
-        port = open_port(with_faults(self.url, self.faults) or self.url)
+        port = open_port(self._url)
         try:
             rows = [row for family in FAMILIES for row in self._family(Bus(port, family), expected)]
         finally:

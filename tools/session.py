@@ -2,23 +2,34 @@
 
 import logging
 from collections.abc import Callable
-from contextlib import nullcontext
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
 
-from control.loop import LoopReport, Until, run_loop
+from control.estimator import BaseEstimator
+from control.imu_gate import ImuGate
+from control.loop import Estimator, LoopReport, Until, run_loop
 from control.play import PoseHolder
 from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
 from hal.errors import ControllerError, PostureError, TelemetryError, WindupError
 from hal.guard import StopPolicy
+from hal.guard.finding import Finding
+from hal.guard.imu_watch import ImuWatch
+from hal.leftovers import remove_leftovers
 from hal.observation import Observation
+from hal.ranges import numbers_checked
 from hal.telemetry import TelemetryWriter
+from hal.telemetry_layout import ring_path
 from sim_twin.backend import TwinClock
+from sim_twin.wire.world import VirtualClock
 from tools.armed import Armed
 from tools.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
 from tools.protect import Protection
+from tools.run_notes import NOTES
+from tools.slowness import Slowness
+from tools.stack import look_with
 from tools.stop_request import stop_requests
 
 INTERRUPTED = "interrupted"
@@ -37,6 +48,8 @@ class Session(Armed):
         protect: A fall that cannot be prevented is softened, where the robot's file says how.
         watch: Called with every observation, for whoever draws or logs.
         telemetry: Where everybody else can read how it goes, once it runs.
+        imu: Judges the IMU, where the base state is estimated from it.
+        slowness: Ticks and plans that came late in all runs.
     """
 
     period: float = field(kw_only=True)
@@ -44,10 +57,23 @@ class Session(Armed):
     protect: bool = True
     watch: Watch | None = field(default=None, init=False)
     telemetry: TelemetryWriter | None = field(default=None, init=False)
+    imu: ImuWatch = field(default_factory=ImuWatch, init=False)
+    slowness: Slowness = field(init=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         self._protection = Protection(self.description)
+        self.slowness = Slowness(
+            1.0 / self.period, simulated=isinstance(self.backend.clock, VirtualClock)
+        )
+        with suppress(TelemetryError):  # a run says so
+            remove_leftovers(ring_path(self.description.name, self.stack.port))
+
+    @property
+    def warnings(self) -> list[Finding]:
+        """What there was to warn about so far: one finding a kind."""
+        health = self.backend.watch.warnings if self.backend.watch is not None else []
+        return [*health, *self.imu.warnings]
 
     def __enter__(self) -> Self:
         return self
@@ -85,6 +111,7 @@ class Session(Armed):
             self.run(PoseHolder(self.description.joints, crouch, REST_SECONDS), REST_SECONDS + 0.3)
         self.stop(limp=True)
 
+    @numbers_checked
     def run(
         self,
         controller: Controller,
@@ -93,6 +120,7 @@ class Session(Armed):
         until: Until | None = None,
         rollouts: Stopwatch | None = None,
         down: bool = False,
+        needs_imu: bool = False,
     ) -> LoopReport:
         """Run a controller until the time is over, `until` gives a reason, or the robot falls.
 
@@ -105,6 +133,8 @@ class Session(Armed):
             until: Called with each observation; a reason ends the run.
             rollouts: Time to leave out of the ticks.
             down: The robot may lie: a fall does not end the run.
+            needs_imu: The controller balances with the IMU, or decides by it: one that fails stops
+                the robot. Without, that is a warning.
 
         Raises:
             PostureError: It was to be armed, and a joint is outside of its limits, or it needs its
@@ -125,6 +155,7 @@ class Session(Armed):
             self._held_afterwards(),
             wishes as wanted,
         ):
+            estimator = self._estimator(needs_imu)
             self._get_ready(down, asked)
             begin = self.backend.clock.now()
 
@@ -149,7 +180,7 @@ class Session(Armed):
                 over = seconds is not None and observation.time >= begin + seconds - 1e-9
                 return "done" if over else None
 
-            self._run(controller, end, rollouts, asked)
+            self._run(controller, end, rollouts, asked, estimator)
         if self.loop.reason == INTERRUPTED:
             raise RunInterruptedError(self.loop, asked.by or "robot.stop()")
         return self.loop
@@ -172,12 +203,32 @@ class Session(Armed):
         if start is not None:
             start.unseen = False
 
+    def _estimator(self, needs_imu: bool) -> Estimator | None:
+        """Return what fills in the base state; who estimates it is guarded against a bad IMU.
+
+        Raises:
+            ImuError: The IMU says nothing, and the controller needs it.
+        """
+        estimator = self.stack.estimator
+        if not isinstance(estimator, BaseEstimator):
+            return estimator
+        look = look_with(self.description, self.stack.port)
+        gate = ImuGate(estimator, self.imu, needs_imu, look)
+        if not self.armed:
+            gate.admit(self.backend.peek)
+        return gate
+
     def _landed(self) -> str:
         """Return why a run ends whose fall is over."""
         return "fell" if self.fallen else "braced for a fall that did not come"
 
     def _run(
-        self, controller: Controller, end: Until, rollouts: Stopwatch | None, asked: Asked
+        self,
+        controller: Controller,
+        end: Until,
+        rollouts: Stopwatch | None,
+        asked: Asked,
+        estimator: Estimator | None,
     ) -> None:
         """Run the loop; stop the robot if it ends by an error or a wish."""
         self.loop = LoopReport()
@@ -191,7 +242,7 @@ class Session(Armed):
                     controller,
                     period=self.period,
                     until=end,
-                    estimator=self.stack.estimator,
+                    estimator=estimator,
                     rollouts=rollouts,
                     report=self.loop,
                     recorder=self.telemetry,
@@ -203,6 +254,7 @@ class Session(Armed):
                 self._stop_after_error(asked)
         except WindupError as error:
             self.loop.reason = str(error)
+            self._record_last()
             self._stop_after_error(asked, "limp" if error.limp else None)
             raise
         except (KeyboardInterrupt, SystemExit) as ended:  # raised by a controller of one's own
@@ -214,8 +266,15 @@ class Session(Armed):
             self._stop_after_error(asked)
             raise ControllerError(self.loop.reason) from error
         finally:
+            self.slowness.ticks += self.loop.ticks
+            self.slowness.missed += self.loop.missed
             if self.telemetry is not None:
                 self.telemetry.end(self.loop.reason)
+
+    def _record_last(self) -> None:
+        """Publish what was seen in the tick that ended the run, too."""
+        if self.telemetry is not None and (last := self.backend.last) is not None:
+            self.telemetry.record(*last, 0.0, self.loop.ticks + 1, self.loop.missed)
 
     def _publish(self) -> None:
         """Say to everybody that a run begins; a robot runs without them all the same."""
@@ -226,6 +285,7 @@ class Session(Armed):
                 self.description.contacts,
                 1.0 / self.period,
                 port=self.stack.port,
+                estimated=isinstance(self.stack.estimator, BaseEstimator),
             )
             self.telemetry.begin()
         except TelemetryError as error:
@@ -240,6 +300,8 @@ class Session(Armed):
 
     def close(self) -> None:
         """Disconnect; torque that has not been read back as off is left to the guardian."""
+        if not self._closed:
+            NOTES.add(self.warnings, self.slowness)
         super().close()
         if self.telemetry is not None:
             self.telemetry.close()

@@ -102,8 +102,9 @@ class SoakRig:
 
     def read(self) -> tuple[Observation, Mask, Mask]:
         """Read once; return what came, whose reading is fresh (servos,), and whose is true."""
+        began = self.backend.clock.now()
         seen = self.backend.read()
-        fresh: Mask = seen.joints.age <= 0.0
+        fresh: Mask = seen.joints.age <= seen.time - began
         return seen, fresh, np.rint(self.counts(seen)) == self.truth
 
     def counts(self, seen: Observation) -> Array:

@@ -1,16 +1,18 @@
 """Styles and blends as a user writes them: NAME, NAME=AMOUNT, NAME=AMOUNT@BEGIN:END."""
 
 from dataclasses import replace
-from math import isfinite
 from pathlib import Path
 
 from control.blend import blend_name, with_blend
 from control.gait import Gait
 from control.style import Spell
 from hal.errors import UsageError
+from hal.ranges import Range, read_number
 from robots import RobotDescription
 from tools.gaits import find_gait
 from tools.walk_options import WalkOptions
+
+AMOUNT = Range(-1_000.0, 1_000.0)
 
 
 def styles_of_walk(options: WalkOptions) -> tuple[Spell, ...]:
@@ -54,22 +56,13 @@ def spell(text: str, option: str) -> Spell:
     what, at, times = text.partition("@")
     name, equals, value = what.partition("=")
     begin, colon, end = times.partition(":")
+    where = f"{option} {text}"
     found = Spell(
         name,
-        _number(value, text, option) if equals else 1.0,
-        _number(begin, text, option) if at else 0.0,
-        _number(end, text, option) if colon else float("inf"),
+        read_number(where, value, AMOUNT) if equals else 1.0,
+        read_number(where, begin) if at else 0.0,
+        read_number(where, end) if colon else float("inf"),
     )
     if not 0.0 <= found.begin < found.end:
         raise UsageError(f"{option} {text}: begin at 0 s or later, and end after that")
     return found
-
-
-def _number(value: str, text: str, option: str) -> float:
-    try:
-        number = float(value)
-    except ValueError:
-        raise UsageError(f"{option} {text}: {value!r} is no number") from None
-    if not isfinite(number):
-        raise UsageError(f"{option} {text}: {value!r} is no amount")
-    return number

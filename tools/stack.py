@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from itertools import count
-from math import inf
 from typing import Literal
 
 import sim_twin.wire as wire
@@ -94,7 +93,7 @@ def twin_stack(
     What is odd about the twin's `world` nobody is told.
 
     Raises:
-        UsageError: The delay is negative, or no whole number of physics steps.
+        UsageError: The delay is no whole number of physics steps.
     """
     _check_delay(delay, robot)
     twin = Twin(robot, delay=delay, world=world)
@@ -138,15 +137,16 @@ def wire_stack(
     elif around is not None:
         raise UsageError("only a twin has another ground or plant; leave --port away")
     backend = _guarded(servo_backend(robot, port), robot, given)
-    backend.connect()
-    twin = _twin_behind(world) if emulated else None
     try:
+        backend.connect()
+        twin = _twin_behind(world) if emulated else None
         estimator = _estimator(robot, twin, state)
         if twin is not None:
             twin.reset(noise=noise, seed=seed)
         backend.configure()
     except BaseException:
         backend.disconnect()
+        _forget_world(world, given)
         raise
     delay = robot.drive.wire_delay
     return Stack(backend, twin, estimator, delay, True, arm or emulated, world, given)
@@ -163,14 +163,16 @@ def _estimator(robot: RobotDescription, twin: Twin | None, state: State) -> Esti
 
 def limp(robot: RobotDescription, port: str) -> TorqueState:
     """Switch all torque of `robot` off, whatever state it is in; return what was read back."""
+    given, world = port, ""
     if port.startswith(TWIN):
-        port, _ = _in_a_world(robot, port)
+        port, world = _in_a_world(robot, port)
     backend = servo_backend(robot, port)
-    backend.connect()
     try:
+        backend.connect()
         return backend.set_torque(False)
     finally:
         backend.disconnect()
+        _forget_world(world, given)
 
 
 def servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
@@ -194,6 +196,17 @@ def servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
         imu=Bno08xRvc(imu) if imu is not None else None,
         contacts=len(robot.contacts.names),
     )
+
+
+def check_port(robot: RobotDescription, port: str) -> None:
+    """Raise what is wrong with a port of `robot`, before it is opened.
+
+    Raises:
+        UsageError: It does not fit the robot, or a number in a twin:// URL cannot be.
+    """
+    for url in _urls(robot, port).values():
+        if url.startswith(TWIN):
+            wire.parse_address(url)
 
 
 def _imu_on_the_bus(robot: RobotDescription) -> bool:
@@ -245,6 +258,12 @@ def _in_a_world(robot: RobotDescription, port: str, around: World | None = None)
     return f"{port}{'&' if '?' in port else '?'}world={name}", name
 
 
+def _forget_world(world: str, port: str) -> None:
+    """Forget a world that was made for `port`, which names none of its own."""
+    if world and not wire.parse_address(port).world:
+        wire.drop_world(world)
+
+
 def _twin_behind(world: str) -> Twin | None:
     owned = wire.find_world(world).owned
     return next((item for item in owned if isinstance(item, Twin)), None)
@@ -255,17 +274,19 @@ def _guarded(
 ) -> GuardedBackend:
     limits, watch = SafetyLimits.of(robot.joints), None
     if any(robot.servos):
-        where = f" --port '{port}'" if port else ""
-        look = f"; look with `windup health {robot.name}{where}`"
-        watch = HealthWatch(robot.joints, robot.health, look)
+        watch = HealthWatch(robot.joints, robot.health, look_with(robot, port))
     return GuardedBackend(backend, limits, robot.stop, robot.crouch, watch)
+
+
+def look_with(robot: RobotDescription, port: str | None) -> str:
+    """Return what ends a message about an unwell robot: the command that shows more."""
+    where = f" --port '{port}'" if port else ""
+    return f"; look with `windup health {robot.name}{where}`"
 
 
 def _check_delay(delay: float | None, robot: RobotDescription) -> None:
     if delay is None:
         return
-    if not 0.0 <= delay < inf:
-        raise UsageError(f"--delay {delay:g}: give 0 s or more")
     steps = delay / robot.timestep
     if abs(steps - round(steps)) > 1e-6:
         raise UsageError(

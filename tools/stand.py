@@ -2,17 +2,16 @@
 
 from contextlib import suppress
 from dataclasses import dataclass
-from math import inf
 
 import numpy as np
 
 from control.play import PoseHolder
-from hal.errors import UsageError
 from robots import load_robot
 from sim_twin.impact import ImpactGauge
 from tools.fall_report import fall_result, fall_said
 from tools.options import Common
 from tools.output import console, write_json
+from tools.quantities import Duration
 from tools.robot import Robot
 from tools.twin_options import TwinOptions
 
@@ -21,13 +20,11 @@ from tools.twin_options import TwinOptions
 class Stand(TwinOptions, Common):
     """Stand for some seconds; a twin that is pushed over says how hard it fell."""
 
-    seconds: float = 5.0
+    seconds: Duration = 5.0
     """How long to stand, with the second that it takes to get there."""
 
     def run(self) -> int:
         """Stand; returns the exit status."""
-        if not 0.0 < self.seconds < inf:
-            raise UsageError(f"--seconds {self.seconds:g}: give more than 0")
         world = self.world(load_robot(self.robot), self.seed)
         with self.open_robot(self.seed, world=world) as robot:
             gauge = self._pushed(robot)

@@ -78,7 +78,7 @@ class Start:
 
     def _check_limits(self) -> None:
         """Raise if a goal inside a joint's limits would be a jump."""
-        joints, state = self.robot.joints, self.backend.backend.read().joints
+        joints, state = self.robot.joints, self.backend.peek().joints
         outside = np.maximum(joints.lower - state.position, state.position - joints.upper)
         worst = int(np.where(state.age < LOOK, outside, 0.0).argmax())
         if outside[worst] > OUTSIDE and state.age[worst] < LOOK:
@@ -108,11 +108,10 @@ class Start:
         if self._sense is None:
             return None
         seen, clock = [], self.backend.clock
-        servos = self.backend.backend
         for _ in range(round(LOOK / PERIOD)):
             self.backend.heartbeat()
-            seen.append(servos.read())
-            if self.stack.estimator is not None:
+            seen.append(self.backend.peek())
+            if self.stack.estimator is not None and seen[-1].imu is not None:
                 # Once torque comes on, an accelerometer feels more than gravity.
                 self.stack.estimator.update(seen[-1], PERIOD)
             clock.wait_until(clock.now() + PERIOD)

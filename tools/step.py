@@ -6,6 +6,7 @@ from control.footprints import Footprint, Frame, StepRecord, footprint
 from robots import load_robot
 from tools.directed import feet_of
 from tools.directed_options import DirectedOptions
+from tools.quantities import Degrees, Duration, Metres
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -14,13 +15,13 @@ class Step(DirectedOptions):
 
     foot: str
     """Which foot: left or right."""
-    to: tuple[float, float]
+    to: tuple[Metres, Metres]
     """Where its sole's middle should come down: X forward and Y to the left, m, seen from the
     middle of the sole that stays (the human's: from below its ankle). They stand beside each other
     at 0 0.117 (OP3, left; -0.117 right), 0 0.167 (human), 0 0.26 (human_handstand)."""
-    yaw: float = 0.0
+    yaw: Degrees = 0.0
     """How far it should be turned to the left, degrees, against the foot that stays."""
-    duration: float | None = None
+    duration: Duration | None = None
     """How long it is in the air, s; the robot's own by default."""
     frame: Frame = "stance"
     """What --to and --yaw are seen from: the foot that stays, or the middle between both feet."""
@@ -33,7 +34,7 @@ class Step(DirectedOptions):
         """Return the one footprint.
 
         Raises:
-            UsageError: The robot has no such foot, or a number cannot be.
+            UsageError: The robot has no such foot.
         """
         x, y = self.to
         row = StepRecord(foot=self.foot, x=x, y=y, yaw=self.yaw, duration=self.duration)

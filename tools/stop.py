@@ -9,13 +9,14 @@ import tyro
 from hal.joints import Mask
 from hal.torque_state import TorqueState
 from robots import RobotDescription, load_robot
+from tools.command import Command
 from tools.faults import with_faults
 from tools.output import console, write_json
-from tools.stack import limp
+from tools.stack import check_port, limp
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stop:
+class Stop(Command):
     """Switch all torque off."""
 
     robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
@@ -27,10 +28,19 @@ class Stop:
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        check_port(load_robot(self.robot), self._url)
+
+    @property
+    def _url(self) -> str:
+        return with_faults(self.port, self.faults) or self.port
+
     def run(self) -> int:
         """Stop; returns the exit status."""
         robot = load_robot(self.robot)
-        state = limp(robot, with_faults(self.port, self.faults) or self.port)
+        state = limp(robot, self._url)
         console.print(_said(robot, state))
         write_json(
             self.json,

@@ -8,6 +8,7 @@ import tyro
 from robots import load_robot
 from tools.options import Common
 from tools.output import console, write_json
+from tools.quantities import Degrees, Duration, Speed
 from tools.striding import Leg, build_strider, check_legs, find_stride, read_leg, stride
 from tools.twin_options import TwinOptions
 
@@ -20,16 +21,23 @@ class Stride(TwinOptions, Common):
     between two steps.
     """
 
-    speed: float = 0.1
+    speed: Speed = 0.1
     """m/s; 0 stands, or turns on the spot."""
-    heading: float = 0.0
+    heading: Degrees = 0.0
     """Where to, degrees from how it faces at the start: 0 forward, 90 to the left."""
-    face: float = 0.0
+    face: Degrees = 0.0
     """Where its trunk should look, degrees: it turns there step by step."""
     then: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """What to do later: SECONDS,SPEED[,HEADING[,FACE]], such as 4,0.1,90 or 6,0; several."""
-    seconds: float = 8.0
+    seconds: Duration = 8.0
     """When it halts, s."""
+
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        robot, legs = load_robot(self.robot), self.legs()
+        check_legs(legs, self.seconds, find_stride(robot))
+        build_strider(robot, legs, self.seconds)
 
     def run(self) -> int:
         """Stride; returns the exit status."""
@@ -66,7 +74,7 @@ class Stride(TwinOptions, Common):
         check_legs(legs, self.seconds, how)
         strider = build_strider(description, legs, self.seconds)
         with self.open_robot(seed, world=self.world(description, seed)) as robot:
-            robot.start_at(how.stance)
+            robot.start_at(how.stance, needs_imu=True)
             if (disturb := self.disturb()) is not None:
                 disturb(robot)
             return stride(robot, strider, legs, self.seconds, path=path)

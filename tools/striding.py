@@ -4,7 +4,7 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from math import atan2, degrees, inf, isfinite, radians
+from math import atan2, degrees, radians
 from typing import Any, Final
 
 import numpy as np
@@ -16,6 +16,7 @@ from control.strider import Strider
 from hal.errors import UnknownNameError, UsageError
 from hal.joints import Array
 from hal.observation import BaseState, Observation
+from hal.ranges import Range, read_number
 from robots import RobotDescription
 from tools.build import body_of
 from tools.directed import limbs_of
@@ -29,6 +30,8 @@ REST = 1.0
 """How long it has to stand at the end, s."""
 LATE = 6.0
 """After so long past its time a robot that has not halted never will, s."""
+LIMITS: Final = Range(-1e5, 1e5)
+"""Numbers that an order may have, in any of their units."""
 TICK = 0.05
 """How often it is noted where it is, s."""
 
@@ -69,12 +72,10 @@ def read_leg(text: str, before: Leg) -> Leg:
     Raises:
         UsageError: It is written in another way, or does not come later.
     """
-    try:
-        numbers = [float(word) for word in text.split(",")]
-    except ValueError:
-        numbers = []
-    if not 2 <= len(numbers) <= 4 or not all(map(isfinite, numbers)):
+    words = text.split(",")
+    if not 2 <= len(words) <= 4:
         raise UsageError(f"--then {text}: write SECONDS,SPEED[,HEADING[,FACE]], such as 4,0.1,30")
+    numbers = [read_number(f"--then {text}", word, LIMITS) for word in words]
     if numbers[0] <= before.begin:
         raise UsageError(f"--then {text}: give a time after {before.begin:g} s")
     rest = [before.heading, before.face]
@@ -91,9 +92,7 @@ def check_legs(legs: Sequence[Leg], seconds: float, how: Stride) -> None:
     for leg in legs:
         if not 0.0 <= leg.speed <= how.fastest:
             raise UsageError(f"speed {leg.speed:g} m/s: give 0 .. {how.fastest:g}")
-        if not (isfinite(leg.heading) and isfinite(leg.face)):
-            raise UsageError("headings have to be numbers of degrees")
-    if not legs[-1].begin < seconds < inf:
+    if not legs[-1].begin < seconds:
         raise UsageError(f"--seconds {seconds:g}: give more than {legs[-1].begin:g}")
 
 
@@ -144,7 +143,7 @@ def stride(
 
     halted, reason = [0.0], "interrupted"
     with suppress(KeyboardInterrupt):
-        reason = robot.run(strider, until=until).reason
+        reason = robot.run(strider, until=until, needs_imu=True).reason
     trace = np.array(rows).reshape(-1, 4)
     moved = _seen(trace[0], trace[-1]) if len(trace) else np.zeros(3)
     more = {"path": trace.tolist()} if path else {}

@@ -4,23 +4,28 @@ import shlex
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import prod
 from pathlib import Path
 from typing import Annotated
 
 import tyro
 
 from hal.errors import UsageError
+from tools.command import Command
 from tools.output import check_writable, console
 from tools.parallel import side_by_side
-from tools.sweep_grid import parse_axis, points
+from tools.quantities import Count, Jobs, Seed, Seeds
+from tools.sweep_grid import Axis, parse_axis, points
 from tools.sweep_run import Run, check_line, play
 from tools.sweep_table import Row, Table, open_table
 
+MOST = 1_000_000
+"""Runs of one sweep."""
 OWN = ("--grid", "--random", "--seed", "--seeds", "--out", "--jobs")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sweep:
+class Sweep(Command):
     """Run a command at many values of its options; one row for each run.
 
     Rows that are in the file already are not run again: after Ctrl-C, or with a larger grid, the
@@ -35,25 +40,34 @@ class Sweep:
     grid: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """An option and its values: name=v1,v2,.. or name=low:high:count; join several values of one
     option with '+'. May stand often."""
-    random: int | None = None
+    random: Count | None = None
     """Draw this many random points from the grid's ranges and lists, instead of all of them."""
-    seed: int = 0
+    seed: Seed = 0
     """Seed of the random points."""
-    seeds: int = 1
+    seeds: Seeds = 1
     """Run seeds 0 .. N-1 at each point."""
     out: Path
     """File for the rows, .csv or .parquet."""
-    jobs: int | None = None
+    jobs: Jobs | None = None
     """Processes; one a core by default."""
+
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        axes = self._axes()
+        count = self.seeds * (self.random or prod(len(axis.values) for axis in axes))
+        if count > MOST:
+            raise UsageError(f"a grid of {count} runs: give values and --seeds for up to {MOST}")
+        points(axes, self.random, self.seed)
+        check_line(list(self.line), axes)
+        check_writable(self.out)
+
+    def _axes(self) -> list[Axis]:
+        return [parse_axis(text) for text in self.grid]
 
     def run(self) -> int:
         """Sweep; returns 1 if a run ended in an error, else 0."""
-        if self.seeds < 1:
-            raise UsageError(f"--seeds {self.seeds}: give 1 or more")
-        axes = [parse_axis(text) for text in self.grid]
-        places = points(axes, self.random, self.seed)
-        check_line(list(self.line), axes)
-        check_writable(self.out)
+        places = points(self._axes(), self.random, self.seed)
         table = open_table(self.out)
         command = shlex.join(self.line)
         runs = [Run(command, place, seed) for place in places for seed in range(self.seeds)]

@@ -6,7 +6,9 @@ from itertools import product
 import numpy as np
 
 from hal.errors import UsageError
+from hal.ranges import Range, read_number
 
+COUNT = Range(2, 10_000)
 SYNTAX = "write name=v1,v2,.. or name=low:high:count"
 Point = dict[str, str]
 
@@ -66,15 +68,15 @@ def parse_axis(text: str) -> Axis:
 
 
 def _range(name: str, text: str, parts: list[str]) -> Axis:
-    try:
-        low, high = float(parts[0]), float(parts[1])
-        count = int(parts[2]) if len(parts) == 3 else 0
-    except (ValueError, IndexError):
-        raise UsageError(f"--grid {text}: {SYNTAX}") from None
-    if len(parts) > 3 or not np.isfinite([low, high]).all() or not low < high:
+    if len(parts) > 3:
+        raise UsageError(f"--grid {text}: {SYNTAX}")
+    where = f"--grid {text}"
+    low, high = (read_number(where, part) for part in parts[:2])
+    count = 0
+    if len(parts) == 3:
+        count = int(read_number(f"{where}: count", parts[2], COUNT, kind=int))
+    if not low < high:
         raise UsageError(f"--grid {text}: {SYNTAX}, with low below high")
-    if len(parts) == 3 and count < 2:
-        raise UsageError(f"--grid {text}: the count must be 2 or more")
     values = tuple(_written(float(value)) for value in np.linspace(low, high, count))
     return Axis(name, values, low, high)
 

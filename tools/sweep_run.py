@@ -12,7 +12,9 @@ from typing import Any, get_args, get_type_hints
 import tyro
 
 from hal.errors import UnknownNameError, UsageError, WindupError
+from hal.ranges import check_numbers
 from tools.output import plain
+from tools.parse_errors import gist
 from tools.sweep_grid import Axis, Point
 from tools.sweep_table import Row, typed
 
@@ -44,6 +46,7 @@ def check_line(line: list[str], axes: list[Axis]) -> None:
         UnknownNameError: A name on the grid is none of its options.
     """
     command = parse_quietly(line)
+    check_numbers(command, "--")
     known = [field.name for field in fields(command)]
     if not set(OURS[:3]) <= set(known):
         raise UsageError(f"{line[0]} has no seeds and no --json; there is nothing to sweep")
@@ -58,7 +61,8 @@ def check_line(line: list[str], axes: list[Axis]) -> None:
         if axis.name not in options:
             raise UnknownNameError("--grid option", axis.name, options)
         for value in axis.checked:
-            parse_quietly(line + arguments(type(command), {axis.name: value}))
+            point = arguments(type(command), {axis.name: value})
+            check_numbers(parse_quietly(line + point), "--")
 
 
 def arguments(kind: type, point: Point) -> list[str]:
@@ -91,7 +95,9 @@ def play(run: Run) -> Row:
         command = parse_quietly(line + arguments(kind, run.point))
         with TemporaryDirectory(prefix="windup-") as folder:
             target = Path(folder) / "result.json"
-            row["exit_status"] = replace(command, seed=run.seed, json=target).run()
+            command = replace(command, seed=run.seed, json=target)
+            command.check()
+            row["exit_status"] = command.run()
             result = json.loads(target.read_text(encoding="utf-8"))
     except WindupError as error:
         row |= {"exit_status": error.exit_status, "error": str(error)}
@@ -141,16 +147,7 @@ def parse_quietly(line: list[str]) -> Any:
         with redirect_stderr(said), redirect_stdout(said):
             return parse(line)
     except SystemExit:
-        raise UsageError(f"{' '.join(line) or 'sweep'}: {_gist(said.getvalue())}") from None
-
-
-def _gist(said: str) -> str:
-    """Return what the parser's box says, on one line."""
-    lines = [line.strip(" │") for line in said.splitlines()]
-    rules = [i for i, line in enumerate(lines) if set(line) and set(line) <= set("-─╭╮╰╯")]
-    first = rules[0] + 1 if rules else 0
-    last = rules[1] if len(rules) > 1 else len(lines)
-    return " ".join(line for line in lines[first:last] if line)
+        raise UsageError(f"{' '.join(line) or 'sweep'}: {gist(said.getvalue())}") from None
 
 
 def _ports(command: Any, axes: list[Axis]) -> list[str]:

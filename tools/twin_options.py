@@ -2,44 +2,49 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import inf, radians
+from math import radians
+from typing import Annotated
 
 from hal.errors import UsageError
+from hal.ranges import Range
 from robots import RobotDescription
 from sim_twin.plant import Plant
 from sim_twin.terrain import Ground
 from sim_twin.world import World
+from tools.command import Command
+from tools.quantities import Degrees, Impulse, Seconds, Seed, Speed
 from tools.robot import Robot
+
+Slope = Annotated[float, Range(-30.0, 30.0, "degrees")]
+Stairs = Annotated[float, Range(-0.3, 0.3, "m")]
+Unevenness = Annotated[float, Range(0.0, 1.0, "m")]
+Friction = Annotated[float, Range(0.0, 10.0, above=True)]
+Factor = Annotated[float, Range(0.0, 100.0, above=True)]
 
 
 @dataclass(frozen=True, kw_only=True)
-class WorldOptions:
+class WorldOptions(Command):
     """Ground and plant of a twin, of which the rollouts know nothing."""
 
-    slope: float = 0.0
+    slope: Slope = 0.0
     """Slope of the ground, degrees; positive is uphill."""
-    strips: float = 0.0
+    strips: Unevenness = 0.0
     """Strips across the way, as much as this above or below the start, m."""
-    stairs: float = 0.0
+    stairs: Stairs = 0.0
     """Stairs, each so high, m; positive is up, negative down."""
-    rough: float = 0.0
+    rough: Unevenness = 0.0
     """Rough ground, as much as this above or below the start, m."""
-    friction: float | None = None
+    friction: Friction | None = None
     """Friction coefficient of feet and floor."""
-    plant: int | None = None
+    plant: Seed | None = None
     """Draw a random plant with this seed: gains, friction, delay, floor, mass, supply."""
     self_collision: bool = False
     """Let the legs collide with each other."""
-    gains: float = 1.0
+    gains: Factor = 1.0
     """Factor on the gains of all joints."""
 
     def world(self, robot: RobotDescription, seed: int) -> World | None:
-        """Return the twin's world, or None where nothing is odd.
-
-        Raises:
-            UsageError: A value cannot be.
-        """
-        self.check_world()
+        """Return the twin's world, or None where nothing is odd."""
         plant = Plant() if self.plant is None else Plant.random(self.plant, robot.timestep)
         if self.friction is not None:
             plant = replace(plant, floor=self.friction)
@@ -63,35 +68,24 @@ class WorldOptions:
             seed=seed,
         )
 
-    def check_world(self) -> None:
-        """Raise what cannot be."""
-        if not abs(self.slope) <= 30.0:
-            raise UsageError(f"--slope {self.slope:g}: give -30 .. 30 degrees")
-        if self.strips < 0.0:
-            raise UsageError(f"--strips {self.strips:g}: give 0 m or more")
-        if self.rough < 0.0:
-            raise UsageError(f"--rough {self.rough:g}: give 0 m or more")
-        if not abs(self.stairs) <= 0.3:
-            raise UsageError(f"--stairs {self.stairs:g}: give -0.3 .. 0.3 m")
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
         if sum(map(bool, (self.slope, self.strips, self.stairs, self.rough))) > 1:
             raise UsageError("give one of --slope, --strips, --stairs and --rough")
-        if self.friction is not None and self.friction <= 0.0:
-            raise UsageError(f"--friction {self.friction:g}: give more than 0")
-        if not 0.0 < self.gains < inf:
-            raise UsageError(f"--gains {self.gains:g}: give a factor above 0")
 
 
 @dataclass(frozen=True, kw_only=True)
 class TwinOptions(WorldOptions):
     """The same, and pushes."""
 
-    push: float = 0.0
+    push: Impulse = 0.0
     """Impulse on the torso, N s."""
-    shove: float = 0.0
+    shove: Speed = 0.0
     """Velocity step of the whole robot, m/s."""
-    push_direction: float = 0.0
+    push_direction: Degrees = 0.0
     """Where push and shove go, degrees; 0 forward, 90 to the left."""
-    push_at: float = 5.0
+    push_at: Seconds = 5.0
     """When push and shove begin, s."""
 
     def disturb(self) -> Callable[[Robot], None] | None:
@@ -107,9 +101,3 @@ class TwinOptions(WorldOptions):
                 robot.shove(self.shove, direction, delay=self.push_at)
 
         return arrange
-
-    def check_world(self) -> None:
-        """Raise what cannot be."""
-        super().check_world()
-        if self.push_at < 0.0:
-            raise UsageError(f"--push-at {self.push_at:g}: give 0 s or more")

@@ -10,15 +10,16 @@ from typing import Any, Literal
 import numpy as np
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
-from hal.errors import UsageError
 from robots import load_robot
 from tools.build import build_walk
 from tools.interrupts import RunInterruptedError
 from tools.options import Common
 from tools.output import console, write_json
 from tools.plot import Trace, plot_walk
+from tools.quantities import Count, Delay, Metres, Seconds, Speed, TurnRate
 from tools.report import WalkReport, summary
 from tools.robot import Robot
+from tools.run_notes import NOTES
 from tools.step_models import check_learning, keep_learnt
 from tools.stepping import find_stepping
 from tools.twin_options import TwinOptions
@@ -32,21 +33,21 @@ GOAL_STEPS = 1000
 class Walk(TwinOptions, Common):
     """Walk a robot and say how it went."""
 
-    steps: int | None = None
+    steps: Count | None = None
     """How many steps to walk, 80 by default; or in how many to reach a goal, 1000 by default."""
-    speed: float | None = None
+    speed: Speed | None = None
     """Speed, m/s; the gait's default otherwise."""
-    side: float = 0.0
+    side: Speed = 0.0
     """Sideways speed, m/s; positive to the left."""
-    turn: float = 0.0
+    turn: TurnRate = 0.0
     """Turn rate, degrees/s; positive to the left."""
     path: str | None = None
     """Follow a path: a CSV file of x,y waypoints, circle:RADIUS or square:SIDE, m."""
-    to: tuple[float, float] | None = None
+    to: tuple[Metres, Metres] | None = None
     """Walk to the point X Y, m, and stop."""
     known_ground: bool = False
     """Let the rollouts know the ground."""
-    stand: float = 0.0
+    stand: Seconds = 0.0
     """Afterwards come to rest and stand for some seconds."""
     style: tuple[str, ...] = ()
     """Styles and how much of them, NAME=AMOUNT; any perturbation of the gait is one too. With
@@ -74,16 +75,18 @@ class Walk(TwinOptions, Common):
     """Let the stepper catch pushes that the walk cannot absorb: it steps, halts, and walks on."""
     open_loop: bool = False
     """Play the bare pose graph, without balance."""
-    delay: float | None = None
+    delay: Delay | None = None
     """Delay of the servos, s."""
+
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        options = self._options()
+        check_learning(options, alone=self.seeds is None and not self.realtime)
+        build_walk(load_robot(self.robot), options, None)
 
     def run(self) -> int:
         """Walk; returns the exit status."""
-        if self.steps is not None and self.steps < 1:
-            raise UsageError(f"--steps {self.steps}: give 1 or more")
-        if self.stand < 0.0:
-            raise UsageError(f"--stand {self.stand:g}: give 0 s or more")
-        check_learning(self._options(), alone=self.seeds is None and not self.realtime)
         seeds = self.all_seeds
         if len(seeds) == 1 and self.seeds is None:
             result = self._one(seeds[0], show=True)
@@ -166,6 +169,7 @@ class Walk(TwinOptions, Common):
             with ProcessPoolExecutor(max_workers=min(len(seeds), cpu_count() or 1)) as pool:
                 for row in pool.map(self._quietly, seeds):
                     progress.advance(bar)
+                    NOTES.add_row(row)
                     yield row
 
     def _check(self) -> None:
@@ -175,7 +179,9 @@ class Walk(TwinOptions, Common):
             build_walk(robot.description, self._options(), robot.predictor)
 
     def _quietly(self, seed: int) -> dict[str, Any]:
-        return self._one(seed, show=False)
+        """Walk one seed in a process of its own, and return its result with its warnings."""
+        NOTES.begin()
+        return self._one(seed, show=False) | {"warnings": NOTES.records()}
 
 
 def _progress(show: bool) -> Progress:

@@ -6,6 +6,7 @@ from pathlib import Path
 from control.gait_file import Sampling
 from control.guide import Guide
 from control.step_memory import Reuse
+from tools.quantities import Metres, Speed, TurnRate
 
 
 @dataclass(frozen=True)
@@ -13,13 +14,13 @@ class WalkOptions:
     """How to walk. What is None is as the gait says."""
 
     gait: str = "walk"
-    speed: float | None = None
-    side: float = 0.0
-    turn: float = 0.0  # degrees/s
+    speed: Speed | None = None
+    side: Speed = 0.0
+    turn: TurnRate = 0.0
     style: tuple[str, ...] = ()
     blend: tuple[str, ...] = ()
     path: str | None = None
-    to: tuple[float, float] | None = None
+    to: tuple[Metres, Metres] | None = None
     guide: Guide | None = None  # instead of all these
     rv: tuple[str, ...] | None = None
     sampling: Sampling | None = None

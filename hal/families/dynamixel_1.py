@@ -1,7 +1,7 @@
 """Dynamixel AX and MX under protocol 1, mixed on a bus as Poppy and Darwin have them."""
 
 from hal.families.dialect import Dynamixel1
-from hal.families.family import Block, Family, Want
+from hal.families.family import Block, Family, Mark, Want
 from hal.families.gain import Gain, slope_pair, slope_steps
 from hal.protocols.protocol1 import LONGEST_DYNAMIXEL
 from hal.servo_model import ServoModel
@@ -16,6 +16,8 @@ from hal.servos.mx_registers import (
 
 FULL = 1023
 """Torque limit that limits nothing."""
+MARKED = FULL - 1
+"""The same, and it shows a restart, which loads `max_torque`; a shutdown leaves 0."""
 STATE = (
     COMMON["present_position"],
     COMMON["present_velocity"],
@@ -38,7 +40,7 @@ def _wanted(model: ServoModel) -> tuple[Want, ...]:
         Want("max_torque", FULL),
         Want("status_return_level", 2),
         Want("torque_mode", 0),
-        Want("torque_limit", FULL),
+        Want("torque_limit", MARKED),
         Want("goal_speed", 0),  # no limit
         Want("goal_acceleration", 0),
         Want("position_i_gain", 0),
@@ -61,8 +63,14 @@ DYNAMIXEL_1 = Family(
     bauds=BAUD_CODES | FAST_CODES,
     state=Block(36, 6, STATE),
     health=Block(36, 8, STATE),
+    check=Block(24, 20, STATE),
     wanted=_wanted,
     gain=_gain,
     alert=sum(1 << bit for bit in HARDWARE_ERRORS),
     errors=HARDWARE_ERRORS,
+    shutdown="shutdown",
+    torque_bytes=12,
+    torque=("torque_enable", "torque_limit"),
+    mark=Mark("torque_limit", FULL, MARKED),
+    latching=True,
 )

@@ -1,7 +1,7 @@
 """Dynamixel X: protocol 2, little-endian, two's complement, a watchdog."""
 
 from hal.families.dialect import Protocol2
-from hal.families.family import Block, Family, Want
+from hal.families.family import Block, Family, Mark, Want
 from hal.families.gain import Gain
 from hal.registers import Register
 from hal.servo_model import ServoModel
@@ -61,12 +61,17 @@ DYNAMIXEL_X = Family(
     numbers=NUMBERS,
     bauds=BAUD_CODES,
     state=Block(126, 10, STATE),
-    health=Block(126, 21, STATE),
-    health_alone=True,
+    health=None,
+    check=Block(64, 83, STATE),
+    check_alone=True,
     wanted=_wanted,
     gain=_gain,
     alert=0x80,
     errors=HARDWARE_ERRORS,
+    shutdown="shutdown",
+    torque_bytes=7,
+    mark=Mark("bus_watchdog", 0),
+    latching=True,
     errors_in_answers=False,
     goal_wakes=False,
 )

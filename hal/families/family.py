@@ -28,6 +28,20 @@ class Want(NamedTuple):
     mask: int | None = None
 
 
+class Mark(NamedTuple):
+    """A register in RAM that shows a restart: arming never leaves in it what a restart does.
+
+    Attributes:
+        name: The register.
+        restarted: What it holds after a restart.
+        armed: What arming sets it to; None where that is the time of a Bus Watchdog, or nothing.
+    """
+
+    name: str
+    restarted: int
+    armed: int | None = None
+
+
 @dataclass(frozen=True)
 class Block:
     """A run of registers that is read in one piece.
@@ -69,6 +83,14 @@ class Block:
         return Span(id, self.address, self.size)
 
 
+class Cycle(NamedTuple):
+    """What the cycle of a line reads: always, now and then, and to see that torque is still on."""
+
+    state: Block
+    health: Block | None
+    check: Block
+
+
 @dataclass(frozen=True, eq=False)
 class Family:
     """Servos that share protocol, register addresses and rules.
@@ -83,8 +105,15 @@ class Family:
         state: What a cycle reads.
         current: What a cycle reads where torque is to come from it; None where `state` will do or
             nothing measures current.
-        health: `state`, read on to voltage and temperature.
-        health_alone: Can one servo be read further on than the others?
+        health: `state`, read on to voltage and temperature; None where `check` is read instead.
+        check: `health`, and before it the registers of `torque`.
+        check_alone: Can one servo be read further on than the others?
+        torque: Registers each of which, at 0, says that a servo does not drive.
+        torque_bytes: How many bytes hold them, from the first of them on.
+        mark: What shows a restart; None where nothing does.
+        shutdown: The register whose bits say which errors end torque, or weaken it.
+        weakening: Bits of errors that weaken torque instead of ending it.
+        latching: Does an error that has ended torque show until the power goes?
         wanted: The settings the stack relies on, in the order in which they are written.
         gain: How stiffness is set on a model.
         alert: Bits of an answer's error byte that say the servo is unwell.
@@ -101,13 +130,20 @@ class Family:
     numbers: Mapping[int, str]
     bauds: Mapping[int, int]
     state: Block
-    health: Block
+    health: Block | None
+    check: Block
     wanted: Callable[[ServoModel], Sequence[Want]]
     gain: Callable[[str], Gain]
     alert: int
     errors: Mapping[int, str]
+    shutdown: str
+    torque_bytes: int
+    torque: tuple[str, ...] = ("torque_enable",)
+    mark: Mark | None = None
+    weakening: int = 0
+    latching: bool = False
     current: Block | None = None
-    health_alone: bool = False
+    check_alone: bool = False
     errors_in_answers: bool = True
     goal_wakes: bool = True
 
@@ -130,8 +166,20 @@ class Family:
             raise UsageError(f"baud rate {baud} cannot be; there are {rates}")
         return self.bauds[baud]
 
-    def cycle(self, models: Sequence[ServoModel]) -> tuple[Block, Block]:
-        """Return what the cycle of a line of `models` reads, and what it reads for health."""
+    def torque_span(self, id: int) -> Span:
+        """Return where the registers of `torque` stand in one servo.
+
+        It has a size that nothing else has that is read: a late answer to another question cannot
+        pass for torque that is on, or off.
+        """
+        address = self.registers["torque_enable"].address
+        return Span(id, address, self.torque_bytes)
+
+    def cycle(self, models: Sequence[ServoModel]) -> Cycle:
+        """Return what the cycle of a line of `models` reads."""
         if self.current is not None and all(model.torque_constant for model in models):
-            return self.current, self.current
-        return self.state, self.health
+            long = self.current
+            end = long.address + long.size
+            check = Block(self.check.address, end - self.check.address, long.state)
+            return Cycle(long, long, check)
+        return Cycle(self.state, self.health, self.check)

@@ -5,7 +5,7 @@ until the power goes, so the loop may change gains without wearing anything.
 """
 
 from hal.families.dialect import Feetech
-from hal.families.family import Block, Family, Want
+from hal.families.family import Block, Family, Mark, Want
 from hal.families.gain import Gain
 from hal.servo_model import ServoModel
 from hal.servos.feetech_registers import (
@@ -22,6 +22,10 @@ from hal.servos.feetech_registers import (
 
 FULL = 1000
 """Torque limit that limits nothing."""
+MARKED = FULL - 1
+"""The same, and it shows a restart, which loads the limit from `max_torque` (memory table, 48)."""
+OVERLOAD = 1 << 5
+"""Bit of the one error that leaves the torque on, at Protective Torque (memory table, 34)."""
 LARGEST_P = 254
 _ALERT = sum(1 << bit for bit in HARDWARE_ERRORS)
 
@@ -32,7 +36,7 @@ def _sts_wanted(model: ServoModel) -> tuple[Want, ...]:
         Want("phase", STEP_SPEED, STEP_SPEED | MULTI_TURN),  # steps a second, one turn
         Want("operating_mode", 0),
         Want("acceleration", 0),  # no profile
-        Want("torque_limit", FULL),
+        Want("torque_limit", MARKED),
     )
 
 
@@ -77,10 +81,16 @@ FEETECH_STS = Family(
     state=Block(56, 6, _STS_STATE),
     current=Block(56, 15, _STS_CURRENT),
     health=Block(56, 8, _STS_STATE),
+    check=Block(40, 24, _STS_STATE),
     wanted=_sts_wanted,
     gain=_sts_gain,
     alert=_ALERT,
     errors=HARDWARE_ERRORS,
+    shutdown="unloading_condition",
+    torque_bytes=10,
+    torque=("torque_enable", "torque_limit"),
+    mark=Mark("torque_limit", FULL, MARKED),
+    weakening=OVERLOAD,
 )
 
 FEETECH_SCS = Family(
@@ -92,8 +102,12 @@ FEETECH_SCS = Family(
     bauds=BAUD_CODES,
     state=Block(56, 6, _SCS_STATE),
     health=Block(56, 8, _SCS_STATE),
+    check=Block(40, 24, _SCS_STATE),
     wanted=_wanted,
     gain=_scs_gain,
     alert=_ALERT,
     errors=HARDWARE_ERRORS,
+    shutdown="unloading_condition",
+    torque_bytes=5,
+    weakening=OVERLOAD,
 )

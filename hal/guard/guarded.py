@@ -8,18 +8,15 @@ from threading import RLock
 
 import numpy as np
 
-from hal.backend import Backend, Clock, HealthReader, Rearmable
+from hal.backend import Backend, Clock, Rearmable
 from hal.command import FIELDS, JointCommand
-from hal.errors import (
-    GuardianError,
-    PortError,
-    StaleStateError,
-    TorqueOnError,
-    TorqueUnknownError,
-    UnsafeCommandError,
-)
+from hal.errors import GuardianError, PortError, UnsafeCommandError
+from hal.guard.arming import check_health, read_afresh
+from hal.guard.ending import check_off
 from hal.guard.limits import SafetyLimits, StopPolicy
+from hal.guard.presence import Presence
 from hal.guard.watch import HealthWatch
+from hal.heartbeat import no_heartbeat
 from hal.joints import Array, Joints
 from hal.observation import Observation
 from hal.torque_state import TorqueState
@@ -28,10 +25,6 @@ CROUCH_SECONDS = 1.5
 TICK = 0.008
 REPLUG_TIME = 2.0
 """What a port that was plugged in again may take until it can be opened, s."""
-
-
-def no_heartbeat() -> None:
-    """Nobody watches whether commands come."""
 
 
 @dataclass
@@ -69,6 +62,7 @@ class GuardedBackend:
         self._buffer = np.empty_like(self.limits.lower)
         # Where a limit is infinite, clamping does not show that a value is.
         self._unlimited = not np.isfinite([self.limits.lower, self.limits.upper]).all()
+        self._presence = Presence(self.backend)
         # Bound once: these run on every tick.
         self._send: Callable[[JointCommand], JointCommand] = self.backend.write
         self._collect: Callable[[], Observation] = self.backend.collect
@@ -82,6 +76,11 @@ class GuardedBackend:
     def clock(self) -> Clock:
         """The backend's clock."""
         return self.backend.clock
+
+    @property
+    def last(self) -> tuple[Observation, JointCommand] | None:
+        """What was seen last, and what the joints obey, while somebody drives them."""
+        return (self._last, self._obeyed) if self._last and self._obeyed else None
 
     def connect(self) -> None:
         """Open the backend."""
@@ -105,7 +104,10 @@ class GuardedBackend:
             if on:
                 self.admit()
             self._driven, self._obeyed = on, None
-            return self.backend.set_torque(on)
+            state = self.backend.set_torque(on)
+            if on:
+                read_afresh(self.backend, self.limits.max_age)
+            return state
 
     def rearm(self) -> TorqueState:
         """Switch torque on at the present pose after a port was gone; return what was read back.
@@ -127,7 +129,9 @@ class GuardedBackend:
             try:
                 self.admit()
                 self._driven = True
-                return backend.rearm()
+                state = backend.rearm()
+                read_afresh(self.backend, self.limits.max_age)
+                return state
             except PortError:
                 if self.clock.now() >= until:
                     raise
@@ -143,27 +147,27 @@ class GuardedBackend:
             self.backend.request()
             return self.collect()
 
+    def peek(self) -> Observation:
+        """Return the present state, however old it is and however unwell the joints are."""
+        with self.lock:
+            return self.backend.read()
+
     def collect(self) -> Observation:
         """Return the state last asked for.
 
         Raises:
+            TorqueLostError: A joint has lost its torque since it was armed; said once.
+            PortError: A port is gone; said once.
             StaleStateError: A joint has not answered for longer than `limits.max_age`.
             UnhealthyError: A joint that is driven has been beyond a stop level for long enough.
         """
         observation = self._collect()
         self._last = observation
-        age = observation.joints.age
-        if age.max() > self.limits.max_age:
-            worst = int(np.argmax(age))
-            raise StaleStateError(
-                f"joint {self.joints.names[worst]!r} has not answered for {age[worst]:.2f} s "
-                f"(limit {self.limits.max_age:.2f} s); check its cable and power, "
-                "then run `windup health`"
-            )
+        self._presence.check(observation.joints.age, self.limits.max_age)
         if self.watch is not None:
             unwell = self.watch.look(observation, self._obeyed)
             if unwell is not None and (self._driven or self._obeyed is not None):
-                raise unwell
+                raise self.watch.error(unwell)
         return observation
 
     def write(self, command: JointCommand) -> JointCommand:
@@ -195,6 +199,9 @@ class GuardedBackend:
     ) -> TorqueState:
         """Carry out the stop policy and return the torque as it was read back.
 
+        A robot with a joint that has no torque, or may have none, goes limp at once: a crouch, or
+        a pose that is held, would be a fall.
+
         Args:
             policy: What to do instead of the robot's own policy.
             hurry: Asked during a crouch: if true, torque goes off at once.
@@ -207,37 +214,25 @@ class GuardedBackend:
             return self._stop(policy or self.stop_policy, hurry)
 
     def _stop(self, policy: StopPolicy, hurry: Callable[[], bool]) -> TorqueState:
+        if policy != "limp" and self._presence.crippled():
+            policy = "limp"
         if policy == "hold":
             self._send(JointCommand.hold(self.joints, self._pose()))
             return TorqueState.known(np.ones(len(self.joints), dtype=bool))
         if policy == "crouch" and self.crouch is not None:
             self._glide(self._pose(), self.crouch, CROUCH_SECONDS, hurry)
         state = self.set_torque(False)
-        if state.on.any():
-            where = state.names(self.joints, state.on)
-            raise TorqueOnError(f"torque is still on at {where}; cut the servo power")
-        if state.unknown.any():
-            where = state.names(self.joints, state.unknown)
-            raise TorqueUnknownError(
-                f"torque is unknown at {where}: no answer; it may be on: cut the servo power, "
-                "or give the port back"
-            )
+        check_off(state, self.joints)
         return state
 
     def admit(self) -> None:
-        """Look twice at every joint before torque comes on.
+        """Look at every joint before torque comes on.
 
         Raises:
             UnhealthyError: A joint is beyond a stop level; nothing has been switched.
         """
-        if self.watch is None or not isinstance(self.backend, HealthReader):
-            return
-        seen = []
-        for _ in range(2):
-            self.backend.read_health()
-            seen.append(self.backend.read())
-        if (unwell := self.watch.refuse(seen, self.limits.max_age)) is not None:
-            raise unwell
+        with self.lock:
+            check_health(self.backend, self.watch, self.limits.max_age)
 
     def _pose(self) -> Array:
         last = self._last or self.read()

@@ -21,6 +21,7 @@ from hal.guardian.lock import AdapterLock
 from hal.guardian.order import HAND_OVER, IDLE, READY, RELEASE, TICK, Charge, Order
 from hal.guardian.traceback_signal import show_traceback_on_signal
 from hal.joints import Array
+from hal.network_port import NETWORK
 from hal.open_port import stable_url
 from hal.port import DevicePort
 from hal.servo_backend import ServoBackend
@@ -32,7 +33,6 @@ END_TIME = 1.0
 """What it may take to end once it was released, s."""
 UNREAD_TIME = 0.25
 """How long heartbeats may lie unread before the guardian counts as stopped, s."""
-NETWORK = ("socket://", "rfc2217://")
 
 
 class Guardian:

@@ -49,7 +49,7 @@ class AdapterLock:
 
     def __init__(self, url: str) -> None:
         self.url = url
-        self._descriptor = os.open(_path(url), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+        self._descriptor = _open(url)
 
     def take(self) -> int:
         """Take the lock and return its descriptor, for the guardian to inherit.
@@ -68,11 +68,15 @@ class AdapterLock:
 
     def free(self) -> bool:
         """Take the lock if nobody has it, and return whether it is ours."""
-        try:
-            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            return False
-        return True
+        while True:
+            try:
+                fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                return False
+            if os.fstat(self._descriptor).st_nlink:
+                return True
+            self.close()  # it was removed as a leftover before it was ours
+            self._descriptor = _open(self.url)
 
     def note(self) -> Note:
         """Return what its holder says."""
@@ -114,6 +118,10 @@ def wait_while_guarded(url: str) -> None:
             time.sleep(LOOK_AGAIN)
     finally:
         lock.close()
+
+
+def _open(url: str) -> int:
+    return os.open(_path(url), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
 
 
 def _path(url: str) -> Path:

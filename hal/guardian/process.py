@@ -28,6 +28,9 @@ OVERSLEPT = 0.02
 SECOND_CHANCE = 0.05
 """What the host gets for its heartbeat then, s."""
 
+DYING = 0.02
+"""From a process letting go of its pipe to its end, where it dies, s."""
+
 
 class Ending(Enum):
     """Why the guardian stops watching."""
@@ -85,7 +88,7 @@ def _ending(data: bytes, host: Host) -> Ending | None:
         return Ending.HANDED_OVER
     if data:
         return None
-    return Ending.DIED if host.wait(0.0) else Ending.CLOSED
+    return Ending.DIED if host.wait(DYING) else Ending.CLOSED
 
 
 def _first_line(orders: int) -> bytes:

@@ -67,7 +67,7 @@ class RemoteBus:
             HardwareError: A servo has no torque any more, or cannot be read.
         """
         torque = self.torque()
-        if not torque.state(attempts=2).all_on:
+        if not torque.state().all_on:
             raise HardwareError(f"{self.charge.url}: a servo lost its torque, or is silent")
         torque.line.goals.values[:] = goals
         torque.line.bus.exchange.send(torque.line.goals.frames())

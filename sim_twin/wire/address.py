@@ -5,10 +5,13 @@ robot of ours; ``twin://bench?servos=STS3215:1-20&baud=1000000``: servos of one 
 """
 
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import Annotated, Any
 from urllib.parse import parse_qsl, urlsplit
 
 from hal.errors import UsageError, suggest
+from hal.ranges import Range, check_numbers
+from sim_twin.wire.fault_rule import LAST_ID
+from sim_twin.wire.fault_text import parse_rules
 
 SCHEME = "twin"
 BENCH = "bench"
@@ -47,16 +50,16 @@ class Address:
     world: str = ""
     bus: str = ""
     faults: str = ""
-    seed: int = 0
-    supply: float = 0.0
-    latency: float = 0.0
-    turnaround: float = 0.0
+    seed: Annotated[int, Range(0, 2**32 - 1)] = 0
+    supply: Annotated[float, Range(0.0, 60.0, "V")] = 0.0
+    latency: Annotated[float, Range(0.0, 1_000.0, "ms")] = 0.0
+    turnaround: Annotated[float, Range(0.0, 1e6, "us")] = 0.0
     missing: str = "skip"
     power: str = "on"
     hold: str = "yes"
     servos: str = "XM430-W350:1"
-    baud: int = 0
-    return_delay: int = -1
+    baud: Annotated[int, Range(0, 10_000_000)] = 0
+    return_delay: Annotated[int, Range(-1, 254)] = -1
     physics: str = "mujoco"
     imu: str = "auto"
 
@@ -90,7 +93,11 @@ def parse_address(url: str) -> Address:
         if name not in OPTIONS:
             raise UsageError(f"{url!r}: unknown option {name!r}{suggest(name, OPTIONS)}")
         values[name] = _value(url, name, text)
-    return replace(DEFAULTS, **values)
+    address = replace(DEFAULTS, **values)
+    check_numbers(address, f"{url!r}: ")
+    parse_servos(address.servos)
+    parse_rules(address.faults)
+    return address
 
 
 def parse_servos(text: str) -> list[tuple[str, int]]:
@@ -107,11 +114,14 @@ def parse_servos(text: str) -> list[tuple[str, int]]:
         name, _, ids = part.partition(":")
         first, _, last = ids.partition("-")
         try:
-            found += [(name, k) for k in range(int(first), int(last or first) + 1)]
+            numbers = range(int(first), int(last or first) + 1)
         except ValueError:
-            raise UsageError(
-                f"servos: {part!r}: a model and its ids, as in 'XM430-W350:1-20'"
-            ) from None
+            numbers = range(0)
+        if not numbers:
+            raise UsageError(f"servos: {part!r}: a model and its ids, as in 'XM430-W350:1-20'")
+        if numbers[0] < 0 or numbers[-1] > LAST_ID:
+            raise UsageError(f"servos: {part!r}: ids are 0 .. {LAST_ID}")
+        found += [(name, k) for k in numbers]
     return found
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from hal.errors import UsageError, suggest
+from hal.ranges import Range, check_number
 
 # What befalls an answer on its way, and the seconds that some of them take by default.
 ANSWERS: Final = {
@@ -35,11 +36,19 @@ EVENTS: Final = {
 }
 SECONDS: Final = {**ANSWERS, **EVENTS}
 KINDS: Final = tuple(SECONDS)
+LAST_ID: Final = 253  # 254 is everybody's
+SHARE: Final = Range(0.0, 1.0)
+TIME: Final = Range(0.0, 1e9, "s")
 # Keys that only one kind takes, with their defaults.
 EXTRA: Final = {
     "volts": ("brown_out", 0.0),
     "degrees": ("heat", 75.0),
     "speed": ("imu_spin", 3.0),
+}
+RANGES: Final = {
+    "volts": Range(0.0, 60.0, "V"),
+    "degrees": Range(-273.0, 255.0, "degrees C"),
+    "speed": Range(-100.0, 100.0, "rad/s"),
 }
 RATE = 0.01  # where neither rate nor time is given
 
@@ -134,16 +143,17 @@ def make_rule(
     check_kind(kind)
     if at is None:
         rate = RATE if rate is None else rate
-        if not 0.0 <= rate <= 1.0:
-            raise UsageError(f"faults: {kind}:{rate:g}: a rate from 0 to 1, as in '{kind}:0.01'")
+        check_number(f"faults: {kind}: rate", rate, SHARE)
         times: list[float] = []
     else:
         if rate is not None:
             raise UsageError(f"faults: {kind}: a rate or a time, not both")
         times = sorted(at) if isinstance(at, Sequence) else [at]
+    for time in times:
+        check_number(f"faults: {kind}: at", time, TIME)
     lasts = SECONDS[kind] if seconds is None else seconds
-    if not all(time >= 0.0 for time in (lasts, *times)):  # nor nan
-        raise UsageError(f"faults: {kind}: times are 0 s or later")
+    if not (kind in EVENTS and lasts == math.inf):  # it may last for ever
+        check_number(f"faults: {kind}: seconds", lasts, TIME)
     if seconds is not None and not SECONDS[kind]:
         takers = ", ".join(other for other in KINDS if SECONDS[other])
         raise UsageError(f"faults: {kind}: takes no seconds; these do: {takers}")
@@ -167,8 +177,8 @@ def _extra(kind: str, given: Mapping[str, float | None]) -> dict[str, float]:
         taker = EXTRA[key][0]
         if value is not None and kind != taker:
             raise UsageError(f"faults: {kind}: takes no {key}; only {taker} does")
-        if value is not None and (not math.isfinite(value) or (key == "volts" and value < 0.0)):
-            raise UsageError(f"faults: {kind}: {key}={value:g} cannot be")
+        if value is not None:
+            check_number(f"faults: {kind}: {key}", value, RANGES[key])
     taken = {key: default for key, (taker, default) in EXTRA.items() if taker == kind}
     return {key: default if (value := given.get(key)) is None else value
             for key, default in taken.items()}  # fmt: skip

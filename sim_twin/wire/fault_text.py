@@ -3,7 +3,7 @@
 from typing import Final
 
 from hal.errors import UsageError, suggest
-from sim_twin.wire.fault_rule import EVENTS, EXTRA, Rule, check_kind, make_rule
+from sim_twin.wire.fault_rule import EVENTS, EXTRA, LAST_ID, Rule, check_kind, make_rule
 
 KEYS: Final = ("rate", "at", "ids", "bus", "seconds", *EXTRA)
 EXAMPLE = "'drop:0.01,late:0.02:seconds=0.003:ids=1-6,unplug:at=2.5:seconds=0.5'"
@@ -53,7 +53,7 @@ def _parse(part: str, live: bool) -> Rule:
         )
     except ValueError:
         raise UsageError(
-            f"faults: {part!r}: a rate from 0 to 1 and keys, as in {EXAMPLE}"
+            f"faults: {part!r}: a rate from 0 to 1, keys, ids up to {LAST_ID}, as in {EXAMPLE}"
         ) from None
 
 
@@ -66,7 +66,7 @@ def _ids(text: str) -> list[int]:
     for word in text.split(";"):
         first, _, last = word.partition("-")
         ids = range(int(first), int(last or first) + 1)
-        if not ids:
+        if not ids or ids[0] < 0 or ids[-1] > LAST_ID:
             raise ValueError(f"{word}: no ids")
         found += ids
     return found

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, Self, TypedDict, Unpack
+from weakref import ReferenceType, ref
 
 from hal.errors import UsageError
 from sim_twin.wire.answer_faults import Fate, Sender
@@ -75,7 +76,7 @@ class Faults:
         self.hits: deque[Hit] = deque(maxlen=REMEMBERED)
         self._rules: list[Rule] = []
         self._dice = random.Random(seed)
-        self._world: World | None = None
+        self._of: ReferenceType[World] | None = None
         self._sender = Sender()
 
     @classmethod
@@ -195,10 +196,14 @@ class Faults:
             UsageError: A fault concerns a bus, servos or an IMU that are not in it.
         """
         if self._world is None:
-            self._world = world
+            self._of = ref(world)  # the world has the buses, and they have us
             self.check(self._rules)
             for rule in self._rules:
                 self._script(rule)
+
+    @property
+    def _world(self) -> "World | None":
+        return None if self._of is None else self._of()
 
     def check(self, rules: Sequence[Rule]) -> None:
         """Raise what could never happen in the world.

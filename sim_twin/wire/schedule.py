@@ -27,6 +27,10 @@ class Schedule:
         self._count += 1
         heapq.heappush(self._queue, (max(time, self.now), self._count, action))
 
+    def clear(self) -> None:
+        """Let nothing happen any more."""
+        self._queue.clear()
+
     def run_next(self) -> None:
         """Bring time to the next action and do it."""
         time, _, action = heapq.heappop(self._queue)

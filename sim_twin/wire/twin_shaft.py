@@ -15,6 +15,7 @@ The controller of a dcmotor asks for a torque, ``kp (ctrl - q) - kd dq``, and dr
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from weakref import WeakMethod
 
 import numpy as np
 
@@ -136,7 +137,7 @@ class TwinImu:
         self._places = np.r_[gyro : gyro + 3, acceleration : acceleration + 3]
         self._filter = LowPass(OPENCR.lag, twin.timestep)
         self._base = twin.data.qpos
-        twin.on_step = self._feel
+        twin.on_step = _while_alive(self._feel)
 
     @property
     def angular_velocity(self) -> Array:
@@ -222,3 +223,14 @@ class TwinPhysics:
         stuck = np.flatnonzero(self.jammed)
         self.twin.data.qpos[7 + stuck] = self._qpos[7 + stuck]
         self.twin.data.qvel[6 + stuck] = 0.0
+
+
+def _while_alive(method: Callable[[], None]) -> Callable[[], None]:
+    """Return what calls a method as long as its object lives, and does not keep that alive."""
+    found = WeakMethod(method)
+
+    def call() -> None:
+        if (method := found()) is not None:
+            method()
+
+    return call

@@ -47,25 +47,25 @@ def find_world(name: str) -> World:
 
 
 def drop_world(name: str) -> None:
-    """Forget a world; ports that are open keep theirs."""
-    _running.pop(name, None)
+    """Forget a world; ports that are open keep theirs, until they are closed."""
+    running = _running.pop(name, None)
+    if running is not None and not running.ports:
+        _end(running)
 
 
 def enter(address: Address) -> Running:
     """Return the running world of an address, built if need be, with one port more."""
     name = address.world or f"{address.robot} ({address.clock})"
     running = _running.get(name) or _running.pop(_lost_name(address), None)
-    if running is not None:
-        _running[name] = running
     if running is None:
         running = _start(build_world(address), address.clock, keep=bool(address.world))
-        _running[name] = running
     elif running.kind != address.clock:
         raise UsageError(
             f"world {name!r} runs on a {running.kind} clock, not a {address.clock} one"
         )
     if address.bus and address.bus not in running.world.buses:
         raise UnknownNameError("bus", address.bus, running.world.buses)
+    _running[name] = running
     running.ports += 1
     return running
 
@@ -81,6 +81,13 @@ def leave(running: Running, lost: Address | None = None) -> None:
             del _running[name]
         if lost is not None:
             _running[_lost_name(lost)] = running
+    if running.ports == 0 and not any(other is running for other in _running.values()):
+        _end(running)
+
+
+def _end(running: Running) -> None:
+    """Forget what was to happen in a world that nobody can reach: it would keep the world."""
+    running.world.schedule.clear()
 
 
 def _lost_name(address: Address) -> str:

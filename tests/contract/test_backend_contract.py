@@ -6,12 +6,14 @@ from itertools import count
 import numpy as np
 import pytest
 
+import sim_twin.wire as wire
 from hal.backend import Backend
 from hal.command import FIELDS, JointCommand, joint_torque
 from hal.errors import UnsafeCommandError
 from hal.guard import GuardedBackend, SafetyLimits
 from hal.joints import Array
 from hal.observation import Observation
+from hal.servo_backend import ServoBackend
 from robots import load_robot
 from sim_twin.backend import TwinBackend
 from sim_twin.twin import Twin
@@ -228,6 +230,9 @@ def test_request_and_collect_are_a_read(backend: Backend) -> None:
     halves = backend.collect()
     exact = isinstance(backend, TwinBackend)  # elsewhere a read takes time of its own
     for name, values in arrays(whole).items():
+        if name == "health_age":  # it is another servo's turn in the second read
+            assert (arrays(halves)[name] <= values + 0.05).all()
+            continue
         close = 0.0 if exact else 0.05
         np.testing.assert_allclose(arrays(halves)[name], values, atol=close, err_msg=name)
     assert halves.time >= whole.time
@@ -270,6 +275,7 @@ def way(backend: Backend, swing: float) -> Array:
     backend.configure()
     backend.set_torque(True)
     joints, stance = backend.joints, load_robot("op3").stance
+    behind(backend).reset(stance)  # it has sunk a little while one servo after the other came on
     arms = np.array(["sho" in name or "el" in name for name in joints.names])
     began, seen = backend.clock.now(), []
     for tick in range(150):
@@ -281,9 +287,18 @@ def way(backend: Backend, swing: float) -> Array:
     return np.array(seen)
 
 
+def behind(backend: Backend) -> Twin:
+    """Return the twin behind a backend, on a wire or not."""
+    if isinstance(backend, TwinBackend):
+        return backend.twin
+    assert isinstance(backend, ServoBackend)
+    world = wire.find_world(backend.links[0].bus.port.url.split("world=")[1].split("&")[0])
+    return next(item for item in world.owned if isinstance(item, Twin))
+
+
 @pytest.mark.parametrize(("swing", "counts"), [(0.0, 1.0), (0.1, 1.0)])
 def test_the_wire_and_the_twin_go_the_same_way(swing: float, counts: float) -> None:
     # A goal takes the wire about one physics step, and is read back half a cycle late.
-    wire = way(wired("op3"), swing)
+    bus = way(wired("op3"), swing)
     twin = way(TwinBackend(Twin(load_robot("op3"), delay=0.002)), swing)
-    assert np.abs(wire - twin).max() <= (counts + 1e-6) * COUNT
+    assert np.abs(bus - twin).max() <= (counts + 1e-6) * COUNT

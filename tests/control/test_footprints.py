@@ -62,8 +62,11 @@ def test_what_is_written_is_read_again(tmp_path: Path) -> None:
     [
         ("step = []", "it has no step; give at least one [[step]]"),
         ('[[step]]\nfoot = "lift"\nx = 0\ny = 0', "step 1: unknown foot 'lift'"),
-        ('[[step]]\nfoot = "left"\nx = inf\ny = 0', "step 1: x, y and yaw have to be numbers"),
-        ('[[step]]\nfoot = "left"\nx = 0\ny = 0\nduration = 0', "step 1: duration 0: give more"),
+        ('[[step]]\nfoot = "left"\nx = inf\ny = 0', "step[0].x: inf is not finite"),
+        (
+            '[[step]]\nfoot = "left"\nx = 0\ny = 0\nduration = 0',
+            "step[0].duration: Expected `float` > 0.0",
+        ),
         ('[[step]]\nfoot = "left"\nx = 0\nz = 0', "unknown key"),
         ('frame = "world"\nstep = []', "frame"),
     ],

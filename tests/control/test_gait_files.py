@@ -149,7 +149,7 @@ BAD = {
         "r_knee = -30",
         "r_knee: -30 degrees is outside the joint's limits 0.0 .. 114.6",
     ),
-    "pose that is no number": ("[10, 40]", "[10, nan]", "state.swing.pose.l_knee: "),
+    "pose that is no number": ("[10, 40]", "[10, nan]", "state[0].pose[1]: nan is not finite"),
     "unreachable state": (
         "ends_step = true",
         'ends_step = true\nnext = "land"',
@@ -189,7 +189,7 @@ BAD = {
     "negative time": (
         "time = 0.25",
         "time = -0.25",
-        "state.land.until.time: a hold time cannot be negative",
+        "state[1].until.time: Expected `float` >= 0.0",
     ),
     "columns": ("[10, 40]", "[10, 40, 1]", "state.swing.pose: 3 values for 2 columns"),
     "state twice": (

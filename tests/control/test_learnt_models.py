@@ -1,3 +1,4 @@
+import json
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,12 @@ def learnt(*places: float, complete: bool = True) -> LearntModels:
     for place in places:
         models.store(0, np.array([place, 0.0]), (1.0 + place) * J)
     return models
+
+
+def with_model(**changed: object) -> str:
+    model = {"phase": 0, "start": [0.0], "jacobian": [[1.0, 0.0], [0.0, 1.0]], **changed}
+    file = {"regulation": NAMES[0], "perturbations": NAMES[1], "models": [model]}
+    return json.dumps(file)
 
 
 def test_starts_within_reach_share_the_mean_of_their_models() -> None:
@@ -62,6 +69,9 @@ def test_what_is_written_is_read_again(tmp_path: Path) -> None:
     [
         ("[", "no file of step models"),
         ('{"regulation":["up.forward"],"perturbations":["a"],"models":[]}', "Learn them anew"),
+        (with_model(jacobian=[[1.0], [2.0]]), r"models\[0\].jacobian: give 2 x 2 numbers"),
+        (with_model(start=[1e300]), r"models\[0\].start\[0\]: no number is beyond 1e\+12"),
+        (with_model(phase=-1), "Expected `int` >= 0"),
     ],
 )
 def test_another_file_is_refused(tmp_path: Path, text: str, message: str) -> None:

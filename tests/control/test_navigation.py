@@ -82,11 +82,19 @@ def test_a_path_file_may_have_a_heading_and_comments(tmp_path) -> None:  # type:
     assert points.tolist() == [[0.0, 0.0], [1.0, 0.5]]
     assert not closed
     file.write_text("0,0\n1,one\n")
-    with pytest.raises(UsageError, match="line 2 is not x,y"):
+    with pytest.raises(UsageError, match="line 2: 'one' is no number"):
         read_path(str(file))
 
 
-@pytest.mark.parametrize("text", ["circle:big", "square:-1", "square:"])
-def test_a_shape_needs_a_length(text: str) -> None:
-    with pytest.raises(UsageError, match="no length in metres"):
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("circle:big", "'big' is no number"),
+        ("circle:nan", "give a finite number of m"),
+        ("square:-1", "give more than 0, up to 10000 m"),
+        ("square:", "'' is no number"),
+    ],
+)
+def test_a_shape_needs_a_length(text: str, said: str) -> None:
+    with pytest.raises(UsageError, match=f"--path {text}: .*{said}"):
         read_path(text)

@@ -108,7 +108,7 @@ def test_an_attitude_that_nobody_measures_is_refused_before_anything_moves(tmp_p
         ),
         ("{ time = 0.3 }", '{ contact = "left_foot" }', "state.bow.until: beside `move`"),
         ('again = "bow"', 'again = "bwo"', "did you mean 'bow'?"),
-        ("tries = 2", "tries = 0", "tries: 0: give 1 or more"),
+        ("tries = 2", "tries = 0", "tries: Expected `int` >= 1"),
         ("loop = false", "mirror = true", "without balance and mirror"),
     ],
     ids=["too long", "contact", "again", "tries", "mirror"],

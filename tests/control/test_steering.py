@@ -126,7 +126,7 @@ def test_spells_are_read_with_and_without_amount_and_times() -> None:
     ("text", "message"),
     {
         "duck=much": "--style duck=much: 'much' is no number",
-        "duck=nan": "--style duck=nan: 'nan' is no amount",
+        "duck=nan": "--style duck=nan: nan: give a finite number",
         "duck@5:4": "--style duck@5:4: begin at 0 s or later, and end after that",
         "duck@-1": "--style duck@-1: begin at 0 s or later, and end after that",
         "duck@soon": "--style duck@soon: 'soon' is no number",

@@ -42,10 +42,28 @@ def test_a_file_becomes_a_typed_record(tmp_path: Path) -> None:
             'name = "cart"\nwheels = [{ radius = "big" }]',
             "wheels[0].radius: Expected `float`, got `str`",
         ),
+        ('name = "cart"\nwheels = [{ radius = nan }]', "wheels[0].radius: nan is not finite"),
+        ('name = "cart"\nwheels = [{ radius = -inf }]', "wheels[0].radius: -inf is not finite"),
+        ('name = "cart"\nwheels = [{ radius = 1e300 }]', "wheels[0].radius: no number is beyond"),
+        (
+            'name = "cart"\nwheels = [{ radius = 1.0, spokes = 1000000000000000000000 }]',
+            "wheels[0].spokes: no number is beyond 1e+12",
+        ),
         ("", "missing required field `name`"),
         ('name = "cart', "not TOML: "),
     ],
-    ids=["unknown key", "unknown key inside", "wrong type", "wrong type inside", "missing", "TOML"],
+    ids=[
+        "unknown key",
+        "unknown key inside",
+        "wrong type",
+        "wrong type inside",
+        "nan",
+        "infinite",
+        "huge",
+        "huge integer",
+        "missing",
+        "TOML",
+    ],
 )
 def test_what_does_not_fit_is_one_line_with_file_and_key(
     tmp_path: Path, text: str, message: str
@@ -69,3 +87,8 @@ def test_a_file_that_is_no_text_is_an_error_of_ours(tmp_path: Path) -> None:
     path.write_bytes(b'name = "\xff\xfe"')
     with pytest.raises(ConfigError, match="not TOML"):
         load_toml(path, Cart)
+
+
+def test_a_device_is_not_read() -> None:
+    with pytest.raises(ConfigError, match="/dev/zero: cannot be read: this is a device"):
+        load_toml(Path("/dev/zero"), Cart)

@@ -1,5 +1,5 @@
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -246,6 +246,24 @@ def test_torque_does_not_come_on_at_an_unwell_joint() -> None:
 def test_one_wrong_byte_refuses_nobody() -> None:
     guard, _ = watched(misread=True)
     assert guard.set_torque(True).all_on
+
+
+def test_an_answer_lost_after_a_long_arming_is_no_reason_to_stop() -> None:
+    guard, servos = watched()
+    silent = iter([True, True, False])
+
+    def collect() -> Observation:
+        servos.clock.time += 0.2
+        late = 0.4 if next(silent, False) else 0.0
+        seen = servo_state.seen(servos.clock.now())
+        return replace(seen, joints=replace(seen.joints, age=np.array([0.0, late, 0.0])))
+
+    guard.admit()
+    servos.collect = collect  # type: ignore[method-assign]
+    guard.watch = None
+    assert guard.set_torque(True).all_on
+    assert servos.read().joints.age.max() == 0.0
+    assert next(silent, None) is None, "they have been read"
 
 
 def test_arming_again_asks_for_health_too() -> None:

@@ -1,14 +1,19 @@
+import io
 import json
 import shutil
 import signal
 from collections.abc import Callable, Iterator
+from contextlib import redirect_stderr
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+import hal.open_port
+import sim_twin.wire.worlds
 from robots import RobotDescription
+from sim_twin.twin import Twin
 from tools import cli
 
 
@@ -44,6 +49,33 @@ def windup(capsys: pytest.CaptureFixture[str]) -> Iterator[Windup]:
 
     yield command
     signal.signal(signal.SIGTERM, before)
+
+
+@pytest.fixture
+def nothing_opens(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
+    """Let no port be opened and no world be built."""
+
+    def opened(*arguments: object, **named: object) -> None:
+        raise AssertionError(f"opened: {arguments} {named}")
+
+    monkeypatch.setattr(hal.open_port, "_open", opened)
+    monkeypatch.setattr(sim_twin.wire.worlds, "build_world", opened)
+    monkeypatch.setattr(Twin, "__init__", opened)
+    monkeypatch.chdir(tmp_path)
+    before = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, before)
+
+
+def refusal(words: list[str]) -> str:
+    """Return the one line with which a command line is refused."""
+    said = io.StringIO()
+    with redirect_stderr(said):
+        status = cli.run(words)
+    lines = said.getvalue().splitlines()
+    assert (status, len(lines)) == (2, 1), said.getvalue()
+    assert lines[0].startswith("windup: ")
+    return lines[0]
 
 
 @pytest.fixture

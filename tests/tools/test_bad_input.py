@@ -5,8 +5,11 @@ from typing import Any
 
 import pytest
 
+from hal.errors import UsageError
 from sim_twin.twin import Twin
 from tests.tools.conftest import Ran, Windup
+from tools import Robot
+from tools.walk_options import WalkOptions
 
 GAIT = """
 title = "Bow"
@@ -60,16 +63,16 @@ OPTIONS = {
         "walk op3 --rv up xcom swing_com stance_com",
         "perturbations for 8 regulation variables",
     ),
-    "no steps": ("walk op3 --steps 0", "--steps 0: give 1 or more"),
-    "negative steps": ("walk op3 --steps -3", "--steps -3: give 1 or more"),
+    "no steps": ("walk op3 --steps 0", "--steps 0: give 1 .. 1000000"),
+    "negative steps": ("walk op3 --steps -3", "--steps -3: give 1 .. 1000000"),
     "rate": (
         "walk op3 --rate 300",
         "a rate of 300 Hz is no whole number of physics steps of 2 ms; 250 Hz is",
     ),
     "rate too high": ("walk op3 --rate 1000", "a rate of 1000 Hz is no whole number of physics"),
-    "no rate": ("walk op3 --rate 0", "--rate 0: give a rate above 0 Hz"),
-    "rate that is no number": ("walk op3 --rate nan", "rate"),
-    "no seeds": ("walk op3 --seeds 0", "--seeds 0: give 1 or more"),
+    "no rate": ("walk op3 --rate 0", "--rate 0: give more than 0, up to 10000 Hz"),
+    "rate that is no number": ("walk op3 --rate nan", "--rate nan: give a finite number of Hz"),
+    "no seeds": ("walk op3 --seeds 0", "--seeds 0: give 1 .. 100000"),
     "negative seed": ("walk op3 --seed -1 --noise 0.2", "--seed -1"),
     "speed": ("walk op3 --speed 9", "speed 9 m/s is outside the range of gait 'walk': 0 .. "),
     "speed of a gait without": ("walk human12 --speed 1", "gait 'walk' has no speed table; "),
@@ -80,7 +83,7 @@ OPTIONS = {
         "walk op3 --delay 0.003",
         "--delay 0.003: give a whole number of physics steps of 0.002 s",
     ),
-    "negative delay": ("walk op3 --delay -0.002", "--delay -0.002: give 0 s or more"),
+    "negative delay": ("walk op3 --delay -0.002", "--delay -0.002: give 0 .. 1 s"),
     "delay nan": ("walk op3 --delay nan", "--delay nan"),
     "delay inf": ("walk op3 --delay inf", "--delay inf"),
     "negative noise": ("walk op3 --noise -1", "--noise -1"),
@@ -132,6 +135,22 @@ def test_a_result_that_cannot_be_written_is_found_out_first(
     ran = windup("walk", "op3", option, tmp_path / "none" / "result.png")
     assert ran.status == 2
     assert "cannot be written: there is no folder" in ran.err
+
+
+@pytest.mark.usefixtures("still")
+def test_calls_with_bad_numbers_are_refused_before_anything_moves() -> None:
+    bad = float("nan")
+    with Robot.open("op3") as robot:
+        for call, said in (
+            (lambda: robot.walk(speed=bad), "speed nan: give a finite number of m/s"),
+            (lambda: robot.walk(options=WalkOptions(turn=bad)), "turn nan: give a finite number"),
+            (lambda: robot.walk(steps=0), "steps 0: give 1 .. 1000000"),
+            (lambda: robot.stand(bad), "seconds nan: give a finite number of s"),
+            (lambda: robot.play("wave", -1.0), "seconds -1: give 0 .. 10000000 s"),
+            (lambda: robot.push(float("inf")), "impulse inf: give a finite number"),
+        ):
+            with pytest.raises(UsageError, match=said):
+                call()
 
 
 ROBOT = {

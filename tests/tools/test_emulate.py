@@ -85,7 +85,7 @@ def test_what_was_unplugged_can_be_opened_again(tmp_path: Path) -> None:
         ([STS], "needs a --pty PATH or a --tcp PORT"),
         (["opp3", "--tcp", "0"], "unknown robot 'opp3'; did you mean 'op3'?"),
         (["op3", "--tcp", "0", "--faults", "dorp"], "unknown kind 'dorp'"),
-        (["op3", "--tcp", "0", "--supply", "0"], "give more than 0 V"),
+        (["op3", "--tcp", "0", "--supply", "0"], "give more than 0, up to 60 V"),
     ],
 )
 def test_what_cannot_be_is_said(

@@ -12,7 +12,7 @@ from tests.tools.conftest import Windup
         ("scan /dev/ttyUSB0 --faults drop", "there is --port /dev/ttyUSB0"),
         ("health duck --faults drop", "there is no --port"),
         ("walk duck --port twin://duck --faults dorp", "did you mean 'drop'?"),
-        ("stand duck --port twin://duck --faults drop:2", "a rate from 0 to 1"),
+        ("stand duck --port twin://duck --faults drop:2", "rate 2: give 0 .. 1"),
         ("stand duck --port twin://duck?faults=drop --faults cut", "has faults already"),
     ],
 )

@@ -61,8 +61,8 @@ def test_circles_rectangles_and_polygons(text: str, area: float) -> None:
     ("text", "said"),
     [
         ("0.1,0.2", "circle"),
-        ("a,b,c", "circle"),
-        ("nan,0,1", "circle"),
+        ("a,b,c", "'a' is no number"),
+        ("nan,0,1", "give a finite number of m"),
         ("0,0,0", "no area"),
         ("1,1,0,1", "above 0"),
         ("0,0,1,0,1,1,0", "as many X as Y"),

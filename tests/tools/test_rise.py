@@ -64,7 +64,7 @@ def test_what_does_not_get_up_ends_with_status_1_and_why(windup: Windup, my_op3:
     ("line", "message"),
     [
         ("rise duck --lying back", "duck has no get_up_back, get_up_front in its gaits"),
-        ("rise op3 --tries 0", "--tries 0: give 1 or more"),
+        ("rise op3 --tries 0", "--tries 0: give 1 .. 1000"),
     ],
 )
 def test_what_cannot_be_is_one_line_and_status_2(windup: Windup, line: str, message: str) -> None:

@@ -36,11 +36,11 @@ def test_what_a_later_order_leaves_out_stays_as_it_was() -> None:
     ("more", "said"),
     [
         (["--speed", "0.9"], "give 0 .. 0.2"),
-        (["--speed", "nan"], "give 0 .. 0.2"),
+        (["--speed", "nan"], "--speed nan: give a finite number of m/s"),
         (["--heading", "inf"], "degrees"),
         (["--seconds", "0"], "more than 0"),
         (["--then", "5"], "SECONDS,SPEED"),
-        (["--then", "a,b"], "SECONDS,SPEED"),
+        (["--then", "a,b"], "'a' is no number"),
         (["--then", "9,0.1"], "more than 9"),
         (["--slope", "99"], "-30 .. 30"),
     ],

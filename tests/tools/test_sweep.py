@@ -11,12 +11,13 @@ import tyro
 
 from hal.errors import HardwareError, UsageError
 from tools import cli
+from tools.command import Command
 from tools.sweep_grid import parse_axis, points
 from tools.sweep_table import CsvTable, open_table
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fake:
+class Fake(Command):
     robot: Annotated[str, tyro.conf.Positional]
     gain: float = 1.0
     servo: bool = True

@@ -7,13 +7,15 @@ from typing import Annotated
 import tyro
 
 from hal.errors import UnknownNameError
+from tools.command import Command
 from tools.output import check_writable, console, write_json
+from tools.quantities import Jobs
 from tools.reproduce.report import record, reproduce
 from tools.reproduce.studies import studies
 
 
 @dataclass(frozen=True, kw_only=True)
-class Reproduce:
+class Reproduce(Command):
     """Reproduce the figures of a paper: a report with its statements beside ours.
 
     Runs that were done before are not done again, so that after Ctrl-C the same line goes on.
@@ -27,7 +29,7 @@ class Reproduce:
     """A few runs for each figure, in a minute or two, instead of all."""
     out: Path | None = None
     """Folder for report.html, the pictures and the runs; reproduce-PAPER by default."""
-    jobs: int | None = None
+    jobs: Jobs | None = None
     """Processes; one a core by default."""
     json: Path | None = None
     """Write the verdicts as JSON to a file, or to standard output with '-'."""

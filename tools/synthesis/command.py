@@ -11,11 +11,14 @@ import tyro
 from control.gait_file import GaitFile
 from hal.config import load_toml
 from hal.errors import UsageError
+from hal.ranges import Range
 from robots import load_robot
 from tools.build import build_walk
+from tools.command import Command
 from tools.gaits import gait_path
 from tools.output import check_writable, console, write_json
 from tools.parallel import Workers
+from tools.quantities import Count, Jobs, Noise, Seed, Some, Speed
 from tools.synthesis.gait_toml import write_gait
 from tools.synthesis.genes import Genome
 from tools.synthesis.log import Entry, SearchLog
@@ -29,7 +32,7 @@ Positional = Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Synthesise:
+class Synthesise(Command):
     """Improve a gait, or find one, with CMA-ES: `windup walk ROBOT --gait FILE` walks the result.
 
     Trials are kept beside the result in FILE.trials: after Ctrl-C the same line goes on where it
@@ -49,34 +52,33 @@ class Synthesise:
     objective: tuple[str, ...] = ()
     """What counts, TERM or TERM=WEIGHT: falls, speed, effort, shake, drift, cross,
     flight, air, skip."""
-    aim: float | None = None
+    aim: Speed | None = None
     """The speed that `speed` wants, m/s."""
-    speed: float | None = None
+    speed: Speed | None = None
     """Commanded speed, m/s; the gait's own by default."""
-    trials: int = 300
+    trials: Count = 300
     """How many gaits to try."""
-    steps: int = 40
+    steps: Count = 40
     """Steps of a walk."""
-    seeds: int = 3
+    seeds: Some = 3
     """Noisy starts of each trial."""
-    noise: float = 0.2
+    noise: Noise = 0.2
     """Standard deviation of noise on the start pose, degrees."""
-    seed: int = 0
+    seed: Seed = 0
     """Seed of the search."""
-    population: int | None = None
+    population: Annotated[int, Range(4, 10_000)] | None = None
     """Trials in a generation."""
-    spread: float = 1.0
+    spread: Annotated[float, Range(0.0, 100.0, above=True)] = 1.0
     """How far the first trials are from the gait: one is 4 degrees, 0.02 s, 0.03 of a target."""
     out: Path
     """Gait file to write, .toml."""
-    jobs: int | None = None
+    jobs: Jobs | None = None
     """Processes; one a core by default."""
     json: Path | None = None
     """Write what came of it as JSON to a file, or to standard output with '-'."""
 
     def run(self) -> int:
         """Search; returns 0 if the gait written walks from all starts, else 1."""
-        self._check()
         robot = load_robot(self.robot)
         start = load_toml(gait_path(robot, self.gait), GaitFile)
         build_walk(robot, WalkOptions(gait=self.gait, speed=self.speed), None)
@@ -99,14 +101,9 @@ class Synthesise:
             finals = self._finals(search, genome, aim, workers)
         return self._conclude(search, genome, finals)
 
-    def _check(self) -> None:
-        for name in ("trials", "steps", "seeds"):
-            if getattr(self, name) < 1:
-                raise UsageError(f"--{name} {getattr(self, name)}: give 1 or more")
-        if self.population is not None and self.population < 4:
-            raise UsageError(f"--population {self.population}: give 4 or more")
-        if self.spread <= 0.0 or self.noise < 0.0 or self.seed < 0:
-            raise UsageError("--spread has to be above 0, --noise and --seed 0 or more")
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
         if self.out.suffix != ".toml":
             raise UsageError(f"--out {self.out}: name it .toml")
         check_writable(self.out, self._log_path())

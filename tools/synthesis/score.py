@@ -7,7 +7,9 @@ from typing import Any
 import numpy as np
 
 from hal.errors import UnknownNameError, UsageError
+from hal.ranges import Range, read_number
 
+WEIGHT = Range(0.0, 1e6)
 Row = dict[str, Any]
 CROSSED = 20.0  # mm that feet pass through each other, for a cost of 1
 AIR = 0.2  # share of the time in the air that counts as flying
@@ -101,12 +103,9 @@ def objective(given: tuple[str, ...], aim: float | None) -> Objective:
         name, equals, value = text.partition("=")
         if name not in TERMS:
             raise UnknownNameError("--objective", name, TERMS)
-        try:
-            weights[name] = float(value) if equals else USUAL.get(name, 1.0)
-        except ValueError:
-            raise UsageError(f"--objective {text}: {value!r} is no number") from None
-        if not 0.0 <= weights[name] < np.inf:
-            raise UsageError(f"--objective {text}: give a weight of 0 or more")
+        weights[name] = USUAL.get(name, 1.0)
+        if equals:
+            weights[name] = read_number(f"--objective {text}", value, WEIGHT)
     if not weights:
         weights = {name: w for name, w in USUAL.items() if name != "speed" or aim is not None}
     if "speed" in weights and aim is None:

@@ -252,11 +252,11 @@ def test_clearing_ends_it(host: Host1) -> None:
     ("text", "message"),
     [
         ("dorp:1", "unknown kind 'dorp'; did you mean 'drop'?"),
-        ("drop:2", "a rate from 0 to 1"),
-        ("drop:x", "'drop:x': a rate from 0 to 1 and keys, as in"),
+        ("drop:2", "drop: rate 2: give 0 .. 1"),
+        ("drop:x", "'drop:x': a rate from 0 to 1, keys, ids up to 253, as in"),
         ("drop:0.1:at=3", "a rate or a time, not both"),
         ("drop:0.1:id=3", "'drop:0.1:id=3': unknown key 'id'; did you mean 'ids'?"),
-        ("unplug:at=-1", "times are 0 s or later"),
+        ("unplug:at=-1", "unplug: at -1: give 0 .. 1000000000 s"),
     ],
 )
 def test_a_wrong_text_says_what_is_wrong(text: str, message: str) -> None:

@@ -24,7 +24,7 @@ from tests.sim_twin.wire.wire_host import open_host
         ("twin://bench?servos=XM430", "'XM430': a model and its ids"),
         ("twin://bench?servos=XM43:1", "unknown servo model 'XM43'"),
         ("twin://bench?faults=dorp:1", "unknown kind 'dorp'; did you mean 'drop'?"),
-        ("twin://bench?faults=drop:2", "a rate from 0 to 1"),
+        ("twin://bench?faults=drop:2", "rate 2: give 0 .. 1"),
         ("twin://bench?bus=legs", "unknown bus 'legs'"),
         ("twin://opp3", "unknown robot 'opp3'; did you mean 'op3'?"),
         ("twin://human", "has no servos on a wire"),

@@ -1,0 +1,106 @@
+"""Is the IMU to be trusted? It may be silent, frozen, not a number, or spinning (`gyro_watch`).
+
+A frozen IMU repeats one sample, gyroscope and accelerometer alike. Real ones are never that still,
+but an emulated one is, of a robot that lies or that hands hold: only once the joints have moved
+meanwhile it is a reason to stop.
+"""
+
+from collections.abc import Sequence
+from math import isfinite, nan
+
+import numpy as np
+
+from hal.guard.finding import AGAIN, CHECK, Finding, Saying
+from hal.guard.gyro_watch import LONGEST, GyroWatch, Verdict
+from hal.joints import Array
+from hal.observation import ImuState, Observation
+
+SILENT = 0.25
+"""Age of the newest sample, s."""
+FROZEN = 0.5
+"""Time without a new sample while joints move, s."""
+RIGID = 1.0
+"""The same while none does: only to be warned of, s."""
+MOVED = 0.03
+"""What a joint has to have moved meanwhile, rad."""
+
+SILENCE = Saying("imu silent", "silent for {:.2f} s", "at {:.2f} s", CHECK, who="the IMU")
+STUCK = Saying(
+    "imu frozen", "stuck at one sample for {:.1f} s", "at {:.1f} s", AGAIN, who="the IMU"
+)
+NO_NUMBER = Saying("imu not a number", "not a number", "", AGAIN, who="a reading of the IMU")
+
+
+class ImuWatch:
+    """Judges every sample of one IMU by the observations alone.
+
+    Attributes:
+        gyro: Judges its turns.
+    """
+
+    def __init__(self) -> None:
+        self.gyro = GyroWatch()
+        self._warnings: dict[str, Finding] = {}
+        self._present = ""
+        self._time = -np.inf
+
+    @property
+    def warnings(self) -> list[Finding]:
+        """What there was to warn about: one finding a kind, with its worst value and its count."""
+        return list(self._warnings.values())
+
+    def look(self, observation: Observation) -> Finding | None:
+        """Return what is wrong with the IMU now, or None."""
+        now = observation.time
+        passed = now - self._time
+        if not 0.0 <= passed < FROZEN:  # another run, or nobody looked for a while
+            self._restart(now)
+            passed = 0.0
+        self._time = now
+        verdict, stop = self._judge(observation, observation.imu, min(passed, LONGEST))
+        if verdict is None:
+            self._present = ""
+            return None
+        found = Finding(*verdict, now, stop)
+        self._note(found)
+        return found
+
+    def _restart(self, now: float) -> None:
+        self._sample: Sequence[float] = ()
+        self._changed = self._heard = now
+        self._pose: Array = np.zeros(0)
+        self.gyro.restart()
+
+    def _judge(
+        self, observation: Observation, imu: ImuState | None, dt: float
+    ) -> tuple[Verdict | None, bool]:
+        """Return what is wrong, and whether that is a reason to stop."""
+        now, joints = observation.time, observation.joints
+        self._heard = self._heard if imu is None else now - imu.age
+        if (silence := now - self._heard) > SILENT:
+            return (SILENCE, silence, SILENT), True
+        if imu is None:
+            return None, False
+        sample = (*imu.angular_velocity.tolist(), *imu.acceleration.tolist())
+        if not isfinite(sum(sample)):
+            return (NO_NUMBER, nan, nan), True
+        same = now - self._changed
+        if sample != self._sample:
+            if self._sample and (same < LONGEST or self.gyro.doubted):
+                self.gyro.compare(sample, self._sample, now)
+            self._sample, self._changed, self._pose = sample, now, joints.position
+        elif same > FROZEN and np.abs(joints.position - self._pose).max() > MOVED:
+            return (STUCK, same, FROZEN), True
+        elif same > RIGID:
+            return (STUCK, same, RIGID), False
+        return self.gyro.judge(sample, now, dt, joints.velocity), True
+
+    def _note(self, found: Finding) -> None:
+        """Take down a warning, and how often it begins."""
+        name = found.saying.name
+        fresh = Finding(found.saying, found.value, found.limit, found.since)
+        known = self._warnings.setdefault(name, fresh)
+        if found.value > known.value:
+            known.value, known.limit = found.value, found.limit
+        known.count += self._present != name
+        self._present = name

@@ -1,0 +1,75 @@
+"""How a joint lost its torque, in words, and what to do about it."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from hal.errors import TorqueLostError
+
+
+class Loss(NamedTuple):
+    """How joints lost their torque.
+
+    Attributes:
+        what: What happened; "{servo}" stands for their servos.
+        remedy: What to do.
+    """
+
+    what: str
+    remedy: str
+
+    def __str__(self) -> str:
+        return self.what.format(servo="its servo")
+
+
+def restarted(volts: float) -> Loss:
+    """Return the loss of a servo that has restarted; `volts` is the lowest supply read, V."""
+    seen = "" if volts != volts else f" (lowest supply that was read: {volts:.1f} V)"
+    return Loss(
+        "{servo} restarted" + seen,
+        "check battery, supply and connectors, then start again",
+    )
+
+
+def shut_down(errors: tuple[str, ...]) -> Loss:
+    """Return the loss of a servo whose own protection has switched it off."""
+    return Loss(
+        "{servo} shut down: " + ", ".join(errors),
+        "remove the cause, then switch the servos' power off and on",
+    )
+
+
+def weakened(errors: tuple[str, ...]) -> Loss:
+    """Return the loss of a servo whose own protection lets it push only weakly."""
+    return Loss(
+        "{servo} pushes with a part of the torque only: " + ", ".join(errors),
+        "remove the cause, then start again",
+    )
+
+
+SWITCHED_OFF = Loss(
+    "somebody switched it off", "end the other program on the bus, then start again"
+)
+UNEXPLAINED = Loss(
+    "{servo}, or somebody, switched it off",
+    "check supply, load and temperature, and that no other program uses the bus",
+)
+UNPLUGGED = Loss(
+    "the port went away, and when it was back torque was switched off",
+    "check the cable of the adapter, then start again",
+)
+SILENT = "check its cable and power, then run `windup health`"
+"""What to do about a servo that does not answer."""
+
+
+def torque_lost(losses: Mapping[str, Loss]) -> TorqueLostError:
+    """Return the error that names the joints with how each lost its torque."""
+    alike: dict[Loss, list[str]] = {}
+    for name, loss in losses.items():
+        alike.setdefault(loss, []).append(name)
+    return TorqueLostError("; ".join(_sentence(loss, names) for loss, names in alike.items()))
+
+
+def _sentence(loss: Loss, names: list[str]) -> str:
+    servo, its = ("its servo", "its") if len(names) == 1 else ("their servos", "their")
+    what = loss.what.format(servo=servo)
+    return f"{', '.join(names)} lost {its} torque: {what}; {loss.remedy}"

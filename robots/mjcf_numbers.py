@@ -1,0 +1,46 @@
+"""Numbers of an MJCF that MuJoCo takes and that cannot be: not finite, huge, or negative."""
+
+from typing import Any, Final
+
+import mujoco
+import numpy as np
+
+from hal.config import LARGEST
+
+KINDS: Final = {"body": "body", "jnt": "joint", "dof": "joint", "geom": "geom", "site": "site"}
+"""What the fields of a model begin with, and what people call that."""
+NOT_NEGATIVE: Final = ("dof_armature", "dof_damping", "dof_frictionloss", "jnt_stiffness")
+FIELDS: Final = (
+    *("body_pos", "body_quat", "body_mass", "body_inertia", "body_ipos"),
+    *("jnt_pos", "jnt_axis", "jnt_range", *NOT_NEGATIVE),
+    *("geom_size", "geom_pos", "geom_quat", "geom_friction", "geom_margin", "geom_gap"),
+    *("geom_solref", "geom_solimp", "site_pos", "site_quat", "site_size"),
+)
+"""Fields that an MJCF sets."""
+TIMESTEP: Final = (1e-5, 0.05)
+"""Physics steps that can be simulated, s."""
+
+
+def wrong_number(model: mujoco.MjModel) -> str:
+    """Return what is wrong with a number of `model`, and where; "" where all are right."""
+    step, gravity = float(model.opt.timestep), model.opt.gravity
+    if not TIMESTEP[0] <= step <= TIMESTEP[1]:
+        return f"option timestep: {step:g} s is outside {TIMESTEP[0]:g} .. {TIMESTEP[1]:g} s"
+    if not (np.abs(gravity) <= LARGEST).all():
+        return f"option gravity: {gravity} is not finite"
+    for name in FIELDS:
+        values = getattr(model, name)
+        if not (fine := np.abs(values) <= LARGEST).all():
+            return _said(model, name, values, fine, "is not finite, or huge")
+        if name in (*NOT_NEGATIVE, "geom_friction") and not (fine := values >= 0.0).all():
+            return _said(model, name, values, fine, "is negative")
+    return ""
+
+
+def _said(model: mujoco.MjModel, field: str, values: Any, fine: Any, what: str) -> str:
+    """Return the object and the field of the first value that is not `fine`."""
+    at = tuple(np.argwhere(~fine)[0])
+    kind, _, name = field.partition("_")
+    index = int(model.dof_jntid[at[0]]) if kind == "dof" else int(at[0])
+    label = getattr(model, KINDS[kind])(index).name or f"number {index}"
+    return f"{KINDS[kind]} {label!r}, {name}: {values[at]:g} {what}"

@@ -1,0 +1,29 @@
+"""Whole trials, with all their processes. How soon is the bench's business, not a test's."""
+
+import pytest
+
+from robots import load_robot
+from tools.safety.rows import ROWS
+from tools.safety.trial import Moment, trial, under_way
+from tools.safety.verdict import judge
+
+
+@pytest.mark.parametrize(
+    ("name", "robot"),
+    [
+        ("SIGINT", "op3"),
+        ("SIGKILL program", "duck"),
+        ("SIGSTOP for ever", "op3"),
+        ("SIGKILL guardian", "duck"),
+        ("SIGKILL adapter", "op3"),
+        ("goes on after Ctrl-C", "duck"),
+        ("exits between two calls", "op3"),
+    ],
+)
+def test_somebody_switches_the_robot_off(name: str, robot: str) -> None:
+    row = next(row for row in ROWS if row.name == name)
+    with trial(robot, row, Moment("standing", 0.1)) as running:
+        under_way(running)
+        verdict = judge(running, row, load_robot(robot), row.do(running))
+    assert verdict.status in row.status
+    assert verdict.found == row.end

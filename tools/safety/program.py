@@ -1,0 +1,72 @@
+"""The process that is ended: somebody's program with a robot."""
+
+import atexit
+import os
+import sys
+from contextlib import ExitStack
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+from hal.errors import WindupError
+from tools.interrupts import end_on_signals
+from tools.output import console
+from tools.robot import Robot
+from tools.safety.begin import Begin
+from tools.safety.faulty import FAULTS, break_imu, make_faulty
+from tools.safety.row import Activity
+from tools.safety.scripts import LEFT_OPEN, SCRIPTS, move
+
+
+@dataclass(frozen=True)
+class Program:
+    """What the program does.
+
+    Attributes:
+        robot: The robot.
+        port: Its port.
+        arm: It may switch torque on.
+        log: Where it and its guardian print.
+        activity: What it is busy with when it is ended.
+        fault: What it does wrong then: a name of `FAULTS` or `SCRIPTS`, "imu nan", or "".
+        after: When, s into the activity.
+    """
+
+    robot: str
+    port: str
+    activity: Activity
+    fault: str = ""
+    after: float = 0.0
+    arm: bool = True
+    log: Path = Path(os.devnull)
+
+
+def main(program: Program, tell: Connection) -> None:
+    """Run a program to its end; the body of the process, whose exit status is that of a command."""
+    end_on_signals()
+    os.dup2(os.open(program.log, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600), 2)
+    status = 0
+    try:
+        _run(program, tell)
+        tell.send(("ended", "by itself"))
+    except WindupError as error:
+        tell.send(("error", str(error)))
+        console.print(f"windup: {error}", markup=False, soft_wrap=True)
+        status = error.exit_status
+    except KeyboardInterrupt:
+        status = 130
+    atexit._run_exitfuncs()  # a process of multiprocessing leaves them out, a program does not
+    sys.exit(status)
+
+
+def _run(program: Program, tell: Connection) -> None:
+    begin = Begin(tell, program.after)
+    robot = Robot.open(program.robot, port=program.port, arm=program.arm)
+    with ExitStack() as stack:
+        if program.fault not in LEFT_OPEN:
+            stack.enter_context(robot)
+        if program.fault in FAULTS:
+            make_faulty(robot, FAULTS[program.fault], begin)
+        if program.fault == "imu nan":
+            break_imu(robot, begin)
+        SCRIPTS.get(program.fault, move)(robot, program.activity, begin)
