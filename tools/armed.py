@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from control.loop import LoopReport
-from hal.errors import HardwareError, UsageError, WindupError
+from hal.errors import HardwareError, PostureError, UsageError, WindupError
 from hal.guard import StopPolicy
 from hal.torque_state import TorqueState
 from tools.custody import Custody
@@ -76,6 +76,24 @@ class Armed(OnStack):
         with self._held_afterwards():
             if self.stack.wired:
                 self._arm(self.backend.rearm)
+
+    def _get_ready(self, down: bool, asked: Asked) -> None:
+        """Switch torque on where it is off, once the robot is seen to be in a posture for it.
+
+        Raises:
+            PostureError: It is not; torque is off.
+        """
+        start = self.start
+        if start is not None and (start.unseen or not self.armed):
+            try:
+                start.check(down)
+            except PostureError:
+                if self.armed:
+                    self._stop("limp", asked)
+                raise
+        self._arm_once()
+        if start is not None:
+            start.unseen = False
 
     def _arm_once(self) -> None:
         if not self.armed and self.stack.wired:

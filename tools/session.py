@@ -13,7 +13,7 @@ from control.loop import Estimator, LoopReport, Until, run_loop
 from control.play import PoseHolder
 from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
-from hal.errors import ControllerError, PostureError, TelemetryError, WindupError
+from hal.errors import ControllerError, TelemetryError, WindupError
 from hal.guard import StopPolicy
 from hal.guard.finding import Finding
 from hal.guard.imu_watch import ImuWatch
@@ -184,24 +184,6 @@ class Session(Armed):
         if self.loop.reason == INTERRUPTED:
             raise RunInterruptedError(self.loop, asked.by or "robot.stop()")
         return self.loop
-
-    def _get_ready(self, down: bool, asked: Asked) -> None:
-        """Switch torque on where it is off, once the robot is seen to be in a posture for it.
-
-        Raises:
-            PostureError: It is not; torque is off.
-        """
-        start = self.start
-        if start is not None and (start.unseen or not self.armed):
-            try:
-                start.check(down)
-            except PostureError:
-                if self.armed:
-                    self._stop("limp", asked)
-                raise
-        self._arm_once()
-        if start is not None:
-            start.unseen = False
 
     def _estimator(self, needs_imu: bool) -> Estimator | None:
         """Return what fills in the base state; who estimates it is guarded against a bad IMU.

@@ -9,9 +9,11 @@ from typing import Literal, get_args
 import numpy as np
 
 from robots import RobotDescription
+from tools.protect import leg_joints
 
 Fault = Literal["sign", "swap", "jam", "motor"]
 FAULTS: tuple[Fault, ...] = get_args(Fault)
+IN_THE_FILE: tuple[Fault, ...] = ("sign", "swap")
 
 
 @dataclass(frozen=True)
@@ -29,14 +31,21 @@ class Broken:
 
     @classmethod
     def random(cls, robot: RobotDescription, fault: Fault, rng: np.random.Generator) -> "Broken":
-        """Return the fault at random joints; ids are swapped with the other side's or the next."""
-        count = len(robot.joints)
-        first = int(rng.integers(count))
+        """Return the fault at random joints.
+
+        What is wrong in the file is so for legs: nothing shows where other limbs really are. Ids
+        are swapped with the other side's, or with the next joint's.
+        """
+        joints = np.arange(len(robot.joints))
+        if fault in IN_THE_FILE:
+            joints = np.flatnonzero(leg_joints(robot, robot.spec().compile()))
+        row = int(rng.integers(len(joints)))
+        first, following = int(joints[row]), int(joints[(row + 1) % len(joints)])
         if fault != "swap":
             return cls(fault, (first,))
-        mirrored = int(robot.mirror.perm[first])
-        other = mirrored if mirrored != first and rng.random() < 0.5 else (first + 1) % count
-        return cls(fault, (first, other))
+        return cls(
+            fault, (first, int(robot.mirror.perm[first]) if rng.random() < 0.5 else following)
+        )
 
     def folder(self, robot: RobotDescription, inside: Path) -> Path:
         """Return a copy of the robot's folder whose robot.toml has the fault."""

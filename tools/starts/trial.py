@@ -27,6 +27,10 @@ STAND = 1.0
 """How long it stands, s."""
 CLOSE = np.radians(8.0)
 """How far from its stance one that stands may be, rad: loads hold joints back."""
+CAUGHT_WITHIN = 15.0
+"""How far a joint with a fault may come, degrees."""
+SHOWS = np.radians(10.0)
+"""A joint that is to move by less does not show that it is jammed, rad."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,8 @@ def try_start(start: Start) -> dict[str, Any]:
 
     "outcome" is "done", "refused" (its posture does not do), "first motion" (a joint did not
     follow), "fell", or another error; "said" are the words; "told" whether a robot that lies or
-    sits was told so before it moved; "moved" how far joints with a fault came, degrees.
+    sits was told so before torque came on; "moved" how far joints with a fault came, degrees;
+    "harm" whether such a fault that nobody has caught should have been.
     """
     truth, rng = load_robot(start.robot), start.generator()
     placed = random_posture(truth, start.kind, rng)
@@ -69,7 +74,7 @@ def try_start(start: Start) -> dict[str, Any]:
             name = str(broken.folder(truth, Path(folder)))
             row["joints"] = [truth.joints.names[joint] for joint in broken.joints]
         robot = Robot.open(name, port=bus.url)
-        stack.callback(robot.stack.close)
+        stack.callback(robot.close)
         _place(robot, bus.world, placed)
         if broken is not None:
             _break(bus.world, broken)
@@ -77,7 +82,17 @@ def try_start(start: Start) -> dict[str, Any]:
         robot.watch = moved.look
         row |= _run(robot, start.kind)
         row["moved"] = moved.most
+        if broken is not None:
+            row["harm"] = _does_harm(robot, broken, placed, row)
     return row
+
+
+def _does_harm(robot: Robot, broken: Broken, placed: Placed, row: dict[str, Any]) -> bool:
+    """Return whether something came of a fault: a fall, a long way, a joint that stayed behind."""
+    way = np.abs(robot.description.stance - placed.pose)[list(broken.joints)].max()
+    if broken.fault == "jam":
+        return bool(row["outcome"] != "done" or way > SHOWS)
+    return bool(row["outcome"] != "done" or row["moved"] > CAUGHT_WITHIN)
 
 
 @dataclass
