@@ -12,13 +12,15 @@ from tools.starts.trial import CAUGHT_WITHIN, Start, try_start
 
 SHARE = 4
 """So many times fewer starts with each fault than without any."""
+ON_FEET: tuple[Kind, ...] = ("standing", "squatting")
 SHOWN: dict[Fault, tuple[Kind, ...]] = {
-    "sign": ("standing", "squatting"),
-    "swap": ("standing", "squatting"),
-    "jam": ("standing", "squatting", "hanging"),
+    "sign": ON_FEET,
+    "swap": ON_FEET,
+    "jam": (*ON_FEET, "hanging"),
+    "motor": (*ON_FEET, "hanging"),
 }
 """Where a fault can show in the first motion: one of the file only with the feet on the floor. Who
-gets up moves many joints only later."""
+gets up holds its pose first, and moves many joints only later."""
 
 
 def measure_starts(name: str, starts: int = 100, seed: int = 0) -> dict[str, Any]:
@@ -37,8 +39,7 @@ def measure_starts(name: str, starts: int = 100, seed: int = 0) -> dict[str, Any
     sound = [Start(name, kinds[n % len(kinds)], seed + n) for n in range(starts)]
     broken = []
     for fault in FAULTS:
-        where = [kind for kind in kinds if kind in SHOWN.get(fault, kinds)]
-        count = range(max(starts // SHARE, 1))
+        where, count = SHOWN[fault], range(max(starts // SHARE, 1))
         broken += [Start(name, where[n % len(where)], seed + n, fault) for n in count]
     rows = [row for _, row in side_by_side(try_start, sound + broken, label="starts")]
     result = _sound([row for row in rows if row["fault"] is None], "get_up_front" in robot.gaits())

@@ -126,8 +126,8 @@ def test_a_script_that_goes_on_after_ctrl_c_moves_nothing_until_it_arms_again() 
         with pytest.raises(UsageError, match=r"call robot\.arm\(\)"):
             robot.stand(2.0)
         assert not any(device.driving for device in bus.world.devices)
-        robot.twin.reset(robot.description.stance)  # somebody puts it on its feet
         robot.arm()
+        robot.twin.reset(robot.description.stance)  # somebody puts it on its feet
         assert robot.stand(0.2).reason == "done"
 
 
