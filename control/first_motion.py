@@ -23,6 +23,9 @@ STIFFENING = 0.6
 """What it takes at least to become stiff, s."""
 SETTLING = 0.3
 """How long a joint may take at the end to come to rest, s."""
+WATCH = 1.0
+"""How long joints are watched that hold still afterwards, s: friction may keep a motor from running
+away until then."""
 CLOSE = 0.05
 """A way that is shorter at every joint shows nothing of it, rad."""
 
@@ -108,7 +111,7 @@ class Approach:
             FirstMotionError: A joint does not follow.
         """
         if not self.active:
-            return self.controller.step(observation, dt)
+            return self._left_alone(observation, dt)
         if self._following is None:
             command = self.controller.step(observation, dt)
             if self._is_there(command, observation):
@@ -116,6 +119,17 @@ class Approach:
                 return command
             self._plan(command, observation)
         return self._on_the_way(observation, dt)
+
+    def _left_alone(self, observation: Observation, dt: float) -> JointCommand:
+        """Return the controller's command; as long as it holds still, its joints have to."""
+        command = self.controller.step(observation, dt)
+        if self._following is not None:
+            moves = np.abs(command.position - self._goal).max() > CLOSE
+            if moves or observation.time > self._began + self._seconds + SETTLING + WATCH:
+                self._following = None
+            else:
+                self._following.look(observation, self._goal)
+        return command
 
     def _is_there(self, command: JointCommand, observation: Observation) -> bool:
         """Plan nothing where there is no way, and the joints are stiff."""
@@ -156,7 +170,7 @@ class Approach:
 
     def _hand_over(self, observation: Observation, goal: Array, dt: float) -> JointCommand:
         """Let the controller begin; one that starts from a pose starts from the goal."""
-        self.active = False
+        self.active, self._goal = False, goal
         if np.abs(self._way).max() >= CLOSE:
             self.motion.due = False
         start = observation

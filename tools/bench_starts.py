@@ -74,14 +74,23 @@ def _broken(rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
     not caught. "unseen": not caught, for nothing of it showed. "moved": the farthest that a joint
     came before it was caught, degrees.
     """
-    caught = [row for row in rows if row["outcome"] in ("refused", "first motion")]
+    ends = ("refused", "first motion", "UnhealthyError")
+    caught = [row for row in rows if row["outcome"] in ends]
     early = [row for row in caught if row["moved"] <= CAUGHT_WITHIN]
     unseen = [row for row in rows if row not in caught and not row["harm"]]
+    late = [row for row in rows if row not in early and row not in unseen]
     return {
         "starts": len(rows),
         "caught": len(early),
         "named": sum(any(name in row["said"] for name in row["joints"]) for row in early),
         "moved": max((row["moved"] for row in early), default=0.0),
         "unseen": len(unseen),
-        "late": len(rows) - len(early) - len(unseen),
+        "late": len(late),
+        "late_ones": [_sentence(row) for row in late],
     }
+
+
+def _sentence(row: dict[str, Any]) -> str:
+    """Return what came of one start, for people."""
+    joints, moved = " and ".join(row["joints"]), row["moved"]
+    return f"{row['kind']} {row['seed']}, {joints}, moved {moved:.0f} degrees: {row['said']}"

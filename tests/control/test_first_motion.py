@@ -200,3 +200,24 @@ def test_a_joint_that_is_silent_for_a_while_is_not_judged_by_its_old_reading() -
         command = approach.step(observation(tick * TICK, position, age=age), TICK)
         position = np.where(age > 0.0, position, command.position)
     assert not approach.active
+
+
+def test_a_joint_that_runs_away_just_after_it_is_named_too() -> None:
+    place = [0.0]
+
+    def runs_away_later(goal: Array) -> Array:
+        place[0] += 0.01 if goal[L_KNEE] == pytest.approx(1.0) and place[0] < 3.0 else 0.0
+        return np.where(np.arange(N) == 0, place[0] * (place[0] > 0.45), goal)
+
+    with pytest.raises(FirstMotionError, match="waist turned"):
+        run(motion(), PoseHolder(JOINTS, BENT), joint=runs_away_later)
+
+
+def test_a_controller_that_moves_fast_afterwards_is_not_judged() -> None:
+    class Jumps(Still):
+        def step(self, observation: Observation, dt: float) -> JointCommand:
+            there = self.pose if observation.time < 3.0 else np.zeros(N)
+            return JointCommand.hold(JOINTS, there)
+
+    ticks = run(motion(), Jumps(BENT), joint=lambda goal: 0.9 * goal)
+    assert ticks[-1][1].position == pytest.approx(np.zeros(N))
