@@ -91,6 +91,11 @@ class TorqueWatched(Protocol):
     """A backend that sees whether its joints still have their torque; a twin's always do."""
 
     @property
+    def lost(self) -> Mapping[str, str]:
+        """URL of each port that is gone, to what was seen of it."""
+        ...
+
+    @property
     def lost_joints(self) -> Mapping[str, Loss]:
         """Joint name to how it has lost its torque since it was armed."""
         ...

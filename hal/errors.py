@@ -96,15 +96,27 @@ class TorqueUnknownError(HardwareError):
     """Torque was told to go off, and a joint could not be read back: it may be on or off."""
 
 
+class UnwellError(HardwareError):
+    """Something that was watched is so unwell that the robot stops.
+
+    Attributes:
+        kind: What it is, in the word of the warnings that came before.
+    """
+
+    def __init__(self, message: str, kind: str = "") -> None:
+        super().__init__(message)
+        self.kind = kind
+
+
 class TorqueLostError(HardwareError):
     """A joint has no torque any more though nobody of ours switched it off."""
 
 
-class UnhealthyError(HardwareError):
+class UnhealthyError(UnwellError):
     """A joint is too hot, on the wrong supply, loaded for too long, or blocked."""
 
 
-class ImuError(HardwareError):
+class ImuError(UnwellError):
     """The IMU is silent, frozen or wrong, and a robot that balances with it cannot go on."""
 
 

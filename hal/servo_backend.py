@@ -212,9 +212,9 @@ class ServoBackend:
             goal = self._couplings.servos(goal)
         counts = np.rint(self.units.counts(goal))
         inside = np.minimum(np.maximum(counts, 0.0), self.units.last)
-        if not np.array_equal(inside, counts):
+        if (inside != counts).any():
             self.clamps["goal"] += 1
-        real = np.zeros_like(block)
+        real = np.zeros(block.shape)
         angle = self.units.angle(inside)
         real[0] = self._couplings.joints(angle) if self._couplings else angle
         real[3:] = self._realised
@@ -249,9 +249,7 @@ class ServoBackend:
             self.button.forget()
             wanted = self._couplings.servo_gains(self.joints.stiffness)
             gains, _ = self.units.p_registers(wanted)
-            state = self._torque.on(self.links, gains, self.heartbeat)
-            self._silent()  # what was read before that is old by now
-            return state
+            return self._torque.on(self.links, gains, self.heartbeat)
 
     def rearm(self) -> TorqueState:
         """Check and set every servo again, then switch torque on at the present pose.

@@ -53,6 +53,10 @@ class TelemetryWriter:
         rate_hz: Rate of the loop, Hz.
         port: The URL of its port, or None for a twin.
         path: The file, by default where `ring_path` says.
+        estimated: The base state comes from the IMU.
+
+    Attributes:
+        plans: Steps planned in this run, and plans that came late.
 
     Raises:
         TelemetryError: The file cannot be made.
@@ -67,6 +71,7 @@ class TelemetryWriter:
         *,
         port: str | None = None,
         path: Path | None = None,
+        estimated: bool = False,
     ) -> None:
         self._backend = backend
         self._bus = backend.backend if isinstance(backend.backend, BusHealth) else None
@@ -81,11 +86,13 @@ class TelemetryWriter:
             pid=os.getpid(),
             started=wall.time(),
             clamps=tuple(backend.clamps),
+            estimated=estimated,
         )
         self.path = path or ring_path(robot, port)
         self._prepare()
         self._map, self._first = make_ring(self.path, self.header, self._slots, len(self._bytes))
         self._sequence = 0
+        self.plans = (0, 0)
 
     def _prepare(self) -> None:
         """Make the one record that every tick is written through, and views of its parts."""
@@ -95,13 +102,15 @@ class TelemetryWriter:
         self._payload = self._bytes[PAYLOAD_AT:]
         self._head = record.view(np.uint64)[:2]
         self._numbers = record.view(np.float64)[2:]
-        self._few = np.zeros(7 + len(header.clamps) + len(header.errors))
+        self._few = np.zeros(9 + len(header.clamps) + len(header.errors))
         self._alert = np.zeros(len(header.joints))
+        self._no_age = np.zeros(len(header.joints))
         self._none = {size: np.full(size, np.nan) for size in (3, 4)}
         self._slots = max(2, round(SECONDS * header.rate_hz))
 
     def begin(self) -> None:
         """A run begins (again)."""
+        self.plans = (0, 0)
         ENDED.pack_into(self._map, ENDED_AT, RUNS, b"")
 
     def record(
@@ -116,7 +125,7 @@ class TelemetryWriter:
         joints, imu, base = observation.joints, observation.imu, observation.base
         no3, no4 = self._none[3], self._none[4]
         bus = self._bus
-        few: list[float] = [observation.time, wall.time(), tick, missed, seconds]
+        few: list[float] = [observation.time, wall.time(), tick, missed, seconds, *self.plans]
         few += [imu.age if imu else np.nan, base.confidence if base else 0.0]
         few += self._backend.clamps.values()
         if bus is not None:
@@ -132,7 +141,9 @@ class TelemetryWriter:
                 joints.voltage,
                 joints.temperature,
                 joints.age,
+                self._no_age if joints.health_age is None else joints.health_age,
                 command.block[0],
+                command.block[3],
                 self._backend.clamped_joints,
                 self._alert,
                 observation.contacts,

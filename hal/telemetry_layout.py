@@ -31,7 +31,7 @@ from hal.command import FIELDS
 from hal.errors import TelemetryError
 
 MAGIC = b"WINDUPTR"
-VERSION = 1
+VERSION = 2
 FIXED = struct.Struct("<8sIIIIQI128sI")
 SIZES = struct.Struct("<IIII")
 SIZES_AT, HEAD_AT, ENDED_AT = 8, 24, 32
@@ -59,6 +59,7 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
         pid: The process that writes.
         started: When it began, s since 1970.
         clamps: Names of the clamps that are counted.
+        estimated: The base state comes from the IMU.
     """
 
     robot: str
@@ -71,23 +72,27 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
     pid: int
     started: float
     clamps: tuple[str, ...] = FIELDS
+    estimated: bool = False
 
     def fields(self) -> list[Field]:
         """Return the names and shapes of a tick's numbers, in their order.
 
         time s on the backend's clock, wall s since 1970, tick and missed ticks of the run,
-        tick_time s | the joints: rad, rad/s, N m, V, degrees C, s | command: target position, rad
-        | clamped: commands in which each joint was clamped | alert: bits | IMU: wxyz, rad/s,
-        m/s2 | contacts: N | base: m, wxyz, m/s, rad/s. What nobody measures is not a number.
+        tick_time s, plans of the run and those that came late | the joints: rad, rad/s, N m, V,
+        degrees C, age s and that of volts and degrees | command: target position, rad, stiffness
+        N m/rad | clamped: commands in which each joint was clamped | alert: bits | IMU: wxyz,
+        rad/s, m/s2 | contacts: N | base: m, wxyz, m/s, rad/s. What nobody measures is not a number.
         """
         n = (len(self.joints),)
-        scalars = ("time", "wall", "tick", "missed", "tick_time", "imu_age", "base_confidence")
-        joints = ("position", "velocity", "torque", "voltage", "temperature", "age")
+        run = ("time", "wall", "tick", "missed", "tick_time", "plans", "late_plans")
+        scalars = (*run, "imu_age", "base_confidence")
+        joints = ("position", "velocity", "torque", "voltage", "temperature", "age", "health_age")
+        told = ("command", "stiffness", "clamped", "alert")
         return [
             *((name, ()) for name in scalars),
             ("clamps", (len(self.clamps),)),
             ("errors", (len(self.errors),)),
-            *((name, n) for name in (*joints, "command", "clamped", "alert")),
+            *((name, n) for name in (*joints, *told)),
             ("contacts", (len(self.contacts),)),
             ("imu_orientation", (4,)),
             ("imu_angular_velocity", (3,)),

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import mujoco
 import tyro
 
-from hal.errors import UsageError, WindupError
+from hal.errors import UnwellError, UsageError, WindupError
 from tools.bench import Bench
 from tools.emulate import Emulate
 from tools.estimate import Estimate
@@ -25,6 +25,7 @@ from tools.push import Push
 from tools.reproduce import Reproduce
 from tools.rise import Rise
 from tools.robots_list import Robots
+from tools.run_notes import NOTES
 from tools.scan import Scan
 from tools.stand import Stand
 from tools.step import Step
@@ -68,14 +69,18 @@ def run(arguments: list[str] | None = None) -> int:
     # so itself.
     mujoco.set_mju_user_warning(logging.getLogger("mujoco").debug)
     command = None
+    NOTES.begin()
     words = list(sys.argv[1:] if arguments is None else arguments)
     end_on_signals()
     try:
         command = parse(separate(words))
         command.check()
         check_writable(getattr(command, "json", None), getattr(command, "plot", None))
-        return int(command.run())
+        status = int(command.run())
+        _say_warnings()
+        return status
     except WindupError as error:
+        _say_warnings(error.kind if isinstance(error, UnwellError) else "")
         console.print(f"windup: {error}", markup=False, soft_wrap=True)
         if command is None:
             _write_unparsed(words, error)
@@ -83,6 +88,7 @@ def run(arguments: list[str] | None = None) -> int:
             _write_error(command, error)
         return error.exit_status
     except KeyboardInterrupt:
+        _say_warnings()
         console.print("windup: interrupted")
         return 130
     except BrokenPipeError:
@@ -95,6 +101,12 @@ def run(arguments: list[str] | None = None) -> int:
             said = f"the command line cannot be understood: {' '.join(words)}"
             _write_unparsed(words, UsageError(said))
         return status
+
+
+def _say_warnings(ended_by: str = "") -> None:
+    """Print what there was to warn about, but for the kind of what ended the run."""
+    if said := NOTES.said(ended_by):
+        console.print(f"warning: {said}", markup=False, soft_wrap=True)
 
 
 def _write_unparsed(arguments: list[str], error: WindupError) -> None:

@@ -1,16 +1,25 @@
-"""Is a robot well? Its telemetry held against limits, and what to do about each complaint."""
+"""Is a robot well? Its telemetry held against limits, and what to do about each complaint.
+
+Supply, temperature, load, stall and the IMU are judged by the watches of the run itself.
+"""
 
 import os
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
 
 from hal.errors import TelemetryError
+from hal.guard import HealthLevels, Kind
+from hal.guard.finding import SAYINGS, named
+from hal.joints import Joints
 from hal.telemetry import TelemetryReader, Ticks
 from hal.telemetry_layout import Header
 from robots import RobotDescription
+from tools.replay import findings
+from tools.slowness import PLANS, TICKS, Slowness
 
+COUNTERS = ("missed", "plans", "late_plans")
 STANDSTILL = 1.0
 """Silence after which a loop that has not ended counts as standing still, s."""
 
@@ -20,27 +29,36 @@ class Limits:
     """What is still healthy.
 
     Attributes:
+        joints: The robot's joints.
+        health: When they are unwell.
         age: Age of a joint's or the IMU's state, s; at twice that the guard stops the robot.
         missed: Share of ticks that came too late.
+        late_plans: Share of plans that came too late.
         errors: Bus errors of one kind for each tick.
         clamped: Share of the ticks in which one joint is clamped.
-        temperature: degrees C; Dynamixel X servos switch off at 70 to 80.
-        low: Supply, V.
-        high: Supply, V.
     """
 
-    low: float
-    high: float
+    joints: Joints
+    health: HealthLevels
     age: float = 0.125
-    missed: float = 0.01
+    missed: float = TICKS
+    late_plans: float = PLANS
     errors: float = 0.01
     clamped: float = 0.1
-    temperature: float = 65.0
 
     @classmethod
     def of(cls, robot: RobotDescription) -> "Limits":
-        """Return the limits of a robot: 10 % under its supply, 25 % over it."""
-        return cls(low=0.9 * robot.drive.supply, high=1.25 * robot.drive.supply)
+        """Return the limits of a robot."""
+        return cls(robot.joints, robot.health)
+
+    def record(self) -> dict[str, Any]:
+        """Return them for programs; levels are by kind and joint."""
+        plain = {item.name: getattr(self, item.name) for item in fields(self)[2:]}
+        levels = {
+            SAYINGS[kind].name: {"warn": self.health.warn[kind], "stop": self.health.stop[kind]}
+            for kind in Kind
+        }
+        return plain | {"levels": levels}
 
 
 @dataclass(frozen=True)
@@ -89,9 +107,11 @@ class Diagnosis:
 
     def __post_init__(self) -> None:
         self.newest = self.ticks[-1]
+        limits = self.limits
         self.silence = max(self.now - float(self.newest["wall"]), 0.0)
         self._judge_loop()
         self._judge_bus()
+        self.findings = list(findings(self.header, self.ticks, limits.joints, limits.health))
         self._judge_joints()
 
     @property
@@ -115,10 +135,21 @@ class Diagnosis:
         return (len(self.ticks) - 1) / seconds if seconds > 0.0 else None
 
     @property
+    def slowness(self) -> Slowness:
+        """What came late, over the ring."""
+        missed, plans, late = (int(self.change(name)) for name in COUNTERS)
+        return Slowness(
+            self.header.rate_hz,
+            ticks=len(self.ticks),
+            missed=missed,
+            plans=plans,
+            late=late,
+        )
+
+    @property
     def missed(self) -> float:
         """Share of the ticks that came too late."""
-        missed = self.change("missed")
-        return float(missed / (len(self.ticks) + missed))
+        return self.slowness.missed_share
 
     def change(self, name: str) -> Any:
         """Return by how much a counter has grown over the ring."""
@@ -176,8 +207,9 @@ class Diagnosis:
             "bus_errors": self.bus_errors(),
             "clamps": {name: count for name, count in self.clamps().items() if count},
             "joints": self.joints(),
-            "limits": asdict(self.limits),
-            "complaints": [asdict(complaint) for complaint in self.complaints],
+            "warnings": [finding.record() for finding in self.findings] + self.slowness.records(),
+            "limits": self.limits.record(),
+            "complaints": [vars(complaint) for complaint in self.complaints],
         }
 
     def _judge_loop(self) -> None:
@@ -187,9 +219,8 @@ class Diagnosis:
         elif self.state == "standing still":
             what = f"no tick for {self.silence:.1f} s"
             self._complain("loop", what, f"is process {self.header.pid} stopped or swapped out?")
-        if self.missed > self.limits.missed:
-            what = f"{self.missed:.1%} of the ticks came too late (limit {self.limits.missed:.0%})"
-            self._complain("loop", what, "stop what else is running, or lower --rate")
+        if slow := self.slowness:
+            self._complain("loop", slow.what, slow.do)
         age = float(self.ticks["imu_age"].max())
         if age > self.limits.age:
             what = f"silent for {age:.2f} s (limit {self.limits.age:g} s)"
@@ -205,25 +236,20 @@ class Diagnosis:
     def _judge_joints(self) -> None:
         limits = self.limits
         for row in self.joints():
-            name, volts = row["name"], row["voltage_v"]
+            name = row["name"]
             if row["alerts"]:
                 what = f"its servo signals: {', '.join(row['alerts'])}"
                 self._complain(name, what, "remove the cause before it shuts down")
             if row["age_max_s"] > limits.age:
                 what = f"silent for {row['age_max_s']:.2f} s (limit {limits.age:g} s)"
                 self._complain(name, what, "check its cable and power")
-            if row["temperature_c"] > limits.temperature:
-                what = f"{row['temperature_c']:.0f} degrees C (limit {limits.temperature:.0f})"
-                self._complain(name, what, "stop and let it cool; a pose with less load helps")
-            if volts < limits.low:
-                what = f"{volts:.1f} V (limit {limits.low:.1f} V)"
-                self._complain(name, what, "charge the battery, or check its connector")
-            if volts > limits.high:
-                what = f"{volts:.1f} V (limit {limits.high:.1f} V)"
-                self._complain(name, what, "switch the power off: it is the wrong supply")
             if row["clamped_share"] > limits.clamped:
                 what = f"clamped in {row['clamped_share']:.0%} of the ticks"
                 self._complain(name, what, "ask for less, or widen its limits in robot.toml")
+
+        for finding in self.findings:
+            who = named(finding.joints) or finding.saying.who
+            self._complain(who, finding.what, finding.saying.do)
 
     def _complain(self, who: str, what: str, do: str) -> None:
         self.complaints.append(Complaint(who, what, do))

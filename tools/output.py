@@ -11,6 +11,7 @@ import numpy as np
 from rich.console import Console
 
 from hal.errors import UsageError, WindupError
+from tools.run_notes import NOTES
 
 SCHEMA = 1
 console = Console(stderr=True, highlight=False)
@@ -48,10 +49,16 @@ def check_writable(*targets: Path | None) -> None:
 
 
 def write_json(target: Path | None, command: str, result: dict[str, Any]) -> None:
-    """Write one JSON object to `target`: a file, standard output for "-", or nowhere for None."""
+    """Write one JSON object to `target`: a file, standard output for "-", or nowhere for None.
+
+    Where a robot was run, what there was to warn about is part of it.
+    """
     if target is None:
         return
-    text = json.dumps(plain({"schema": SCHEMA, "command": command, **result}), indent=2)
+    whole = {"schema": SCHEMA, "command": command, **result}
+    if NOTES.ran:
+        whole["warnings"] = NOTES.records()
+    text = json.dumps(plain(whole), indent=2)
     if str(target) == "-":
         sys.stdout.write(text + "\n")
         return

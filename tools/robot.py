@@ -9,6 +9,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from typing import Self
 
+from control.balancer import Balancer
 from control.loop import LoopReport, Until
 from control.play import GraphPlayer, PoseHolder
 from control.staged import StagedPlayer
@@ -224,7 +225,7 @@ class Robot(Session):
             report = WalkReport(self, walker, options, steps)
             try:
                 walking = self.supervisor or walker
-                until = self._looking(end)
+                until = self._looking(end, walker)
                 walked = self.run(walking, until=until, rollouts=stopwatch, needs_imu=True)
                 if stand > 0.0 and walked.reason == "done":
                     walked.reason = self.stand(stand).reason
@@ -233,6 +234,10 @@ class Robot(Session):
                 report.loop = self.loop
                 stopped.report = report
                 raise
+            finally:
+                self.slowness.plans += walker.begun
+                self.slowness.late += walker.late
+                self.slowness.library = options.model == "library"
         report.loop = self.loop
         return report
 
@@ -252,10 +257,12 @@ class Robot(Session):
         if twin is not None:
             self.clearance = FootClearance(self.description, twin.model, twin.data)
 
-    def _looking(self, end: Until) -> Until:
-        """Return `end`, with a look at the feet first."""
+    def _looking(self, end: Until, walker: Balancer) -> Until:
+        """Return `end`, with a look at the feet and at the plans first."""
 
         def until(observation: Observation) -> str | None:
+            if self.telemetry is not None:
+                self.telemetry.plans = walker.begun, walker.late
             if self.clearance is not None:
                 self.clearance.look()
             if self.gauges is not None:

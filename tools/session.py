@@ -14,6 +14,7 @@ from control.play import PoseHolder
 from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
 from hal.errors import ControllerError, TelemetryError, WindupError
+from hal.guard.finding import Finding
 from hal.guard.imu_watch import ImuWatch
 from hal.leftovers import remove_leftovers
 from hal.observation import Observation
@@ -21,9 +22,12 @@ from hal.ranges import numbers_checked
 from hal.telemetry import TelemetryWriter
 from hal.telemetry_layout import ring_path
 from sim_twin.backend import TwinClock
+from sim_twin.wire.world import VirtualClock
 from tools.armed import Armed
 from tools.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
 from tools.protect import Protection
+from tools.run_notes import NOTES
+from tools.slowness import Slowness
 from tools.stack import look_with
 from tools.stop_request import stop_requests
 
@@ -44,6 +48,7 @@ class Session(Armed):
         watch: Called with every observation, for whoever draws or logs.
         telemetry: Where everybody else can read how it goes, once it runs.
         imu: Judges the IMU, where the base state is estimated from it.
+        slowness: Ticks and plans that came late in all runs.
     """
 
     period: float = field(kw_only=True)
@@ -52,12 +57,22 @@ class Session(Armed):
     watch: Watch | None = field(default=None, init=False)
     telemetry: TelemetryWriter | None = field(default=None, init=False)
     imu: ImuWatch = field(default_factory=ImuWatch, init=False)
+    slowness: Slowness = field(init=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         self._protection = Protection(self.description)
+        self.slowness = Slowness(
+            1.0 / self.period, simulated=isinstance(self.backend.clock, VirtualClock)
+        )
         with suppress(TelemetryError):  # a run says so
             remove_leftovers(ring_path(self.description.name, self.stack.port))
+
+    @property
+    def warnings(self) -> list[Finding]:
+        """What there was to warn about so far: one finding a kind."""
+        health = self.backend.watch.warnings if self.backend.watch is not None else []
+        return [*health, *self.imu.warnings]
 
     def __enter__(self) -> Self:
         return self
@@ -209,6 +224,7 @@ class Session(Armed):
                 self._stop_after_error(asked)
         except WindupError as error:
             self.loop.reason = str(error)
+            self._record_last()
             self._stop_after_error(asked)
             raise
         except (KeyboardInterrupt, SystemExit) as ended:  # raised by a controller of one's own
@@ -220,8 +236,15 @@ class Session(Armed):
             self._stop_after_error(asked)
             raise ControllerError(self.loop.reason) from error
         finally:
+            self.slowness.ticks += self.loop.ticks
+            self.slowness.missed += self.loop.missed
             if self.telemetry is not None:
                 self.telemetry.end(self.loop.reason)
+
+    def _record_last(self) -> None:
+        """Publish what was seen in the tick that ended the run, too."""
+        if self.telemetry is not None and (last := self.backend.last) is not None:
+            self.telemetry.record(*last, 0.0, self.loop.ticks + 1, self.loop.missed)
 
     def _publish(self) -> None:
         """Say to everybody that a run begins; a robot runs without them all the same."""
@@ -232,6 +255,7 @@ class Session(Armed):
                 self.description.contacts,
                 1.0 / self.period,
                 port=self.stack.port,
+                estimated=isinstance(self.stack.estimator, BaseEstimator),
             )
             self.telemetry.begin()
         except TelemetryError as error:
@@ -246,6 +270,8 @@ class Session(Armed):
 
     def close(self) -> None:
         """Disconnect; torque that has not been read back as off is left to the guardian."""
+        if not self._closed:
+            NOTES.add(self.warnings, self.slowness)
         super().close()
         if self.telemetry is not None:
             self.telemetry.close()

@@ -19,6 +19,7 @@ from tools.plot import Trace, plot_walk
 from tools.quantities import Count, Delay, Metres, Seconds, Speed, TurnRate
 from tools.report import WalkReport, summary
 from tools.robot import Robot
+from tools.run_notes import NOTES
 from tools.step_models import check_learning, keep_learnt
 from tools.stepping import find_stepping
 from tools.twin_options import TwinOptions
@@ -168,6 +169,7 @@ class Walk(TwinOptions, Common):
             with ProcessPoolExecutor(max_workers=min(len(seeds), cpu_count() or 1)) as pool:
                 for row in pool.map(self._quietly, seeds):
                     progress.advance(bar)
+                    NOTES.add_row(row)
                     yield row
 
     def _check(self) -> None:
@@ -177,7 +179,9 @@ class Walk(TwinOptions, Common):
             build_walk(robot.description, self._options(), robot.predictor)
 
     def _quietly(self, seed: int) -> dict[str, Any]:
-        return self._one(seed, show=False)
+        """Walk one seed in a process of its own, and return its result with its warnings."""
+        NOTES.begin()
+        return self._one(seed, show=False) | {"warnings": NOTES.records()}
 
 
 def _progress(show: bool) -> Progress:

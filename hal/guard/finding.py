@@ -24,6 +24,7 @@ class Saying(NamedTuple):
         do: What to do about it.
         scale: From the value to what is printed.
         who: Who has it where it is no joint.
+        low: Is less worse?
     """
 
     name: str
@@ -32,11 +33,13 @@ class Saying(NamedTuple):
     do: str
     scale: float = 1.0
     who: str = ""
+    low: bool = False
 
 
 SAYINGS = {
     Kind.SUPPLY_LOW: Saying(
-        "supply", "on {:.1f} V", "below {:.1f}", "charge the battery, or check its connector"
+        "supply low", "on {:.1f} V", "below {:.1f}", "charge the battery, or check its connector",
+        low=True,
     ),
     Kind.SUPPLY_HIGH: Saying(
         "supply high", "on {:.1f} V", "above {:.1f}", "switch the power off: it is the wrong supply"
@@ -89,15 +92,27 @@ class Finding:
     joints: list[str] = field(default_factory=list)
     count: int = 0
 
-    def __str__(self) -> str:
+    @property
+    def what(self) -> str:
+        """What those who have it are, or were, and the level."""
         saying = self.saying
         state = saying.state.format(self.value * saying.scale)
         level = saying.level.format(self.limit * saying.scale)
+        word = "stop" if self.stop else "warning"
+        return f"{state} ({word} {level})" if level else state
+
+    def __str__(self) -> str:
         one = len(self.joints) <= 1
         verb = ("is" if one else "are") if self.stop else ("was" if one else "were")
-        word = "stop" if self.stop else "warning"
-        limit = f" ({word} {level})" if level else ""
-        return f"{named(self.joints) or saying.who} {verb} {state}{limit}"
+        return f"{named(self.joints) or self.saying.who} {verb} {self.what}"
+
+    def merge(self, other: "Finding") -> None:
+        """Take in another finding of the same kind, of another run or a later look."""
+        worse = other.value < self.value if self.saying.low else other.value > self.value
+        if worse:
+            self.value, self.limit = other.value, other.limit
+        self.joints += [name for name in other.joints if name not in self.joints]
+        self.count += other.count
 
     def record(self) -> dict[str, Any]:
         """Return it for programs."""

@@ -8,29 +8,21 @@ from threading import RLock
 
 import numpy as np
 
-from hal.backend import Backend, Clock, HealthReader, Rearmable, TorqueWatched
+from hal.backend import Backend, Clock, Rearmable
 from hal.command import FIELDS, JointCommand
-from hal.errors import (
-    GuardianError,
-    PortError,
-    TorqueOnError,
-    TorqueUnknownError,
-    UnsafeCommandError,
-)
+from hal.errors import GuardianError, PortError, UnsafeCommandError
+from hal.guard.arming import check_health, read_afresh
+from hal.guard.ending import check_off
 from hal.guard.limits import SafetyLimits, StopPolicy
-from hal.guard.silence import stale
+from hal.guard.presence import Presence
 from hal.guard.watch import HealthWatch
 from hal.heartbeat import no_heartbeat
 from hal.joints import Array, Joints
 from hal.observation import Observation
-from hal.torque_loss import torque_lost
 from hal.torque_state import TorqueState
 
 CROUCH_SECONDS = 1.5
 TICK = 0.008
-LOOKS = 5
-"""Times that a joint that was silent is read again before a stop takes it for dead."""
-ATTEMPTS = 10
 REPLUG_TIME = 2.0
 """What a port that was plugged in again may take until it can be opened, s."""
 
@@ -70,8 +62,7 @@ class GuardedBackend:
         self._buffer = np.empty_like(self.limits.lower)
         # Where a limit is infinite, clamping does not show that a value is.
         self._unlimited = not np.isfinite([self.limits.lower, self.limits.upper]).all()
-        self._watched = self.backend if isinstance(self.backend, TorqueWatched) else None
-        self._told = False  # of joints that have lost their torque
+        self._presence = Presence(self.backend)
         # Bound once: these run on every tick.
         self._send: Callable[[JointCommand], JointCommand] = self.backend.write
         self._collect: Callable[[], Observation] = self.backend.collect
@@ -85,6 +76,11 @@ class GuardedBackend:
     def clock(self) -> Clock:
         """The backend's clock."""
         return self.backend.clock
+
+    @property
+    def last(self) -> tuple[Observation, JointCommand] | None:
+        """What was seen last, and what the joints obey, while somebody drives them."""
+        return (self._last, self._obeyed) if self._last and self._obeyed else None
 
     def connect(self) -> None:
         """Open the backend."""
@@ -110,7 +106,7 @@ class GuardedBackend:
             self._driven, self._obeyed = on, None
             state = self.backend.set_torque(on)
             if on:
-                self._refresh()
+                read_afresh(self.backend, self.limits.max_age)
             return state
 
     def rearm(self) -> TorqueState:
@@ -134,7 +130,7 @@ class GuardedBackend:
                 self.admit()
                 self._driven = True
                 state = backend.rearm()
-                self._refresh()
+                read_afresh(self.backend, self.limits.max_age)
                 return state
             except PortError:
                 if self.clock.now() >= until:
@@ -161,26 +157,18 @@ class GuardedBackend:
 
         Raises:
             TorqueLostError: A joint has lost its torque since it was armed; said once.
+            PortError: A port is gone; said once.
             StaleStateError: A joint has not answered for longer than `limits.max_age`.
             UnhealthyError: A joint that is driven has been beyond a stop level for long enough.
         """
         observation = self._collect()
         self._last = observation
-        if self._watched is not None:
-            self._check_torque(self._watched)
-        age = observation.joints.age
-        if age.max() > self.limits.max_age:
-            raise stale(self.joints, age, self.limits.max_age, self._watched)
+        self._presence.check(observation.joints.age, self.limits.max_age)
         if self.watch is not None:
             unwell = self.watch.look(observation, self._obeyed)
             if unwell is not None and (self._driven or self._obeyed is not None):
-                raise unwell
+                raise self.watch.error(unwell)
         return observation
-
-    def _check_torque(self, backend: TorqueWatched) -> None:
-        told, self._told = self._told, bool(backend.lost_joints)
-        if self._told and not told:
-            raise torque_lost(backend.lost_joints)
 
     def write(self, command: JointCommand) -> JointCommand:
         """Clamp `command` into the limits, send it, and return what the joints really got.
@@ -226,7 +214,7 @@ class GuardedBackend:
             return self._stop(policy or self.stop_policy, hurry)
 
     def _stop(self, policy: StopPolicy, hurry: Callable[[], bool]) -> TorqueState:
-        if policy != "limp" and self._crippled():
+        if policy != "limp" and self._presence.crippled():
             policy = "limp"
         if policy == "hold":
             self._send(JointCommand.hold(self.joints, self._pose()))
@@ -234,48 +222,17 @@ class GuardedBackend:
         if policy == "crouch" and self.crouch is not None:
             self._glide(self._pose(), self.crouch, CROUCH_SECONDS, hurry)
         state = self.set_torque(False)
-        if state.on.any():
-            where = state.names(self.joints, state.on)
-            raise TorqueOnError(f"torque is still on at {where}; cut the servo power")
-        if state.unknown.any():
-            where = state.names(self.joints, state.unknown)
-            raise TorqueUnknownError(
-                f"torque is unknown at {where}: no answer; it may be on: cut the servo power, "
-                "or give the port back"
-            )
+        check_off(state, self.joints)
         return state
 
     def admit(self) -> None:
-        """Look twice at every joint before torque comes on.
+        """Look at every joint before torque comes on.
 
         Raises:
             UnhealthyError: A joint is beyond a stop level; nothing has been switched.
         """
-        if self.watch is None or not isinstance(self.backend, HealthReader):
-            return
-        seen = []
-        for _ in range(2):
-            self.backend.read_health()
-            seen.append(self.peek())
-        if (unwell := self.watch.refuse(seen, self.limits.max_age)) is not None:
-            raise unwell
-
-    def _crippled(self) -> bool:
-        """Return whether a joint has lost its torque, or may have: a lost answer is no reason."""
-        watched = self._watched
-        if watched is None:
-            return False
-        for _ in range(LOOKS):
-            if watched.lost_joints or not watched.doubtful_joints:
-                break
-            self.backend.read()
-        return bool(watched.lost_joints or watched.doubtful_joints)
-
-    def _refresh(self) -> None:
-        """Read until everybody has answered lately: arming took its time, and answers get lost."""
-        for _ in range(ATTEMPTS):
-            if self.peek().joints.age.max() < 0.5 * self.limits.max_age:
-                return
+        with self.lock:
+            check_health(self.backend, self.watch, self.limits.max_age)
 
     def _pose(self) -> Array:
         last = self._last or self.read()

@@ -45,9 +45,7 @@ class HealthWatch:
         self._first = np.full(len(Kind), np.nan)
         self._worst: Array = np.full_like(self._values, np.nan)
 
-    def look(
-        self, observation: Observation, command: JointCommand | None = None
-    ) -> UnhealthyError | None:
+    def look(self, observation: Observation, command: JointCommand | None = None) -> Finding | None:
         """Judge an observation; collect warnings, and return the reason to stop, if there is one.
 
         Args:
@@ -70,8 +68,11 @@ class HealthWatch:
         self._note(due[0], now)
         if not due[1].any():
             return None
-        found = self._reason(due[1], self._values)
-        return UnhealthyError(f"{found}: {found.saying.do}{self._look}")
+        return self._reason(due[1], self._values)
+
+    def error(self, found: Finding) -> UnhealthyError:
+        """Return what to raise because of a finding of `look`."""
+        return UnhealthyError(f"{found}: {found.saying.do}{self._look}", found.saying.name)
 
     def refuse(self, observations: Sequence[Observation], max_age: float) -> UnhealthyError | None:
         """Return why torque may not come on: who is beyond a stop level in all `observations`.
@@ -85,7 +86,8 @@ class HealthWatch:
         if not due.any():
             return None
         found = self._reason(due, values)
-        return UnhealthyError(f"{found}: nothing has moved; {found.saying.do}")
+        said = f"{found}: nothing has moved; {found.saying.do}"
+        return UnhealthyError(said, found.saying.name)
 
     @property
     def warnings(self) -> list[Finding]:

@@ -45,7 +45,7 @@ def stop_of(
     """Return when the watch wants to stop, and why, or None."""
     for observation in observations:
         if (unwell := judge.look(observation, command)) is not None:
-            return observation.time, str(unwell)
+            return observation.time, str(judge.error(unwell))
     return None
 
 

@@ -10,6 +10,7 @@ from tools.walk_options import WalkOptions
 KEYS = {
     "schema",
     "command",
+    "warnings",
     "robot",
     "gait",
     "seed",
@@ -127,7 +128,7 @@ def test_several_seeds_are_a_row_each_and_a_summary(windup: Windup) -> None:
     ran = windup("walk", "op3", "--steps", 1, "--seeds", 2, "--open-loop", "--json", "-")
     assert ran.status == 0
     result = ran.json
-    assert set(result) == {"schema", "command", "robot", "rows", "summary"}
+    assert set(result) == {"schema", "command", "warnings", "robot", "rows", "summary"}
     assert [row["seed"] for row in result["rows"]] == [0, 1]
     assert all(set(row) == KEYS - {"schema", "command"} for row in result["rows"])
     assert (result["summary"]["runs"], result["summary"]["walked"]) == (2, 2)

@@ -1,0 +1,23 @@
+"""How it is said that torque is not off after a stop."""
+
+from hal.errors import TorqueOnError, TorqueUnknownError
+from hal.joints import Joints
+from hal.torque_state import TorqueState
+
+
+def check_off(state: TorqueState, joints: Joints) -> None:
+    """Raise unless all torque was read back as off.
+
+    Raises:
+        TorqueOnError: A joint read back as on.
+        TorqueUnknownError: A joint could not be read back.
+    """
+    if state.on.any():
+        where = state.names(joints, state.on)
+        raise TorqueOnError(f"torque is still on at {where}; cut the servo power")
+    if state.unknown.any():
+        where = state.names(joints, state.unknown)
+        raise TorqueUnknownError(
+            f"torque is unknown at {where}: no answer; it may be on: cut the servo power, "
+            "or give the port back"
+        )

@@ -1,0 +1,71 @@
+"""Whether every joint of a robot is there: it answers, and it has the torque it was given."""
+
+import numpy as np
+
+from hal.backend import Backend, TorqueWatched
+from hal.errors import PortError, StaleStateError
+from hal.joints import Array
+from hal.torque_loss import SILENT, torque_lost
+
+LOOKS = 5
+"""Times that a joint that was silent is read again before a stop takes it for dead."""
+
+
+class Presence:
+    """Looks at every observation for joints that are not there any more.
+
+    Args:
+        backend: The robot.
+    """
+
+    def __init__(self, backend: Backend) -> None:
+        self._backend = backend
+        self._watched = backend if isinstance(backend, TorqueWatched) else None
+        self._told = False  # of joints without torque, and of ports
+
+    def check(self, age: Array, max_age: float) -> None:
+        """Look at joints that last answered (n,) `age` s ago, which may be `max_age` s.
+
+        Raises:
+            TorqueLostError: A joint has lost its torque since it was armed; said once.
+            PortError: A port is gone, and with it the goals of its joints; said once.
+            StaleStateError: A joint has not answered for too long.
+        """
+        if self._watched is not None:
+            self._check_torque(self._watched)
+        if age.max() > max_age:
+            raise self._stale(age, max_age)
+
+    def crippled(self) -> bool:
+        """Return whether a joint has lost its torque, or may have: a lost answer is no reason."""
+        watched = self._watched
+        if watched is None:
+            return False
+        for _ in range(LOOKS):
+            if watched.lost_joints or watched.lost or not watched.doubtful_joints:
+                break
+            self._backend.read()
+        return bool(watched.lost_joints or watched.doubtful_joints)
+
+    def _check_torque(self, watched: TorqueWatched) -> None:
+        told, self._told = self._told, bool(watched.lost_joints or watched.lost)
+        if not self._told or told:
+            return
+        if watched.lost_joints:
+            raise torque_lost(watched.lost_joints)
+        # Whatever comes back has to be armed again: there is nothing to wait for.
+        names, all_names = watched.doubtful_joints, self._backend.joints.names
+        who = "all joints" if len(names) == len(all_names) > 1 else ", ".join(names)
+        raise PortError(f"{who} cannot be reached: {'; '.join(watched.lost.values())}")
+
+    def _stale(self, age: Array, max_age: float) -> StaleStateError:
+        """Return the error that names the joint with the oldest state, and what to do about it."""
+        worst = int(np.argmax(age))
+        name = self._backend.joints.names[worst]
+        others = int((age > max_age).sum()) - 1
+        who = f"joint {name!r} has" if not others else f"joint {name!r} and {others} more have"
+        doubts = self._watched.doubtful_joints if self._watched is not None else {}
+        return StaleStateError(
+            f"{who} not answered for {age[worst]:.2f} s (limit {max_age:.2f} s); "
+            f"{doubts.get(name, SILENT)}"
+        )

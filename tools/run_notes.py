@@ -1,0 +1,80 @@
+"""What the runs of a command had to warn about: for its last line and its JSON, whatever it is.
+
+A session leaves its warnings here when it is closed, and they are merged: the same cause in eight
+runs is one warning. A command begins with none.
+"""
+
+from collections.abc import Iterable
+from copy import deepcopy
+from typing import Any
+
+from hal.guard.finding import Finding
+from tools.slowness import Slowness
+
+Row = dict[str, Any]
+
+
+class RunNotes:
+    """The warnings of the robots that were run since `begin`.
+
+    Attributes:
+        ran: Has there been a robot at all?
+    """
+
+    def __init__(self) -> None:
+        self.begin()
+
+    def begin(self) -> None:
+        """Forget everything: a command begins."""
+        self.ran = False
+        self._findings: dict[str, Finding] = {}
+        self._slowness: Slowness | None = None
+        self._rows: list[Row] = []
+
+    def add(self, findings: Iterable[Finding], slowness: Slowness) -> None:
+        """Take in what a session had to warn about."""
+        self.ran = True
+        for finding in findings:
+            known = self._findings.get(finding.saying.name)
+            if known is None:
+                self._findings[finding.saying.name] = deepcopy(finding)
+            else:
+                known.merge(finding)
+        if self._slowness is None:
+            self._slowness = deepcopy(slowness)
+        else:
+            self._slowness.merge(slowness)
+
+    def add_row(self, row: Row) -> None:
+        """Take in the result of a run in another process, with its `warnings`."""
+        self.ran = True
+        self._rows.append(row)
+
+    def records(self) -> list[Row]:
+        """Return all warnings for programs."""
+        own = [finding.record() for finding in self._findings.values()]
+        late = self._slowness.records() if self._slowness else []
+        others = [
+            record | {"seed": row.get("seed")} for row in self._rows for record in row["warnings"]
+        ]
+        return own + late + others
+
+    def said(self, ended_by: str = "") -> str:
+        """Return the warnings in one line for people, or "".
+
+        Args:
+            ended_by: Kind of what ended the run, which is said anyhow.
+        """
+        kinds = [finding for kind, finding in self._findings.items() if kind != ended_by]
+        said = [str(finding) for finding in kinds]
+        if self._slowness:
+            said.append(str(self._slowness))
+        unwell = [row for row in self._rows if row["warnings"]]
+        if unwell:
+            names = sorted({record["kind"] for row in unwell for record in row["warnings"]})
+            said.append(f"{len(unwell)} of {len(self._rows)} runs had {', '.join(names)}")
+        return "; ".join(said)
+
+
+NOTES = RunNotes()
+"""Those of this process' command."""

@@ -1,0 +1,97 @@
+"""Is the computer fast enough? Ticks and plans that came late in a run, and what to do about it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+TICKS, PLANS = 0.01, 0.05
+"""Shares of late ticks, and of late plans, from which on it is said."""
+
+
+@dataclass
+class Slowness:
+    """What came late.
+
+    Attributes:
+        rate_hz: Rate of the loop, Hz.
+        simulated: Time was simulated: ticks are late because of the bus, never of the computer.
+        ticks: Ticks that were run.
+        missed: Ticks that came too late and were left out.
+        plans: Steps that were planned.
+        late: Plans that came too late to act in time, or never.
+        library: Plans came from learnt step models already.
+    """
+
+    rate_hz: float
+    simulated: bool = False
+    ticks: int = 0
+    missed: int = 0
+    plans: int = 0
+    late: int = 0
+    library: bool = False
+
+    @property
+    def missed_share(self) -> float:
+        """Share of the ticks that came late."""
+        return _share(self.missed, self.ticks + self.missed)
+
+    @property
+    def late_share(self) -> float:
+        """Share of the plans that did."""
+        return _share(self.late, self.plans)
+
+    def __bool__(self) -> bool:
+        """Return whether there is something to say."""
+        return self.missed_share > TICKS or self.late_share > PLANS
+
+    def __str__(self) -> str:
+        return f"{self.what}: {self.do}"
+
+    @property
+    def what(self) -> str:
+        """What came late."""
+        parts = []
+        if self.missed_share > TICKS:
+            parts.append(f"{100.0 * self.missed_share:.0f} % of the ticks")
+        if self.late_share > PLANS:
+            parts.append(f"{self.late} of {self.plans} plans")
+        return f"{' and '.join(parts)} came late"
+
+    @property
+    def do(self) -> str:
+        """Why, and what to do about it: plans are the computer's, ticks may be the bus' as well."""
+        if self.simulated:
+            return f"the bus is too slow for {self.rate_hz:g} Hz: try a lower --rate"
+        if self.late_share <= PLANS:
+            who, remedy = "this computer or its bus", "a lower --rate"
+        else:
+            who = "this computer"
+            remedy = "a lower --rate" if self.library else "`--model library` or a lower --rate"
+        return f"{who} is too slow for {self.rate_hz:g} Hz: try {remedy}"
+
+    def merge(self, other: "Slowness") -> None:
+        """Take in another run."""
+        self.ticks, self.missed = self.ticks + other.ticks, self.missed + other.missed
+        self.plans, self.late = self.plans + other.plans, self.late + other.late
+
+    def records(self) -> list[dict[str, Any]]:
+        """Return what there is to say, for programs; when it began is unknown."""
+        late = [
+            ("late ticks", self.missed, self.missed_share, TICKS),
+            ("late plans", self.late, self.late_share, PLANS),
+        ]
+        return [
+            {
+                "kind": kind,
+                "joints": [],
+                "value": share,
+                "limit": limit,
+                "count": count,
+                "since": None,
+            }
+            for kind, count, share, limit in late
+            if share > limit
+        ]
+
+
+def _share(part: int, whole: int) -> float:
+    return part / whole if whole else 0.0
