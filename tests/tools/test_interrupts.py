@@ -1,4 +1,3 @@
-import os
 import signal
 import threading
 from collections.abc import Iterator
@@ -26,7 +25,7 @@ def forgive() -> Iterator[None]:
 
 def press(number: int = signal.SIGINT, times: int = 1) -> None:
     for _ in range(times):
-        os.kill(os.getpid(), number)
+        signal.raise_signal(number)  # to this very thread: others would hear them late, as one
 
 
 @pytest.mark.parametrize(
