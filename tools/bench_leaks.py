@@ -11,6 +11,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Final
 
+from rich.console import Console
 from rich.progress import Progress
 
 from hal.telemetry_layout import runtime_folder
@@ -99,7 +100,7 @@ def clean(row: dict[str, float]) -> bool:
 def leaks(name: str, port: str | None, times: int) -> dict[str, float]:
     """Return what is left after `times`, beside what there was after the first of them."""
     warm = max(round(WARM * times), 1)
-    with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
+    with _unsaid(), Progress(console=Console(stderr=True), transient=True) as progress:
         bar = progress.add_task(f"opening {name} on {port or 'its twin'}", total=times)
         for _ in range(warm):
             open_once(name, port)
@@ -119,6 +120,16 @@ def open_once(name: str, port: str | None) -> None:
         robot.stop(limp=True)
     finally:
         robot.close()
+
+
+@contextmanager
+def _unsaid() -> Iterator[None]:
+    """Leave out what is said each time a robot is armed."""
+    console.quiet = True
+    try:
+        yield
+    finally:
+        console.quiet = False
 
 
 @contextmanager

@@ -20,6 +20,8 @@ TOGETHER = 0.5
 """The same for the readings of the supply of all joints, s."""
 SAME = 1e-6
 """Times of one reading differ by rounding, s."""
+FINE = 0.01
+"""A supply at its level is not yet below or above it; servos tell it in steps of 0.1 V."""
 SUPPLY = slice(Kind.SUPPLY_LOW, Kind.SUPPLY_HIGH + 1)
 SIGNS = np.where(np.arange(len(Kind)) == Kind.SUPPLY_LOW, -1.0, 1.0)[:, None]
 """Sign of each kind: of a low supply less is worse."""
@@ -34,6 +36,7 @@ class Persistence:
 
     def __init__(self, levels: HealthLevels) -> None:
         self._levels = SIGNS * np.stack((levels.warn, levels.stop))
+        self._levels[:, SUPPLY] += FINE
         self._dwell = np.array([[dwell.get(kind, 0.0) for kind in Kind] for dwell in DWELL])[
             ..., None
         ]

@@ -58,6 +58,10 @@ def test_one_joint_that_always_reads_low_is_only_warned_of() -> None:
     assert warned is not None and 5.0 < warned < 7.0
 
 
+def test_a_supply_at_its_level_is_not_below_it() -> None:
+    assert first(lambda time, joint: float(LEVELS.warn[Kind.SUPPLY_LOW, 0]), WARNING) is None
+
+
 def test_supply_that_is_only_low_is_no_stop() -> None:
     assert first(lambda time, joint: LOW) is None
 

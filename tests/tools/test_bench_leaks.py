@@ -11,7 +11,7 @@ from robots import load_robot
 from sim_twin.terrain import Ground
 from sim_twin.wire.worlds import _running
 from sim_twin.world import World
-from tools.bench_leaks import Traces, clean, leaks, open_once
+from tools.bench_leaks import COUNTED, Traces, clean, leaks, open_once
 from tools.robot import Robot
 from tools.stack import limp
 
@@ -41,7 +41,8 @@ def test_opening_a_robot_leaves_nothing(port: str | None) -> None:
     open_once("duck", port)
     worlds = len(_running)
     row = leaks("duck", port, 3)
-    assert (row["descriptors"], row["threads"], row["processes"], row["files"]) == (0, 0, 0, 0)
+    # Fewer is fine: what another test has left may go meanwhile.
+    assert all(row[name] <= 0 for name in COUNTED)
     assert len(_running) == worlds
 
 
