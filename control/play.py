@@ -23,6 +23,11 @@ class PoseHolder:
     def __init__(self, joints: Joints, pose: Array, ramp: float = 0.5) -> None:
         self.joints, self.pose, self.ramp = joints, pose, ramp
 
+    @property
+    def first_pose(self) -> Array:
+        """See `Begins`."""
+        return self.pose
+
     def reset(self, observation: Observation) -> None:
         """Start at the present pose."""
         self._from, self._began = observation.joints.position, observation.time

@@ -48,6 +48,11 @@ class StagedPlayer:
         """Whether the robot is on the floor at the end, as it should be."""
         return self.gait.file.down
 
+    @property
+    def first_pose(self) -> Array:
+        """See `Begins`."""
+        return self.gait.graph.pose[0]
+
     def reset(self, observation: Observation) -> None:
         """Begin at the first state, from the present pose.
 

@@ -1,7 +1,7 @@
 """What a controller is, and what it may ask of a predictor."""
 
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from hal.command import JointCommand
 from hal.joints import Array, Mask
@@ -28,6 +28,21 @@ class Controller(Protocol):
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the command for the tick that begins now and lasts `dt` s."""
         ...
+
+
+@runtime_checkable
+class Begins(Protocol):
+    """A controller whose first command is only the beginning of a way to its first pose."""
+
+    @property
+    def first_pose(self) -> Array:
+        """(n,) rad where it goes first."""
+        ...
+
+
+def first_pose_of(controller: Controller, first: JointCommand) -> Array:
+    """Return where a controller goes first, (n,) rad; `first` is its first command."""
+    return controller.first_pose if isinstance(controller, Begins) else first.position
 
 
 @dataclass(frozen=True, slots=True)

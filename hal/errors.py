@@ -13,9 +13,11 @@ class WindupError(Exception):
 
     Attributes:
         exit_status: 1 the run failed, 2 usage or configuration (nothing moved), 3 bus or hardware.
+        limp: Whether a robot goes limp for it at once, whatever its stop policy.
     """
 
     exit_status = 1
+    limp = False
 
 
 class ConfigError(WindupError):
@@ -122,6 +124,16 @@ class ImuError(UnwellError):
 
 class GuardianError(HardwareError):
     """The process that stops the robot when this one dies has died itself, or does not react."""
+
+
+class FirstMotionError(HardwareError):
+    """A joint did not follow in the first motion after torque came on; the robot goes limp."""
+
+    limp = True
+
+
+class PostureError(UsageError):
+    """The robot is in no posture to do what it was to do; nothing has moved."""
 
 
 class RefusedError(HardwareError):

@@ -68,6 +68,7 @@ class ServoBackend:
         lost_joints: Joint name to how it has lost its torque since the robot was armed. It gets
             no goal until `rearm`.
         watchdog_trips: Servos that had frozen for silence, and were cleared.
+        arming_stiffness: (n,) N m/rad with which torque comes on.
         heartbeat: Called again and again while torque is switched, which takes a while.
     """
 
@@ -101,6 +102,7 @@ class ServoBackend:
         self.watchdog_trips = 0
         n = len(joints)
         self.readings = JointReadings(self.units, self._couplings, imu, contacts)
+        self.arming_stiffness: Array = joints.stiffness
         self._realised = np.empty((2, n))
         self._realised[1] = self._couplings.joint_gains(self.units.damping)
         self._gains = b""
@@ -247,7 +249,7 @@ class ServoBackend:
             if not on:
                 return self._torque.off(self.links, self.heartbeat)
             self.button.forget()
-            wanted = self._couplings.servo_gains(self.joints.stiffness)
+            wanted = self._couplings.servo_gains(self.arming_stiffness)
             gains, _ = self.units.p_registers(wanted)
             return self._torque.on(self.links, gains, self.heartbeat)
 

@@ -141,10 +141,17 @@ class Safety(JointLevels, frozen=True):
         idle: How long it is held between two calls of a program before its torque goes off, s.
         hold: How long the guardian holds a robot whose `stop` is "hold" once its program is gone,
             before its torque goes off, s.
+        first_speed: Largest speed of a joint in the first motion after torque came on, rad/s.
+        first_stiffness: Shares of the joints' stiffness that this motion begins with. Legs have to
+            bear the robot.
+        first_lag: How far a joint may be behind its goal in it, rad.
     """
 
     idle: Positive = 10.0
     hold: Positive = 60.0
+    first_speed: Positive = 0.6
+    first_stiffness: Shares = Shares(legs=0.6, others=0.3)
+    first_lag: Positive = 0.25
 
 
 INHERITED = ("servo", "bus", "stiffness", "damping")

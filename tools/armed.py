@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 from control.loop import LoopReport
-from hal.errors import HardwareError, UsageError, WindupError
+from hal.errors import HardwareError, PostureError, UsageError, WindupError
 from hal.guard import StopPolicy
 from hal.torque_state import TorqueState
 from tools.custody import Custody
@@ -21,6 +21,7 @@ from tools.interrupts import (
 from tools.on_stack import OnStack
 from tools.output import console
 from tools.running import Running
+from tools.start import Start
 from tools.stop_request import check_released, how_to_stop
 
 
@@ -32,6 +33,7 @@ class Armed(OnStack):
         loop: Report of the last run.
         armed: Torque was switched on, and has not been read back as off since.
         custody: Who is in charge of the torque.
+        start: What comes before the first command; None without servos.
     """
 
     loop: LoopReport = field(default_factory=LoopReport, init=False)
@@ -39,6 +41,9 @@ class Armed(OnStack):
 
     def __post_init__(self) -> None:
         self.custody = Custody(self.description, self.backend, self._stop_idle)
+        self.start = None
+        if self.stack.wired:
+            self.start = Start(self.description, self.stack)
         self._running = Running()
         self._failed: WindupError | None = None
         self._closed = False
@@ -72,6 +77,24 @@ class Armed(OnStack):
             if self.stack.wired:
                 self._arm(self.backend.rearm)
 
+    def _get_ready(self, down: bool, asked: Asked) -> None:
+        """Switch torque on where it is off, once the robot is seen to be in a posture for it.
+
+        Raises:
+            PostureError: It is not; torque is off.
+        """
+        start = self.start
+        if start is not None and (start.unseen or not self.armed):
+            try:
+                start.check(down)
+            except PostureError:
+                if self.armed:
+                    self._stop("limp", asked)
+                raise
+        self._arm_once()
+        if start is not None:
+            start.unseen = False
+
     def _arm_once(self) -> None:
         if not self.armed and self.stack.wired:
             check_not_interrupted()
@@ -91,6 +114,8 @@ class Armed(OnStack):
         if not state.all_on:
             where = state.names(self.description.joints, ~state.on)
             raise HardwareError(f"torque does not come on at {where}; run `windup scan`")
+        if self.start is not None:
+            self.start.begin()
 
     def stop(self, *, limp: bool = False) -> None:
         """Carry out the stop policy at once; with `limp`, just switch the torque off.

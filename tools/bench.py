@@ -16,6 +16,7 @@ from tools.bench_jitter import measure_jitter
 from tools.bench_leaks import measure_leaks
 from tools.bench_loop import measure_tick, measure_twin
 from tools.bench_servo import measure_servos
+from tools.bench_starts import measure_starts
 from tools.bench_unplug import measure_unplugs
 from tools.bench_wire import Maker, measure_bus
 from tools.command import Command
@@ -35,6 +36,7 @@ What = Literal[
     "faults",
     "unplug",
     "leaks",
+    "starts",
 ]
 
 
@@ -51,6 +53,7 @@ class Bench(Command):
     loop: how late our loop wakes at 125 Hz, beside a C program that only sleeps.
     faults: what becomes of the readings of each family while everything goes wrong (3 minutes).
     unplug: what becomes of a robot whose adapter is pulled out and put in again (4 minutes).
+    starts: does a robot start from wherever it is put, and notice what is wrong with it (5 min).
     leaks: what opening and closing a robot leaves behind; 1000 times (10 minutes), status 1 if that
     is more than 5 MB, or any file, thread or process."""
     robot: str | None = None
@@ -64,9 +67,9 @@ class Bench(Command):
     reads: Annotated[int, Range(1, 10**9)] = 1_000_000
     """faults: how often servos of each family are read."""
     times: Count | None = None
-    """unplug and leaks: how often; 100, and 1000."""
+    """unplug, leaks and starts: how often; 100, 1000, and 100."""
     seed: Seed = 0
-    """safety, faults, unplug: seed of the moments."""
+    """safety, faults, unplug: seed of the moments; starts: of the first."""
     minutes: Annotated[float, Range(0.0, 10_000.0, "minutes", above=True)] = 10.0
     """loop, guardian: how long."""
     json: Path | None = None
@@ -84,6 +87,7 @@ class Bench(Command):
             "guardian": partial(measure_takeovers, minutes=self.minutes),
             "unplug": partial(measure_unplugs, times=self.times or 100, seed=self.seed),
             "leaks": partial(measure_leaks, times=self.times or 1_000),
+            "starts": partial(measure_starts, starts=self.times or 100, seed=self.seed),
             "faults": partial(measure_faults, reads=self.reads, seed=self.seed),
         }
         if self.what == "safety":

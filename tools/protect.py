@@ -50,8 +50,8 @@ class Protection:
             FallWay(
                 way.toward,
                 robot.poses[way.pose],
-                _spread(way.falling, legs),
-                _spread(way.impact, legs),
+                spread(way.falling, legs),
+                spread(way.impact, legs),
                 way.soften,
             )
             for way in robot.fall.way
@@ -69,6 +69,6 @@ def leg_joints(robot: RobotDescription, model: mujoco.MjModel) -> Mask:
     return np.array([int(model.joint(name).bodyid[0]) in bodies for name in robot.joints.names])
 
 
-def _spread(shares: Shares, legs: Mask) -> Array:
-    """Return (n,) the share of each joint."""
+def spread(shares: Shares, legs: Mask) -> Array:
+    """Return (n,) the share of each joint; `legs` (n,) bool are those between base and feet."""
     return np.where(legs, shares.legs, shares.others)

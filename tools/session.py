@@ -14,6 +14,7 @@ from control.play import PoseHolder
 from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
 from hal.errors import ControllerError, TelemetryError, WindupError
+from hal.guard import StopPolicy
 from hal.guard.finding import Finding
 from hal.guard.imu_watch import ImuWatch
 from hal.leftovers import remove_leftovers
@@ -127,7 +128,8 @@ class Session(Armed):
 
         Args:
             controller: The controller.
-            seconds: How long, s of the backend's clock; for ever if None.
+            seconds: How long, s of the backend's clock; for ever if None. On servos that were just
+                armed, from the end of the first motion on.
             until: Called with each observation; a reason ends the run.
             rollouts: Time to leave out of the ticks.
             down: The robot may lie: a fall does not end the run.
@@ -135,8 +137,14 @@ class Session(Armed):
                 the robot. Without, that is a warning.
 
         Raises:
+            PostureError: It was to be armed, and a joint is outside of its limits, or it needs its
+                feet (not `down`) and sits or lies.
+            FirstMotionError: A joint did not follow in the first motion; the robot is limp.
             WindupError: From the guard, the backend or the controller; the stop policy has run.
         """
+        approach = None
+        if self.start is not None:
+            controller = approach = self.start.before(controller, down)
         protected = None
         if self.protect and self._protection.possible and not down:
             controller = protected = self._protection.around(controller)
@@ -148,10 +156,11 @@ class Session(Armed):
             wishes as wanted,
         ):
             estimator = self._estimator(needs_imu)
-            self._arm_once()
+            self._get_ready(down, asked)
             begin = self.backend.clock.now()
 
             def end(observation: Observation) -> str | None:
+                nonlocal begin
                 self.base = observation.base
                 if self.watch is not None:
                     self.watch(observation)
@@ -163,6 +172,9 @@ class Session(Armed):
                     return self._landed() if protected.finished else None
                 if self.fallen and not down:
                     return "fell"
+                if approach is not None and approach.active:
+                    begin = observation.time
+                    return None
                 if until is not None and (reason := until(observation)) is not None:
                     return reason
                 over = seconds is not None and observation.time >= begin + seconds - 1e-9
@@ -225,7 +237,7 @@ class Session(Armed):
         except WindupError as error:
             self.loop.reason = str(error)
             self._record_last()
-            self._stop_after_error(asked)
+            self._stop_after_error(asked, "limp" if error.limp else None)
             raise
         except (KeyboardInterrupt, SystemExit) as ended:  # raised by a controller of one's own
             asked.by = asked.by or type(ended).__name__
@@ -261,10 +273,10 @@ class Session(Armed):
         except TelemetryError as error:
             logging.getLogger(__name__).warning("no telemetry: %s", error)
 
-    def _stop_after_error(self, asked: Asked) -> None:
-        """Carry out the stop policy; a twin that has diverged can no longer do it."""
+    def _stop_after_error(self, asked: Asked, policy: StopPolicy | None = None) -> None:
+        """Carry out the stop policy, or another one; a twin that has diverged can no longer."""
         try:
-            self._stop(None, asked)
+            self._stop(policy, asked)
         except WindupError as error:
             self.loop.reason += f"; and the stop failed: {error}"
 

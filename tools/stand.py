@@ -21,7 +21,7 @@ class Stand(TwinOptions, Common):
     """Stand for some seconds; a twin that is pushed over says how hard it fell."""
 
     seconds: Duration = 5.0
-    """How long to stand, with the second that it takes to get there."""
+    """How long to stand, with the second that it takes to get there; on a port, after that."""
 
     def run(self) -> int:
         """Stand; returns the exit status."""

@@ -122,8 +122,10 @@ def _robot(address: Address, robot: RobotDescription, around: Surroundings) -> W
     if address.imu == "rvc" or (address.imu == "auto" and robot.imu is not None and not board):
         shop.imu(source)
     if twin is None:
-        return shop.world(Bench(shafts, robot.timestep), supply)
-    physics = TwinPhysics(twin, held=address.hold == "yes")
+        alone = [shaft for shaft in shafts if isinstance(shaft, InertiaShaft)]
+        return shop.world(Bench(alone, robot.timestep), supply)
+    horns = [shaft for shaft in shafts if isinstance(shaft, TwinShaft)]
+    physics = TwinPhysics(twin, held=address.hold == "yes", shafts=horns)
     if isinstance(source, TwinImu):
         source.held = lambda: physics.held
     return shop.world(physics, supply, (twin,))
@@ -131,20 +133,20 @@ def _robot(address: Address, robot: RobotDescription, around: Surroundings) -> W
 
 def _hang_servos(
     address: Address, robot: RobotDescription, twin: Twin | None, supply: float
-) -> tuple[dict[str, list[Device]], list[InertiaShaft]]:
-    """Return the servos of each bus, and their shafts where these are not the twin's."""
+) -> tuple[dict[str, list[Device]], list[Shaft]]:
+    """Return the servos of each bus and all shafts: the twin's, or each with its own inertia."""
     buses = {bus.name: bus for bus in robot.buses}
     hung: dict[str, list[Device]] = {name: [] for name in buses}
-    shafts: list[InertiaShaft] = []
+    shafts: list[Shaft] = []
     for joint, mount in enumerate(robot.servos):
         if mount is None:
             continue
         shaft: Shaft
         if twin is None:
-            shafts.append(_posed_shaft(robot, joint, mount, supply))
-            shaft = shafts[-1]
+            shaft = _posed_shaft(robot, joint, mount, supply)
         else:
             shaft = TwinShaft(twin, joint, mount)
+        shafts.append(shaft)
         bus = buses[mount.bus]
         hung[mount.bus].append(
             make_servo(

@@ -13,7 +13,7 @@ The controller of a dcmotor asks for a torque, ``kp (ctrl - q) - kd dq``, and dr
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from weakref import WeakMethod
 
@@ -36,10 +36,14 @@ class TwinShaft:
         twin: The twin; it should have no command delay of its own, the wire has one.
         joint: Index of the joint.
         mount: How the servo sits there.
+
+    Attributes:
+        joint: Index of the joint.
+        miswired: Its motor turns the other way: what should bring it to its goal drives it away.
     """
 
     def __init__(self, twin: Twin, joint: int, mount: ServoMount) -> None:
-        self._data, self._joint = twin.data, joint
+        self._data, self.joint = twin.data, joint
         self._turn = mount.sign * mount.ratio  # rad of the horn for one of the joint
         per_rad = mount.model.counts_per_rev / (2.0 * math.pi)
         self._zero = (mount.zero - mount.model.middle) / per_rad
@@ -47,6 +51,7 @@ class TwinShaft:
         self._range = twin.model.actuator_forcerange[joint]
         self._limited = twin.model.actuator_forcelimited
         self._limit_open = True
+        self.miswired = False
         self._factor = twin.world.plant.stiffness
         self._damping = mount.model.damping(twin.supply) * mount.ratio**2
         self._q, self._dq = twin.data.qpos[7:], twin.data.qvel[6:]
@@ -55,25 +60,26 @@ class TwinShaft:
     @property
     def position(self) -> float:
         """See `Shaft`."""
-        return self._turn * float(self._q[self._joint]) + self._zero
+        return self._turn * float(self._q[self.joint]) + self._zero
 
     @property
     def velocity(self) -> float:
         """See `Shaft`."""
-        return self._turn * float(self._dq[self._joint])
+        return self._turn * float(self._dq[self.joint])
 
     @property
     def torque(self) -> float:
         """See `Shaft`."""
-        return float(self._force[self._joint]) / self._turn
+        return float(self._force[self.joint]) / self._turn
 
     def drive(self, goal: float, stiffness: float, volts: float, torque: float = math.inf) -> None:
         """See `Shaft`."""
         if volts <= 0.0:
             self.push(0.0)
             return
-        self._set(self._factor * stiffness * self._turn**2, self._damping, volts, torque)
-        self._ctrl[self._joint] = (goal - self._zero) / self._turn
+        gain = -self._factor if self.miswired else self._factor
+        self._set(gain * stiffness * self._turn**2, self._damping, volts, torque)
+        self._ctrl[self.joint] = (goal - self._zero) / self._turn
 
     def push(self, volts: float) -> None:
         """See `Shaft`."""
@@ -81,7 +87,7 @@ class TwinShaft:
             self._set(0.0, self._damping, 0.0)
         else:
             self._set(1.0, self._damping, abs(volts))
-            self._ctrl[self._joint] = math.copysign(FAR, volts * self._turn)
+            self._ctrl[self.joint] = math.copysign(FAR, volts * self._turn)
 
     def pull(self, torque: float, volts: float) -> None:
         """See `Shaft`."""
@@ -89,7 +95,7 @@ class TwinShaft:
             self.push(0.0)
             return
         self._set(SOFT, 0.0, volts)
-        self._ctrl[self._joint] = torque * self._turn / SOFT
+        self._ctrl[self.joint] = torque * self._turn / SOFT
 
     def off(self) -> None:
         """See `Shaft`."""
@@ -100,7 +106,7 @@ class TwinShaft:
         prm[KP], prm[KD], prm[VMAX] = kp, kd, volts
         open_ = torque == math.inf
         if not (open_ and self._limit_open):
-            self._limited[self._joint] = not open_
+            self._limited[self.joint] = not open_
             most = 0.0 if open_ else torque * abs(self._turn)
             self._range[:] = -most, most
             self._limit_open = open_
@@ -170,26 +176,39 @@ class TwinPhysics:
         twin: The twin.
         driven: (n,) bool: has the servo of this joint been driven?
         held: Whether the hands still hold.
+        hangs: The base hangs in the air for ever, whatever the servos do.
+        jammed: (n,) bool: joints that do not move.
+        shafts: The horns of the servos.
     """
 
     twin: Twin
     held: bool = True
+    hangs: bool = False
+    shafts: Sequence[TwinShaft] = ()
 
     def __post_init__(self) -> None:
         self.timestep = self.twin.timestep
         self.driven = np.zeros(len(self.twin.robot.joints), dtype=bool)
+        self.jammed = np.zeros_like(self.driven)
         self._qpos, self._qvel = self.twin.data.qpos.copy(), np.zeros(self.twin.model.nv)
+
+    def grasp(self) -> None:
+        """Hold the robot as it is now, limp."""
+        self._qpos[:] = self.twin.data.qpos
+        self.driven[:] = False
 
     def step(self) -> None:
         """Advance by one step."""
         if self.held:
             prm = self.twin.model.actuator_gainprm
             self.driven |= (prm[:, KP] != 0.0) | (prm[:, KD] != 0.0)
-            if self.driven.all():
+            if self.driven.all() and not self.hangs:
                 self.held = False
         self.twin.step(1)
         if self.held:
             self._hold()
+        if self.jammed.any():
+            self._jam()
 
     def _hold(self) -> None:
         """Put back what the hands hold."""
@@ -198,6 +217,12 @@ class TwinPhysics:
         kept_q, kept_v = data.qpos[7 + free].copy(), data.qvel[6 + free].copy()
         data.qpos[:], data.qvel[:] = self._qpos, self._qvel
         data.qpos[7 + free], data.qvel[6 + free] = kept_q, kept_v
+
+    def _jam(self) -> None:
+        """Put back the joints that do not move."""
+        stuck = np.flatnonzero(self.jammed)
+        self.twin.data.qpos[7 + stuck] = self._qpos[7 + stuck]
+        self.twin.data.qvel[6 + stuck] = 0.0
 
 
 def _while_alive(method: Callable[[], None]) -> Callable[[], None]:

@@ -14,7 +14,9 @@ from hal.errors import UnknownNameError, WindupError, suggest
         (errors.UsageError, 2),
         (errors.StateMissingError, 2),
         (errors.UnknownNameError, 2),
+        (errors.PostureError, 2),
         (errors.StaleStateError, 3),
+        (errors.FirstMotionError, 3),
         (errors.HardwareError, 3),
     ],
 )

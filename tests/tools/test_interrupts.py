@@ -95,7 +95,7 @@ def test_nothing_arms_by_itself_in_a_program_that_was_told_to_end() -> None:
     check_not_interrupted()
 
 
-def interrupted(robot: Robot, at: float = 0.5, times: int = 1) -> None:
+def interrupted(robot: Robot, at: float = 1.0, times: int = 1) -> None:
     """Press Ctrl-C once the run has gone on for so long, s."""
 
     def watch(observation: Observation) -> None:
@@ -127,6 +127,7 @@ def test_a_script_that_goes_on_after_ctrl_c_moves_nothing_until_it_arms_again() 
             robot.stand(2.0)
         assert not any(device.driving for device in bus.world.devices)
         robot.arm()
+        robot.twin.reset(robot.description.stance)  # somebody puts it on its feet
         assert robot.stand(0.2).reason == "done"
 
 

@@ -28,7 +28,8 @@ def test_an_op3_that_must_fall_falls_softer(windup: Windup, direction: float) ->
 
 
 def test_so_it_does_on_estimated_state_through_its_bus(windup: Windup) -> None:
-    line = ["stand", "op3", *WIRE, "--push-direction", "-90", *PUSHED]
+    later = ("--seconds", 2.4, "--push", 4, "--push-at", 2.2, "--json", "-")  # it stands by then
+    line = ["stand", "op3", *WIRE, "--push-direction", "-90", *later]
     stiff, soft = windup(*line, "--no-protect"), windup(*line)
     assert trunk(soft.json) < 0.7 * trunk(stiff.json)
     assert soft.json["peak_load"] <= 1.0

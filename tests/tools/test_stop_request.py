@@ -60,27 +60,28 @@ def test_a_button_that_is_held_down_keeps_torque_off_and_is_told() -> None:
 
 
 @pytest.mark.parametrize(
-    "command",
+    ("command", "after"),
     [
-        ("stand",),
-        ("play", "wave"),
-        ("rise",),
-        ("step", "--foot", "left", "--to", "0.05", "0.1"),
-        ("stride",),
-        ("walk", "--open-loop"),
+        (("stand",), 1.5),
+        (("play", "wave"), 3.0),
+        (("rise",), 1.5),
+        (("step", "--foot", "left", "--to", "0.05", "0.1"), 5.0),
+        (("stride",), 5.0),
+        (("walk", "--open-loop"), 3.5),
     ],
-    ids=lambda command: command[0],
+    ids=lambda value: value[0] if isinstance(value, tuple) else None,
 )
 def test_a_command_that_a_button_stops_has_status_130_and_says_so(
     windup: Windup,
     monkeypatch: pytest.MonkeyPatch,
     caplog: pytest.LogCaptureFixture,
     command: tuple[str, ...],
+    after: float,
 ) -> None:
     read = OpenCr.read
 
     def pressed(self: OpenCr, address: int, count: int, now: float) -> tuple[int, bytes]:
-        self.buttons = MODE_BUTTON if now > 1.6 else 0
+        self.buttons = MODE_BUTTON if now > after else 0
         return read(self, address, count, now)
 
     monkeypatch.setattr(OpenCr, "read", pressed)

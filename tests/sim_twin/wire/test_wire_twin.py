@@ -115,6 +115,44 @@ def test_a_joint_that_is_driven_moves_while_the_rest_is_held(op3: Host) -> None:
     assert op3.read(19, "present_position") == pytest.approx(2500, abs=2)
 
 
+def test_a_robot_that_hangs_keeps_its_base_whatever_its_servos_do(op3: Host) -> None:
+    twin, physics = twin_of(op3), op3.world.physics
+    assert isinstance(physics, TwinPhysics)
+    twin.data.qpos[2] += 0.2
+    physics.grasp()
+    physics.hangs = True
+    before = twin.data.qpos[:7].copy()
+    switch(op3, True)
+    op3.wait(0.5)
+    assert physics.held and np.array_equal(twin.data.qpos[:7], before)
+
+
+def test_a_jammed_joint_does_not_move_and_the_others_do(op3: Host) -> None:
+    twin, physics = twin_of(op3), op3.world.physics
+    assert isinstance(physics, TwinPhysics)
+    joints = twin.robot.joints
+    physics.jammed[joints.index("head_pan")] = True
+    before = twin.data.qpos.copy()
+    switch(op3, True, (19, 20))
+    for id in (19, 20):
+        op3.ask(id, 3, bytes((116, 0, *(2500).to_bytes(4, "little"))))
+    op3.wait(1.0)
+    moved = np.abs(twin.data.qpos - before)[7:]
+    assert moved[joints.index("head_pan")] == 0.0 and moved[joints.index("head_tilt")] > 0.5
+
+
+def test_a_motor_that_is_miswired_runs_away_from_its_goal(op3: Host) -> None:
+    twin, physics = twin_of(op3), op3.world.physics
+    assert isinstance(physics, TwinPhysics)
+    pan = twin.robot.joints.index("head_pan")
+    (shaft,) = (shaft for shaft in physics.shafts if shaft.joint == pan)
+    shaft.miswired = True
+    switch(op3, True, (19,))
+    op3.ask(19, 3, bytes((116, 0, *(2200).to_bytes(4, "little"))))
+    op3.wait(0.3)
+    assert twin.data.qpos[7 + pan] < -0.3
+
+
 def test_servos_report_the_joints_with_their_signs_and_zeros(op3: Host) -> None:
     twin = twin_of(op3)
     for joint, mount in enumerate(twin.robot.servos):
