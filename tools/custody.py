@@ -39,6 +39,12 @@ class Custody:
         self.guardian: Guardian | None = None
         self._keeper: IdleKeeper | None = None
 
+    def interrupt(self, by: str) -> None:
+        """Hold the robot no longer: its program was interrupted between two runs."""
+        keeper = self._keeper
+        if keeper is not None:
+            keeper.interrupt(by)
+
     def begin(self) -> None:
         """Have a guardian watch, before torque comes on.
 
@@ -91,6 +97,11 @@ class Custody:
             guardian.pid,
             self._robot.name,
         )
+        self._forget_guardian()
+
+    def disown(self) -> None:
+        """Leave guardian and robot to the process that this one was forked from."""
+        self._keeper = None
         self._forget_guardian()
 
     def _drop_guardian(self) -> None:
