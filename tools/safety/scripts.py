@@ -15,8 +15,8 @@ from tools.session import Watch
 BY_ITSELF = "its walk ended by itself"
 FOR_EVER = 3600.0
 """Longer than anything here, s."""
-WARM_UP = 1.3
-"""From the first command to a robot that stands, s."""
+WARM_UP = 0.4
+"""From the end of the first motion to a robot that stands still, s."""
 
 Body = Callable[[Robot, Activity, Begin], None]
 
