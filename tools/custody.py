@@ -50,7 +50,9 @@ class Custody:
             return
         self._drop_guardian()
         robot, servos = self._robot, self._backend.backend
-        self.guardian = guardian_for(servos, robot.stop, robot.crouch, robot.safety.hold)
+        watch, hold = self._backend.watch, robot.safety.hold
+        levels = None if watch is None else watch.levels
+        self.guardian = guardian_for(servos, robot.stop, robot.crouch, hold, levels)
         if self.guardian is not None:
             self._backend.heartbeat = self.guardian.tick
             if isinstance(servos, ServoBackend):

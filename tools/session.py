@@ -13,7 +13,7 @@ from control.loop import Estimator, LoopReport, Until, run_loop
 from control.play import PoseHolder
 from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
-from hal.errors import ControllerError, TelemetryError, WindupError
+from hal.errors import ControllerError, TelemetryError, UnhealthyError, WindupError
 from hal.guard import StopPolicy
 from hal.guard.finding import Finding
 from hal.guard.imu_watch import ImuWatch
@@ -237,7 +237,7 @@ class Session(Armed):
         except WindupError as error:
             self.loop.reason = str(error)
             self._record_last()
-            self._stop_after_error(asked, "limp" if error.limp else None)
+            self._stop_after_error(asked, self._policy_after(error))
             raise
         except (KeyboardInterrupt, SystemExit) as ended:  # raised by a controller of one's own
             asked.by = asked.by or type(ended).__name__
@@ -272,6 +272,11 @@ class Session(Armed):
             self.telemetry.begin()
         except TelemetryError as error:
             logging.getLogger(__name__).warning("no telemetry: %s", error)
+
+    def _policy_after(self, error: WindupError) -> StopPolicy | None:
+        """Return what to do instead of the stop policy: nobody holds a joint that is unwell."""
+        unwell = isinstance(error, UnhealthyError) and self.backend.stop_policy == "hold"
+        return "limp" if error.limp or unwell else None
 
     def _stop_after_error(self, asked: Asked, policy: StopPolicy | None = None) -> None:
         """Carry out the stop policy, or another one; a twin that has diverged can no longer."""

@@ -16,6 +16,7 @@ import numpy as np
 
 from hal.backend import Backend
 from hal.errors import GuardianError, HardwareError, UsageError
+from hal.guard.levels import HealthLevels, Kind
 from hal.guard.limits import StopPolicy
 from hal.guardian.lock import AdapterLock
 from hal.guardian.order import HAND_OVER, IDLE, READY, RELEASE, TICK, Charge, Order
@@ -165,7 +166,11 @@ class Guardian:
 
 
 def guardian_for(
-    backend: Backend, policy: StopPolicy, crouch: Array | None = None, hold: float = 60.0
+    backend: Backend,
+    policy: StopPolicy,
+    crouch: Array | None = None,
+    hold: float = 60.0,
+    levels: HealthLevels | None = None,
 ) -> Guardian | None:
     """Return a running guardian of the buses of `backend`; None where no bus is outside of here.
 
@@ -174,6 +179,7 @@ def guardian_for(
         policy: What "stop" means for the robot.
         crouch: (n,) pose of its crouch, rad.
         hold: How long "hold" lasts before torque goes off, s.
+        levels: Of the robot's joints: one beyond a stop level is not held.
 
     Raises:
         UsageError: Servos without a bus watchdog behind a network.
@@ -185,7 +191,7 @@ def guardian_for(
     for link in links:
         _check_network(link)
     goals = None if crouch is None else backend.goal_counts(crouch)
-    charges = [_charge(link, goals) for link in links]
+    charges = [_charge(link, goals, levels) for link in links]
     return Guardian(charges, policy, hold) if charges else None
 
 
@@ -209,14 +215,21 @@ def _check_network(link: ServoLink) -> None:
         )
 
 
-def _charge(link: ServoLink, goals: Array | None) -> Charge:
+def _charge(link: ServoLink, goals: Array | None, levels: HealthLevels | None) -> Charge:
     """Return what a guardian has to know of a bus; `goals` are (n,) counts of the crouch."""
     port, line = link.bus.port, link.line
     url = port.url if "://" in port.url else stable_url(os.path.abspath(port.url))
     counts = {} if goals is None else dict(zip(line.ids, goals[line.rows].tolist(), strict=True))
+    hot_and_low = {}
+    if levels is not None:
+        stop = levels.stop[[Kind.TEMPERATURE, Kind.SUPPLY_LOW]][:, line.rows]
+        hot_and_low = {
+            id: (float(hot), float(low)) for id, hot, low in zip(line.ids, *stop, strict=True)
+        }
     return Charge(
         url=url,
         baud=port.baud,
         servos={mount.id: mount.model.name for mount in line.mounts},
         crouch={id: int(np.rint(count)) for id, count in counts.items()},
+        levels=hot_and_low,
     )

@@ -23,6 +23,8 @@ class Charge(msgspec.Struct, frozen=True, kw_only=True):
         baud: Bits a second.
         servos: Id to model name.
         crouch: Id to the goal position of the robot's crouch, counts; empty without one.
+        levels: Id to the temperature, degrees C, and the supply, V, at which a servo that is held
+            has to be let go; one without is held whatever it reads.
         lock: Descriptor of the lock on its adapter, held by host and guardian together.
     """
 
@@ -30,6 +32,7 @@ class Charge(msgspec.Struct, frozen=True, kw_only=True):
     baud: int
     servos: dict[int, str]
     crouch: dict[int, int] = {}
+    levels: dict[int, tuple[float, float]] = {}
     lock: int = -1
 
 

@@ -8,16 +8,15 @@ from hal.bus import Bus
 from hal.errors import HardwareError, UsageError
 from hal.families import family_of
 from hal.guardian.order import Charge
-from hal.joints import Array, Mask
+from hal.joints import Array
 from hal.open_port import open_port
-from hal.registers import Register
 from hal.servo_line import ServoLine
 from hal.servo_model import ServoMount
 from hal.servo_torque import ServoTorque
 from hal.servos import servo_model
 
-MARGIN = 5.0
-"""How far below its own limit a servo counts as too hot, degrees C."""
+UNLIMITED = (np.inf, -np.inf)
+"""Levels of a servo that has none."""
 
 
 class RemoteBus:
@@ -75,28 +74,24 @@ class RemoteBus:
     def complaint(self) -> str | None:
         """Return whose heat, supply or silence asks for the torque to go off, or None.
 
-        The limits are the servos' own; heat counts from 5 degrees C below.
-
         Raises:
             HardwareError: The port is gone.
         """
-        hot, _ = self._compare("present_temperature", "temperature_limit", MARGIN)
-        _, low = self._compare("present_voltage", "min_voltage_limit", 0.0)
-        for which, what in ((hot, "is too hot"), (low, "has too little supply")):
+        levels = [self.charge.levels.get(id, UNLIMITED) for id in self.charge.servos]
+        hottest, lowest = np.transpose(levels)
+        heat, supply = self._read("present_temperature"), self._read("present_voltage")
+        for which, what in ((heat >= hottest, "too hot"), (supply <= lowest, "short of supply")):
             if which.any():
                 ids = [id for id, has in zip(self.charge.servos, which, strict=True) if has]
-                return f"{self.charge.url}: id {', '.join(map(str, ids))} {what}"
+                verb = "is" if len(ids) == 1 else "are"
+                return f"{self.charge.url}: id {', '.join(map(str, ids))} {verb} {what}"
         return None
 
-    def _compare(self, name: str, limit: str, margin: float) -> tuple[Mask, Mask]:
-        """Return (servos,) bool: whose register is above its limit register, and whose below."""
-        bus = self.torque().line.bus
-        value, bound = (self._read(bus.family.registers[each]) for each in (name, limit))
-        return value >= bound - margin, value <= bound
-
-    def _read(self, register: Register) -> Array:
+    def _read(self, name: str) -> Array:
         """Return (servos,) values of a register in its unit; not a number where nobody answers."""
-        counts, valid = self.torque().line.bus.sync_read(list(self.charge.servos), register)
+        bus = self.torque().line.bus
+        register = bus.family.registers[name]
+        counts, valid = bus.sync_read(list(self.charge.servos), register)
         return np.where(valid, counts * register.unit, np.nan)
 
     def switch_off(self) -> bool:

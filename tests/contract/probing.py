@@ -1,6 +1,7 @@
 """What the contract has to know of a backend to ask it fair questions."""
 
 import re
+from itertools import count
 from typing import Final
 
 import numpy as np
@@ -8,7 +9,12 @@ import numpy as np
 from hal.backend import Backend
 from hal.joints import Array
 from hal.servo_backend import ServoBackend
+from robots import load_robot
+from tools.stack import servo_backend
 
+TICK: Final = 0.008
+"""Between two ticks, s."""
+_worlds = count()
 COUNT: Final = 2.0 * np.pi / 4096
 FREE: Final = re.compile("sho|elbow|head|neck|^ankle")  # they bear no weight, in all robots
 
@@ -26,3 +32,9 @@ def free(backend: Backend) -> list[str]:
     names = [name for name in backend.joints.names if FREE.search(name)]
     assert names
     return names
+
+
+def wired(name: str) -> Backend:
+    """Return a robot behind its emulated servo bus, in a world of its own."""
+    world = f"contract-{next(_worlds)}"
+    return servo_backend(load_robot(name), f"twin://{name}?world={world}&return_delay=0")

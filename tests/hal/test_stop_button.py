@@ -3,7 +3,7 @@
 import pytest
 
 from hal.imu.opencr import OpenCr
-from tests.hal.test_servo_backend import Robot
+from tests.hal.backend_robot import Robot
 
 
 def pressing(robot: Robot, buttons: int) -> tuple[str | None, tuple[str, ...]]:

@@ -49,6 +49,16 @@ def test_a_servo_that_grows_hot_stops_the_robot(name: str, knee: str) -> None:
     robot.close()
 
 
+def test_a_hot_servo_is_not_held_by_a_robot_that_stops_by_holding() -> None:
+    with Robot.open("op3", port="twin://op3") as robot:
+        robot.backend.stop_policy = "hold"
+        robot.stand(0.5)
+        heat_of(robot, "l_knee")(78.0)
+        with pytest.raises(UnhealthyError):
+            robot.stand(6.0)
+        assert not robot.armed and undriven(robot)
+
+
 def test_a_hot_servo_is_refused_before_the_first_motion() -> None:
     with Robot.open("op3", port="twin://op3") as robot:
         heat_of(robot, "l_knee")(79.0)

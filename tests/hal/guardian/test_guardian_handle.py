@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from hal.errors import GuardianError, HardwareError, PortError, UsageError
-from hal.guardian.handle import Guardian, guardian_for
+from hal.guard.levels import HealthLevels, Kind
+from hal.guardian.handle import Guardian, _charge, guardian_for
 from hal.open_port import open_port
 from hal.servos import servo_model
 from tests.hal.fake_bus1 import STS
@@ -76,10 +77,23 @@ def test_servos_that_watch_their_bus_have_one_too(tmp_path: Path) -> None:
         backend = robot(wires, [mount(model, "arms", 1)])
         backend._opener = lambda url, baud: open_port(path, baud)
         backend.connect()
-        watching = guardian_for(backend, "limp")
+        watching = guardian_for(
+            backend, "limp", levels=HealthLevels.of([mount(model, "arms", 1)], 12.0)
+        )
         assert watching is not None and watching.alive
         watching.release()
         backend.disconnect()
+
+
+def test_a_guardian_lets_go_at_the_stop_levels_of_the_run() -> None:
+    wires = Wires()
+    wires.add("legs", {7: STS})
+    backend = robot(wires, [mount(STS, "legs", 7)])
+    backend.connect()
+    levels = HealthLevels.of([mount(STS, "legs", 7)], 7.4, {Kind.TEMPERATURE: (50.0, 55.0)})
+    charged = _charge(backend.links[0], None, levels)
+    assert charged.levels == {7: (55.0, float(levels.stop[Kind.SUPPLY_LOW, 0]))}
+    backend.disconnect()
 
 
 def test_feetech_servos_behind_a_network_are_refused() -> None:

@@ -4,6 +4,7 @@ import os
 import signal
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from hal.errors import UnknownNameError
@@ -54,6 +55,22 @@ def test_a_robot_that_shall_hold_is_held_for_its_time_and_goes_off_then(sts_bus:
                 break
         assert show(sts_bus, TORQUE) == [1, 1]
         wait_for_end(guardian)
+    assert show(sts_bus, TORQUE) == [0, 0]
+
+
+@pytest.mark.parametrize(
+    ("levels", "why"), [((20.0, 0.0), "is too hot"), ((70.0, 99.0), "is short of supply")]
+)
+def test_a_servo_beyond_the_stop_levels_of_its_robot_is_not_held(
+    sts_bus: Path, capfd: pytest.CaptureFixture[str], levels: tuple[float, float], why: str
+) -> None:
+    guardian = Guardian(
+        [msgspec.structs.replace(charge(sts_bus), levels={2: levels})], "hold", 60.0
+    )
+    switch_on(sts_bus)
+    guardian.hand_over()
+    guardian._process.wait()
+    assert f"id 2 {why}" in capfd.readouterr().err
     assert show(sts_bus, TORQUE) == [0, 0]
 
 
