@@ -25,6 +25,7 @@ class Charge(msgspec.Struct, frozen=True, kw_only=True):
         crouch: Id to the goal position of the robot's crouch, counts; empty without one.
         levels: Id to the temperature, degrees C, and the supply, V, at which a servo that is held
             has to be let go; one without is held whatever it reads.
+        names: Id to joint name, for people; empty where nobody knows them.
         lock: Descriptor of the lock on its adapter, held by host and guardian together.
     """
 
@@ -33,6 +34,7 @@ class Charge(msgspec.Struct, frozen=True, kw_only=True):
     servos: dict[int, str]
     crouch: dict[int, int] = {}
     levels: dict[int, tuple[float, float]] = {}
+    names: dict[int, str] = {}
     lock: int = -1
 
 
