@@ -123,8 +123,15 @@ def _remedy(device: str) -> str:
     return f"join its group: sudo usermod -aG {group} $USER, then log in again"
 
 
-def _busy(url: str, held_by: list[str]) -> str:
-    return f"port {url} is in use by {', '.join(held_by) or 'another process'}; stop that first"
+def _busy(url: str, held_by: dict[int, str]) -> str:
+    """Return who has a port, and how to get it."""
+    if os.getpid() in held_by:
+        return f"port {url} is in use by this program; close what it has opened there first"
+    if not held_by:
+        return f"port {url} is in use by another process, which is not ours to see; end it first"
+    who = ", ".join(f"{name} (pid {pid})" for pid, name in held_by.items())
+    it, pids = "it" if len(held_by) == 1 else "them", " ".join(map(str, held_by))
+    return f"port {url} is in use by {who}; end {it} first: Ctrl-C there, or `kill -INT {pids}`"
 
 
 def _check_holder(device: str) -> None:
@@ -139,16 +146,17 @@ def _check_holder(device: str) -> None:
         raise PortError(_busy(device, held_by))
 
 
-def holders(device: str) -> list[str]:
-    """Return "name (pid n)" of the processes that have `device` open, as far as we may see."""
+def holders(device: str) -> dict[int, str]:
+    """Return pid to name of the processes that have `device` open, as far as we may see."""
     real = os.path.realpath(device)
-    found = []
-    for process in Path("/proc").glob("[0-9]*"):
-        with contextlib.suppress(OSError):
-            if any(os.path.realpath(fd) == real for fd in (process / "fd").iterdir()):
-                name = (process / "comm").read_text().strip()
-                found.append(f"{name} (pid {process.name})")
-    return sorted(found)
+    found = {}
+    with contextlib.suppress(OSError):  # there may be too many open files to look
+        for pid in sorted(int(name) for name in os.listdir("/proc") if name.isdigit()):
+            process = Path(f"/proc/{pid}")
+            with contextlib.suppress(OSError):
+                if any(os.path.realpath(fd) == real for fd in (process / "fd").iterdir()):
+                    found[pid] = (process / "comm").read_text().strip()
+    return found
 
 
 def _latency(device: str) -> float | None:

@@ -4,6 +4,7 @@ import contextlib
 import os
 import select
 import termios
+from collections.abc import Callable
 from typing import Any, Protocol
 
 from serial import SerialException
@@ -14,6 +15,10 @@ from hal.errors import PortError
 
 GONE = (SerialException, OSError, termios.error)
 """What an adapter that is pulled out raises, depending on what was going on."""
+SELECTABLE = 1024
+"""Descriptors that `select` takes are less than this (FD_SETSIZE of the C library)."""
+ROOM = 100
+"""How long a write waits for room before it tries again, ms."""
 LATENCY = 1e-3
 """What an adapter may hold back when its driver does not say, s."""
 
@@ -49,6 +54,7 @@ class Port:
 
     Attributes:
         url: What was opened, as the user wrote it.
+        place: The same, as it is found from every working folder.
         clock: The wall, or the clock of the world behind the port.
         latency: How long the adapter may hold back bytes that have arrived, s.
         sent: Bytes written so far.
@@ -56,7 +62,7 @@ class Port:
     """
 
     def __init__(self, serial: SerialLike, url: str, latency: float | None = None) -> None:
-        self._serial, self.url = serial, url
+        self._serial, self.url, self.place = serial, url, url
         world: Any = getattr(serial, "clock", None)
         self.clock: Clock = world if world is not None else WallClock()
         self.latency: float = getattr(serial, "latency", LATENCY) if latency is None else latency
@@ -118,12 +124,27 @@ class Port:
         )
 
 
+def _selected(descriptor: int) -> Callable[[float], object]:
+    """Return what waits some s for a descriptor to become readable, and says whether it has."""
+    wait, watched = select.select, [descriptor]
+    return lambda seconds: wait(watched, (), (), seconds)[0]
+
+
+def _polled(descriptor: int) -> Callable[[float], object]:
+    """The same for any descriptor; but it rounds the wait up to whole milliseconds."""
+    poller = select.poll()
+    poller.register(descriptor, select.POLLIN)
+    return lambda seconds: poller.poll(seconds * 1e3)
+
+
 class DevicePort(Port):
     """A port of the operating system: reads its descriptor itself, which costs half of pyserial."""
 
     def __init__(self, serial: Any, url: str, latency: float | None = None) -> None:
         super().__init__(serial, url, latency)
+        self.place = url if url.startswith("usb:") else os.path.abspath(url)
         self._fd: int = serial.fileno()
+        self._readable = (_selected if self._fd < SELECTABLE else _polled)(self._fd)
 
     def read(self, count: int, deadline: float) -> bytes:
         """Return `count` bytes, or what has come when the clock says `deadline` s."""
@@ -132,8 +153,7 @@ class DevicePort(Port):
         while left > 0:
             wait = deadline - self.clock.now()
             try:
-                # Not poll: it rounds the wait up to whole milliseconds.
-                if not select.select([self._fd], [], [], max(0.0, wait))[0]:
+                if not self._readable(wait if wait > 0.0 else 0.0):
                     break
                 chunk = os.read(self._fd, left)
             except BlockingIOError:
@@ -154,7 +174,9 @@ class DevicePort(Port):
             try:
                 view = view[os.write(self._fd, view) :]
             except BlockingIOError:
-                select.select([], [self._fd], [], 0.1)
+                writable = select.poll()
+                writable.register(self._fd, select.POLLOUT)
+                writable.poll(ROOM)
             except OSError as error:
                 raise self._gone(error) from None
         self.sent += len(data)

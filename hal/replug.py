@@ -33,7 +33,7 @@ class Replug:
         self._baud, self._opener = baud, opener
         self.opened = opener(url, baud)
         self.port: Port | None = self.opened
-        self._url = stable_url(url)
+        self._url = stable_url(self.opened.place)
         self._next = 0.0
 
     @property

@@ -35,13 +35,13 @@ class Stoppable(OnStack):
     armed: bool = field(default=False, init=False)
 
     def __post_init__(self) -> None:
-        self.custody = Custody(self.description, self.backend, self._stop_idle)
-        self.start = None
+        self.start = Start(self.description, self.stack) if self.stack.wired else None
+        motion = None if self.start is None else self.start.motion
+        self.custody = Custody(self.description, self.backend, self._stop_idle, motion)
         self._running = Running()
         self._failed: WindupError | None = None
         self._closed = ""
         if self.stack.wired:
-            self.start = Start(self.description, self.stack)
             overhear(self)
             _open.add(self)
 

@@ -19,5 +19,5 @@ def check_off(state: TorqueState, joints: Joints) -> None:
         where = state.names(joints, state.unknown)
         raise TorqueUnknownError(
             f"torque is unknown at {where}: no answer; it may be on: cut the servo power, "
-            "or give the port back"
+            "or plug the adapter in again"
         )

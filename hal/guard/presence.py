@@ -55,8 +55,9 @@ class Presence:
             raise torque_lost(watched.lost_joints)
         # Whatever comes back has to be armed again: there is nothing to wait for.
         names, all_names = watched.doubtful_joints, self._backend.joints.names
-        who = "all joints" if len(names) == len(all_names) > 1 else ", ".join(names)
-        raise PortError(f"{who} cannot be reached: {'; '.join(watched.lost.values())}")
+        nobody = len(names) == len(all_names) > 1
+        what = "no joint can" if nobody else f"{', '.join(names)} cannot"
+        raise PortError(f"{what} be reached: {'; '.join(watched.lost.values())}")
 
     def _stale(self, age: Array, max_age: float) -> StaleStateError:
         """Return the error that names the joint with the oldest state, and what to do about it."""

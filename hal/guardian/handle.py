@@ -8,26 +8,28 @@ import sys
 import termios
 import time
 from collections.abc import Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from typing import IO
 
 import msgspec
-import numpy as np
 
 from hal.backend import Backend
-from hal.errors import GuardianError, HardwareError, UsageError
-from hal.guard.levels import HealthLevels, Kind
+from hal.errors import GuardianError, HardwareError
+from hal.guard.levels import HealthLevels
 from hal.guard.limits import StopPolicy
+from hal.guardian.charges import charges_of
+from hal.guardian.in_words import in_words
+from hal.guardian.launch import launch
 from hal.guardian.lock import AdapterLock
-from hal.guardian.order import HAND_OVER, IDLE, READY, RELEASE, TICK, Charge, Order
+from hal.guardian.order import FIRST, HAND_OVER, IDLE, READY, RELEASE, TICK, Charge, Order
+from hal.guardian.signals import held_back
 from hal.guardian.traceback_signal import show_traceback_on_signal
 from hal.joints import Array
-from hal.network_port import NETWORK
-from hal.open_port import stable_url
-from hal.port import DevicePort
 from hal.servo_backend import ServoBackend
-from hal.servo_link import ServoLink
 
+NOT_STARTED = (
+    "the guardian that stops this robot when its program dies does not start{}; torque stays off"
+)
 START_TIME = 20.0
 """What the process may take to start, s."""
 END_TIME = 1.0
@@ -50,26 +52,22 @@ class Guardian:
     """
 
     def __init__(self, charges: Sequence[Charge], policy: StopPolicy, hold: float = 60.0) -> None:
-        self._locks = [AdapterLock(charge.url) for charge in charges]
-        numbers = [lock.take() for lock in self._locks]
-        show_traceback_on_signal()
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", "-c", "from hal.guardian.process import main; main()"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            pass_fds=numbers,
-            env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
-            start_new_session=True,  # signals of the terminal are for the host
-        )
-        assert self._process.stdin is not None and self._process.stdout is not None
-        self._pipe: IO[bytes] = self._process.stdin
-        self._descriptor = self._pipe.fileno()
-        self._read_at = time.monotonic()
-        told = [
-            msgspec.structs.replace(charge, lock=number)
-            for charge, number in zip(charges, numbers, strict=True)
-        ]
-        self._start(Order(host=os.getpid(), policy=policy, charges=tuple(told), hold=hold))
+        self._locks: list[AdapterLock] = []
+        try:
+            with ExitStack() as undo:  # also of Ctrl-C, which the program may catch
+                told = tuple(self._lock(charge, undo) for charge in charges)
+                show_traceback_on_signal()
+                with held_back():
+                    self._process = launch([charge.lock for charge in told])
+                    undo.callback(self._give_up)
+                assert self._process.stdin is not None
+                self._pipe: IO[bytes] = self._process.stdin
+                self._descriptor = self._pipe.fileno()
+                self._read_at = time.monotonic()
+                self._start(Order(host=os.getpid(), policy=policy, charges=told, hold=hold))
+                undo.pop_all()
+        except OSError as error:
+            raise HardwareError(NOT_STARTED.format(f" ({in_words(error)})")) from error
 
     @property
     def pid(self) -> int:
@@ -81,13 +79,16 @@ class Guardian:
         """True while it is watching."""
         return self._process.poll() is None
 
-    def tick(self) -> None:
+    def tick(self, first: bool = False) -> None:
         """Say that the loop has done a tick; from now on the next one is due within 0.15 s.
+
+        Args:
+            first: The robot has not made its first motion: no crouch, it is to go limp.
 
         Raises:
             GuardianError: The guardian has died, or does not read.
         """
-        self._say(TICK)
+        self._say(FIRST if first else TICK)
 
     def idle(self) -> None:
         """Say that this process is alive though no loop runs; more is due within 1 s.
@@ -105,12 +106,24 @@ class Guardian:
         except subprocess.TimeoutExpired:  # stopped by somebody; there is nothing left to guard
             self._process.kill()
             self._process.wait()
-        self._unlock()
+        finally:
+            self._unlock()
 
     def hand_over(self) -> None:
         """Leave the robot to it: torque could not be read back as off, and the ports are closed."""
         self._end(HAND_OVER)
         self._unlock()
+
+    def _lock(self, charge: Charge, undo: ExitStack) -> Charge:
+        """Return a charge with its adapter locked.
+
+        Raises:
+            PortError: Another armed run has it.
+        """
+        lock = AdapterLock(charge.url)
+        undo.callback(lock.close)
+        self._locks.append(lock)
+        return msgspec.structs.replace(charge, lock=lock.take())
 
     def _start(self, order: Order) -> None:
         """Give the order and a first heartbeat, and wait until both have arrived."""
@@ -120,17 +133,21 @@ class Guardian:
         os.set_blocking(self._descriptor, False)
         answer = self._process.stdout
         assert answer is not None
-        ready = select.select([answer], [], [], START_TIME)[0] and os.read(answer.fileno(), 1)
+        heard = select.poll()
+        heard.register(answer, select.POLLIN)
+        ready = heard.poll(START_TIME * 1e3) and os.read(answer.fileno(), 1)
         answer.close()
         if ready != READY:
+            raise HardwareError(NOT_STARTED.format(""))
+
+    def _give_up(self) -> None:
+        """End a process that has not begun to watch: torque is off."""
+        with held_back():
             self._process.kill()
-            self._end(b"")
             self._process.wait()
-            self._unlock()
-            raise HardwareError(
-                "the guardian that stops this robot when its program dies does not start; "
-                "torque stays off"
-            )
+            for pipe in filter(None, (self._process.stdin, self._process.stdout)):
+                with suppress(OSError):
+                    pipe.close()
 
     def _say(self, byte: bytes) -> None:
         now = time.monotonic()
@@ -187,49 +204,5 @@ def guardian_for(
     """
     if not isinstance(backend, ServoBackend):
         return None
-    links = [link for link in backend.links if _outside(link)]
-    for link in links:
-        _check_network(link)
-    goals = None if crouch is None else backend.goal_counts(crouch)
-    charges = [_charge(link, goals, levels) for link in links]
+    charges = charges_of(backend, crouch, levels)
     return Guardian(charges, policy, hold) if charges else None
-
-
-def _outside(link: ServoLink) -> bool:
-    """Return whether another process can reach the servos of a bus."""
-    port = link.bus.port
-    return isinstance(port, DevicePort) or port.url.startswith(NETWORK)
-
-
-def _check_network(link: ServoLink) -> None:
-    """Refuse a network where its loss would leave nobody who can stop the servos.
-
-    Raises:
-        UsageError: The servos have no bus watchdog of their own.
-    """
-    url, registers = link.bus.port.url, link.bus.family.registers
-    if url.startswith(NETWORK) and "bus_watchdog" not in registers:
-        raise UsageError(
-            f"{url}: these servos cannot watch their bus, so nobody could stop them when the "
-            "network fails; run Windup on the machine that the adapter is plugged into"
-        )
-
-
-def _charge(link: ServoLink, goals: Array | None, levels: HealthLevels | None) -> Charge:
-    """Return what a guardian has to know of a bus; `goals` are (n,) counts of the crouch."""
-    port, line = link.bus.port, link.line
-    url = port.url if "://" in port.url else stable_url(os.path.abspath(port.url))
-    counts = {} if goals is None else dict(zip(line.ids, goals[line.rows].tolist(), strict=True))
-    hot_and_low = {}
-    if levels is not None:
-        stop = levels.stop[[Kind.TEMPERATURE, Kind.SUPPLY_LOW]][:, line.rows]
-        hot_and_low = {
-            id: (float(hot), float(low)) for id, hot, low in zip(line.ids, *stop, strict=True)
-        }
-    return Charge(
-        url=url,
-        baud=port.baud,
-        servos={mount.id: mount.model.name for mount in line.mounts},
-        crouch={id: int(np.rint(count)) for id, count in counts.items()},
-        levels=hot_and_low,
-    )

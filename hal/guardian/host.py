@@ -17,6 +17,9 @@ class Host:
     Args:
         number: Its process number.
 
+    Raises:
+        OSError: It cannot be watched, though it is there.
+
     Attributes:
         descriptors: What becomes readable when it has ended; empty if it had ended before.
     """
@@ -24,8 +27,11 @@ class Host:
     def __init__(self, number: int) -> None:
         self.number = number
         self.descriptors: list[int] = []
-        with suppress(OSError):
+        with suppress(ProcessLookupError):
             self.descriptors = [os.pidfd_open(number)]
+        self._poll = select.poll()
+        for descriptor in self.descriptors:
+            self._poll.register(descriptor, select.POLLIN)
 
     @property
     def gone(self) -> bool:
@@ -36,10 +42,13 @@ class Host:
         """Wait for its end for some time, s, and return whether it has ended."""
         if not self.descriptors:
             return True
-        return bool(select.select(self.descriptors, [], [], seconds)[0])
+        return bool(self._poll.poll(seconds * 1e3))
 
     def kill(self) -> None:
-        """Let it print where it hangs, then end it by force and wait for that a moment."""
+        """Let it print where it hangs, then end it by force and wait for that a moment.
+
+        It has its time for the print whether somebody reads that or not.
+        """
         self._send(WHERE)
         self.wait(TRACEBACK_TIME)
         self._send(signal.SIGKILL)

@@ -15,6 +15,7 @@ from pathlib import Path
 import msgspec
 
 from hal.errors import PortError
+from hal.guardian.in_words import in_words
 from hal.open_port import stable_url
 from hal.telemetry_layout import runtime_folder
 
@@ -24,8 +25,8 @@ SAY_AGAIN = 10.0
 """Between two lines that say what is waited for, s."""
 EMULATED = "twin://"
 """Ports in this process, which no guardian looks after."""
-NOTE_SIZE = 512
-"""More than a note is long, bytes."""
+RESERVED = 3
+"""Numbers below are those of standard input, output and error, open or not."""
 
 
 class Note(msgspec.Struct, frozen=True):
@@ -44,11 +45,15 @@ class AdapterLock:
     """The lock on the adapter of one bus.
 
     Args:
-        url: Of its port.
+        url: Of its port; a path has to be absolute where it is used after a change of folders.
+
+    Raises:
+        PortError: The file of the lock cannot be opened.
     """
 
     def __init__(self, url: str) -> None:
         self.url = url
+        self._descriptor = -1
         self._descriptor = _open(url)
 
     def take(self) -> int:
@@ -81,22 +86,24 @@ class AdapterLock:
     def note(self) -> Note:
         """Return what its holder says."""
         try:
-            return msgspec.json.decode(os.pread(self._descriptor, NOTE_SIZE, 0), type=Note)
+            size = os.fstat(self._descriptor).st_size
+            return msgspec.json.decode(os.pread(self._descriptor, size, 0), type=Note)
         except msgspec.DecodeError:  # nobody has written yet
             return Note()
 
     def close(self) -> None:
-        """Let it go; a guardian that has inherited it keeps it."""
-        with suppress(OSError):
-            os.close(self._descriptor)
+        """Let it go, if it is not yet; a guardian that has inherited it keeps it."""
+        descriptor, self._descriptor = self._descriptor, -1
+        if descriptor >= 0:
+            os.close(descriptor)
 
 
 def write_note(descriptor: int, note: Note) -> None:
     """Say in a lock's file who holds it and what he does."""
     with suppress(OSError):
         text = msgspec.json.encode(note)
-        os.ftruncate(descriptor, 0)
-        os.pwrite(descriptor, text, 0)
+        # At once, with blanks over the rest of a longer note: somebody may be reading.
+        os.pwrite(descriptor, text.ljust(os.fstat(descriptor).st_size), 0)
 
 
 def wait_while_guarded(url: str) -> None:
@@ -121,7 +128,20 @@ def wait_while_guarded(url: str) -> None:
 
 
 def _open(url: str) -> int:
-    return os.open(_path(url), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    """Return an open lock file, whose number is none of standard input, output and error.
+
+    Those are other files in a guardian, that inherits it under its number.
+    """
+    try:
+        number = os.open(_path(url), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+        if number >= RESERVED:
+            return number
+        try:
+            return fcntl.fcntl(number, fcntl.F_DUPFD_CLOEXEC, RESERVED)
+        finally:
+            os.close(number)
+    except OSError as error:
+        raise PortError(f"{url} cannot be locked for this run: {in_words(error)}") from error
 
 
 def _path(url: str) -> Path:

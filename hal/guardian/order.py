@@ -6,11 +6,12 @@ from hal.guard.limits import StopPolicy
 
 READY = b"r"
 """Guardian to host: the first heartbeat has arrived; torque may come on."""
-TICK, IDLE, RELEASE, HAND_OVER = b"t", b"i", b"x", b"h"
-"""Host to guardian: a tick of the loop; alive between two runs, or switching torque; torque was
-read back as off; the host has given up its ports with torque that it could not read."""
+TICK, FIRST, IDLE, RELEASE, HAND_OVER = b"t", b"f", b"i", b"x", b"h"
+"""Host to guardian: a tick of the loop, and one of the first motion after torque came on; alive
+between two runs, or switching torque; torque was read back as off; the host has given up its ports
+with torque that it could not read."""
 
-SILENCE = {TICK: 0.15, IDLE: 1.0}
+SILENCE = {TICK: 0.15, FIRST: 0.15, IDLE: 1.0}
 """How long the guardian waits for the next byte after one of these, s. A robot that only holds its
 pose may wait longer: a program between two runs may load a file, or import a package."""
 
@@ -25,6 +26,7 @@ class Charge(msgspec.Struct, frozen=True, kw_only=True):
         crouch: Id to the goal position of the robot's crouch, counts; empty without one.
         levels: Id to the temperature, degrees C, and the supply, V, at which a servo that is held
             has to be let go; one without is held whatever it reads.
+        names: Id to joint name, for people; empty where nobody knows them.
         lock: Descriptor of the lock on its adapter, held by host and guardian together.
     """
 
@@ -33,6 +35,7 @@ class Charge(msgspec.Struct, frozen=True, kw_only=True):
     servos: dict[int, str]
     crouch: dict[int, int] = {}
     levels: dict[int, tuple[float, float]] = {}
+    names: dict[int, str] = {}
     lock: int = -1
 
 

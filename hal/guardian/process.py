@@ -6,6 +6,7 @@ ends when the host has released it, or when the torque of every servo has been r
 """
 
 import os
+import resource
 import select
 import sys
 import time
@@ -16,8 +17,11 @@ import msgspec
 
 from hal.clock import PRIORITY
 from hal.guardian.host import Host
-from hal.guardian.order import HAND_OVER, IDLE, READY, RELEASE, SILENCE, Order
+from hal.guardian.in_words import in_words
+from hal.guardian.order import HAND_OVER, IDLE, READY, RELEASE, SILENCE, TICK, Order
+from hal.guardian.signals import ignore_signals
 from hal.guardian.takeover import Takeover
+from hal.guardian.words import Words, standard_error
 
 ABOVE = 5
 """By how much it precedes the loop among real-time processes."""
@@ -28,6 +32,8 @@ OVERSLEPT = 0.02
 SECOND_CHANCE = 0.05
 """What the host gets for its heartbeat then, s."""
 
+LAST_WORDS = 0.2
+"""How long it waits in the end for who reads what it says, s."""
 DYING = 0.02
 """From a process letting go of its pipe to its end, where it dies, s."""
 
@@ -36,48 +42,73 @@ class Ending(Enum):
     """Why the guardian stops watching."""
 
     RELEASED = "released"
-    HANDED_OVER = "its program gave it up"
+    HANDED_OVER = "its program could not read its torque as off"
     DIED = "its program died"
     SILENT = "its program hangs"
     CLOSED = "its program let go of its guardian"
+    DEAF = "its guardian cannot hear its program"
 
 
 def main() -> None:
     """Be the guardian: the order comes on standard input, then heartbeats."""
-    orders = sys.stdin.fileno()
-    line = _first_line(orders)
-    order = msgspec.json.decode(line, type=Order)
-    host, takeover = Host(order.host), Takeover(order)
+    ignore_signals()
+    _allow_files()
+    words, orders = Words(standard_error()), sys.stdin.fileno()
+    if (line := _first_line(orders)) is None:
+        words.say("its program died before it had said what to guard")
+    else:
+        _guard(msgspec.json.decode(line, type=Order), orders, words)
+    words.finish(LAST_WORDS)
+
+
+def _guard(order: Order, orders: int, words: Words) -> None:
+    """Watch the host, and stop its robot unless it has done so itself."""
+    host, takeover = Host(order.host), Takeover(order, words.say)
     _go_first()
     os.write(sys.stdout.fileno(), READY)
     os.close(sys.stdout.fileno())
-    ending = watch(orders, host)
+    try:
+        ending, moved = watch(orders, host)
+    except Exception as error:  # nobody else is left to stop the robot
+        words.say(in_words(error))
+        ending, moved = Ending.DEAF, False
     if ending is Ending.RELEASED:
         return
-    takeover.begin(ending.value)
-    if ending in (Ending.SILENT, Ending.CLOSED):
-        host.kill()
-    takeover.carry_out(host, wait_for_host=ending is not Ending.HANDED_OVER)
+    with suppress(Exception):
+        if ending in (Ending.SILENT, Ending.CLOSED, Ending.DEAF):
+            host.kill()
+    takeover.carry_out(ending.value, limp=not moved)
+    if ending is not Ending.HANDED_OVER:
+        takeover.wait_for(host)
 
 
-def watch(orders: int, host: Host) -> Ending:
-    """Read heartbeats from a descriptor until there is a reason to stop watching."""
-    heard, patience = time.monotonic(), SILENCE[IDLE]
+def watch(orders: int, host: Host) -> tuple[Ending, bool]:
+    """Read heartbeats from a descriptor until there is a reason to stop watching.
+
+    Returns:
+        The reason, and whether the robot has made its first motion: before, it may be anywhere.
+    """
+    heard, patience, moved = time.monotonic(), SILENCE[IDLE], False
+    poller = select.poll()
+    for descriptor in (orders, *host.descriptors):
+        poller.register(descriptor, select.POLLIN)
     while True:
         due = heard + patience
         wait = max(due - time.monotonic(), 0.0)
-        ready, _, _ = select.select([orders, *host.descriptors], [], [], wait)
+        ready = [descriptor for descriptor, _ in poller.poll(wait * 1e3)]
         if orders in ready:
             data = os.read(orders, 4096)
             if (ending := _ending(data, host)) is not None:
-                return ending
+                return ending, moved
+            if ticks := data.replace(IDLE, b""):
+                moved = ticks.endswith(TICK)
             heard, patience = time.monotonic(), SILENCE[data[-1:]]
         elif ready:
-            return Ending.DIED
+            return Ending.DIED, moved
         elif time.monotonic() - due > OVERSLEPT:
             heard, patience = time.monotonic(), SECOND_CHANCE
         else:
-            return Ending.SILENT
+            return Ending.SILENT, moved
 
 
 def _ending(data: bytes, host: Host) -> Ending | None:
@@ -91,15 +122,25 @@ def _ending(data: bytes, host: Host) -> Ending | None:
     return Ending.DIED if host.wait(DYING) else Ending.CLOSED
 
 
-def _first_line(orders: int) -> bytes:
-    """Return the order, and swallow the heartbeat behind it: reading it shows that they arrive."""
+def _first_line(orders: int) -> bytes | None:
+    """Return the order, and swallow the heartbeat behind it: reading it shows that they arrive.
+
+    None if the host ends before that.
+    """
     text = b""
     while not text.endswith(b"\n" + IDLE):
         chunk = os.read(orders, 1)
         if not chunk:
-            sys.exit("the host of this guardian died before it had told it what to do")
+            return None
         text += chunk
     return text[:-1]
+
+
+def _allow_files() -> None:
+    """Have as many open files as may be: a host with a low limit must not limit this process."""
+    with suppress(OSError, ValueError):
+        most = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
 
 
 def _go_first() -> None:

@@ -5,10 +5,11 @@ from contextlib import suppress
 import numpy as np
 
 from hal.bus import Bus
-from hal.errors import HardwareError, UsageError
+from hal.errors import HardwareError
 from hal.families import family_of
+from hal.guardian.in_words import in_words
 from hal.guardian.order import Charge
-from hal.joints import Array
+from hal.joints import Array, Mask
 from hal.open_port import open_port
 from hal.servo_line import ServoLine
 from hal.servo_model import ServoMount
@@ -47,7 +48,9 @@ class RemoteBus:
             # A child of the dead host may still have it open.
             port = open_port(self.charge.url, self.charge.baud, exclusive=False)
             bus = Bus(port, family_of(self._mounts[0].model.name))
-            line = ServoLine(bus, self._mounts, list(range(len(self._mounts))))
+            rows, known = range(len(self._mounts)), self.charge.names
+            names = [known[id] for id in self.charge.servos] if known else ()
+            line = ServoLine(bus, self._mounts, rows, names=names)
             self._torque = ServoTorque(line, 0.0)
         return self._torque
 
@@ -82,9 +85,8 @@ class RemoteBus:
         heat, supply = self._read("present_temperature"), self._read("present_voltage")
         for which, what in ((heat >= hottest, "too hot"), (supply <= lowest, "short of supply")):
             if which.any():
-                ids = [id for id, has in zip(self.charge.servos, which, strict=True) if has]
-                verb = "is" if len(ids) == 1 else "are"
-                return f"{self.charge.url}: id {', '.join(map(str, ids))} {verb} {what}"
+                verb = "is" if which.sum() == 1 else "are"
+                return f"{self.charge.url}: {self._who(which)} {verb} {what}"
         return None
 
     def _read(self, name: str) -> Array:
@@ -98,24 +100,27 @@ class RemoteBus:
         """Switch torque off once, and return whether all of it has been read as off."""
         try:
             state = self.torque().off(attempts=1)
-        except (HardwareError, UsageError) as error:
-            self.trouble = str(error)
+            if not state.all_off:
+                verb = "is still on at" if state.on.any() else "cannot be read at"
+                self.trouble = f"torque {verb} {self._who(~state.off)}"
+                return False
+        except Exception as error:  # whatever it is, the other buses have to be switched off too
+            self.trouble = in_words(error)
             self.close()
             return False
-        if state.all_off:
-            self.close()
-            return True
-        ids = [str(id) for id, off in zip(self.charge.servos, state.off, strict=True) if not off]
-        verb = "is still on at" if state.on.any() else "cannot be read at"
-        self.trouble = f"torque {verb} id {', '.join(ids)}"
-        return False
+        self.close()
+        return True
 
     def close(self) -> None:
         """Give the port back."""
-        if self._torque is not None:
-            with suppress(HardwareError):
-                self._torque.line.bus.port.close()
-            self._torque = None
+        torque, self._torque = self._torque, None
+        if torque is not None:
+            with suppress(Exception):
+                torque.line.bus.port.close()
+
+    def _who(self, which: Mask) -> str:
+        """Return how people call some of the (servos,) servos."""
+        return self.torque().line.who(np.flatnonzero(which))
 
 
 def _mount(id: int, name: str) -> ServoMount:

@@ -7,7 +7,7 @@ import pytest
 import serial
 
 from hal.errors import PortError, UsageError
-from hal.open_port import holders, open_port
+from hal.open_port import _busy, holders, open_port
 from hal.port import DevicePort
 
 
@@ -49,16 +49,50 @@ def test_a_port_that_is_pulled_out_is_an_error_whatever_is_going_on(
     port.close()
 
 
-def test_a_port_in_use_names_its_holder(pty: tuple[int, str]) -> None:
+def test_a_port_that_this_program_has_is_not_another_ones(pty: tuple[int, str]) -> None:
     _, path = pty
     held = os.open(path, os.O_RDWR)
     fcntl.flock(held, fcntl.LOCK_EX)
     name = Path("/proc/self/comm").read_text().strip()
-    with pytest.raises(PortError) as caught:
+    with pytest.raises(PortError, match=f"port {path} is in use by this program; close"):
         open_port(path)
-    assert f"port {path} is in use by" in str(caught.value)
-    assert f"{name} (pid {os.getpid()})" in str(caught.value)
-    assert f"{name} (pid {os.getpid()})" in holders(path)
+    assert holders(path)[os.getpid()] == name
+    os.close(held)
+
+
+def test_a_port_in_use_names_its_holder_and_how_to_end_it() -> None:
+    said = _busy("/dev/ttyUSB0", {7: "windup"})
+    assert said == (
+        "port /dev/ttyUSB0 is in use by windup (pid 7); end it first: Ctrl-C there, "
+        "or `kill -INT 7`"
+    )
+    both = _busy("/dev/ttyUSB0", {7: "windup", 9: "python"})
+    assert "by windup (pid 7), python (pid 9); end them first" in both
+    assert both.endswith("`kill -INT 7 9`")
+
+
+def test_a_port_is_found_from_every_working_folder(
+    pty: tuple[int, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "bus").symlink_to(pty[1])
+    monkeypatch.chdir(tmp_path)
+    with open_port("bus") as port:
+        monkeypatch.chdir("/")
+        assert (port.url, port.place) == ("bus", str(tmp_path / "bus"))
+
+
+def test_a_port_whose_number_select_does_not_take_is_read_all_the_same(
+    pty: tuple[int, str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    master, path = pty
+    monkeypatch.setattr("hal.port.SELECTABLE", 0)
+    monkeypatch.setattr("select.select", None)
+    with open_port(path) as port:
+        assert port.read(3, port.clock.now()) == b""
+        os.write(master, b"abc")
+        assert port.read(3, port.clock.now() + 1.0) == b"abc"
+        port.write(b"hello")
+    assert os.read(master, 5) == b"hello"
 
 
 def test_a_port_that_is_not_there_lists_those_that_are() -> None:

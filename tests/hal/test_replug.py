@@ -1,10 +1,14 @@
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 from serial.tools import list_ports
 
 from hal.command import JointCommand
 from hal.errors import HardwareError
-from hal.open_port import stable_url
+from hal.open_port import open_port, stable_url
+from hal.replug import Replug
 from hal.servo_backend import ServoBackend
 from hal.servos import servo_model
 from tests.hal.fake_bus1 import STS
@@ -124,3 +128,16 @@ def test_a_device_is_found_again_by_a_serial_number_of_its_own(
         "twin://op3",
         "usb:9",
     ]
+
+
+def test_a_device_is_found_again_from_another_working_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _, slave = os.openpty()
+    (tmp_path / "bus").symlink_to(os.ttyname(slave))
+    monkeypatch.chdir(tmp_path)
+    replug = Replug("bus", 1_000_000, open_port)
+    monkeypatch.chdir("/")
+    replug.lose(0.0)
+    assert replug.again(1.0) is not None
+    replug.close()

@@ -4,6 +4,7 @@ import signal
 from collections.abc import Callable
 from math import inf
 
+from tools.safety.standard_error import fill
 from tools.safety.trial import Trial
 
 Do = Callable[[Trial], float]
@@ -29,6 +30,12 @@ def press_then(number: int, then: int, after: float) -> Do:
 def kill(*who: str, number: int = signal.SIGKILL) -> Do:
     """Send a signal to several processes at once."""
     return lambda trial: trial.kill(*who, number=number)
+
+
+def kill_unread(trial: Trial) -> float:
+    """Kill the program when the pipe is full that it and its guardian print to."""
+    fill(trial.log)
+    return trial.kill("program")
 
 
 def own_fault(trial: Trial) -> float:

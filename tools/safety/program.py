@@ -16,6 +16,7 @@ from tools.safety.begin import Begin
 from tools.safety.faulty import FAULTS, break_imu, make_faulty
 from tools.safety.row import Activity
 from tools.safety.scripts import LEFT_OPEN, SCRIPTS, move
+from tools.safety.standard_error import Errors, replace_standard_error
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,8 @@ class Program:
         robot: The robot.
         port: Its port.
         arm: It may switch torque on.
-        log: Where it and its guardian print.
+        errors: What its standard error is, which its guardian has too.
+        log: The file or the pipe.
         activity: What it is busy with when it is ended.
         fault: What it does wrong then: a name of `FAULTS` or `SCRIPTS`, "imu nan", or "".
         after: When, s into the activity.
@@ -38,13 +40,14 @@ class Program:
     fault: str = ""
     after: float = 0.0
     arm: bool = True
+    errors: Errors = "a file"
     log: Path = Path(os.devnull)
 
 
 def main(program: Program, tell: Connection) -> None:
     """Run a program to its end; the body of the process, whose exit status is that of a command."""
     end_on_signals()
-    os.dup2(os.open(program.log, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600), 2)
+    replace_standard_error(program.errors, program.log)
     status = 0
     try:
         _run(program, tell)

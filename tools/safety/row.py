@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from hal.guard import CROUCH_SECONDS
+from tools.safety.standard_error import Errors
 
 if TYPE_CHECKING:
     from tools.safety.trial import Trial
@@ -39,6 +40,7 @@ class Row:
         activities: When it is tried.
         robots: With which robots; all if empty.
         network: The robot is behind TCP.
+        errors: What standard error is to program and guardian.
     """
 
     name: str
@@ -52,6 +54,7 @@ class Row:
     activities: tuple[Activity, ...] = ACTIVITIES
     robots: tuple[str, ...] = ()
     network: bool = False
+    errors: Errors = "a file"
 
     def allowed(self, crouches: bool) -> float:
         """Return how long it may take with a robot that crouches, or not, s."""

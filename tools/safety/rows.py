@@ -12,7 +12,16 @@ from signal import (
     SIGTSTP,
 )
 
-from tools.safety.endings import brown_out, inject, kill, own_fault, press, press_then, unplug
+from tools.safety.endings import (
+    brown_out,
+    inject,
+    kill,
+    kill_unread,
+    own_fault,
+    press,
+    press_then,
+    unplug,
+)
 from tools.safety.row import HANG, STOP, Row
 
 KILLED, ASKED, FAILED, BUS = (-SIGKILL,), (130,), (1,), (3,)
@@ -72,6 +81,9 @@ KILLS = (
         activities=("walking",),
     ),
     Row("SIGKILL guardian, adapter", kill("guardian", "emulator"), BUS, end="unattended"),
+    Row("SIGKILL program, standard error closed", kill("program"), KILLED, errors="closed"),
+    Row("SIGKILL program, standard error unread", kill_unread, KILLED, errors="unread"),
+    Row("SIGTERM program, guardian", kill("program", "guardian", number=SIGTERM), ASKED),
     Row("SIGSTOP guardian", kill("guardian", number=SIGSTOP), BUS, 2.0 * STOP),
 )  # fmt: skip
 

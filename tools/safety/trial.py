@@ -6,8 +6,8 @@ import signal
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from pathlib import Path
@@ -17,6 +17,7 @@ from tools.safety.emulated import Journal, serve
 from tools.safety.processes import child_with, guardian_of
 from tools.safety.program import Program, main
 from tools.safety.row import Activity, Row
+from tools.safety.standard_error import unread
 
 PATIENCE = 60.0
 """Until a program is under way, s."""
@@ -136,6 +137,8 @@ class Trial:
     def words(self) -> str:
         """Return the last lines that program and guardian have printed."""
         with suppress(OSError):
+            if not self.log.is_file():
+                return ""
             return "\n".join(self.log.read_text(errors="replace").splitlines()[-LINES:])
         return ""
 
@@ -156,7 +159,7 @@ def trial(
     context.set_forkserver_preload(PRELOAD)
     ours, theirs = context.Pipe()
     told, tell = context.Pipe(duplex=False)
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory() as folder, ExitStack() as held:
         path = None if row.network else Path(folder) / "bus"
         emulator = context.Process(target=serve, args=(name, path, theirs, faults), daemon=True)
         emulator.start()
@@ -168,7 +171,10 @@ def trial(
                 raise NotMeasuredError("the emulator does not start")
             port = ours.recv()
             log = Path(folder) / "log"
-            does = Program(name, port, moment.activity, row.fault, moment.after, arm, log)
+            if row.errors == "unread":
+                held.enter_context(unread(log))
+            does = Program(name, port, moment.activity, row.fault, moment.after, arm)
+            does = replace(does, errors=row.errors, log=log)
             program = context.Process(target=main, args=(does, tell), daemon=False)
             program.start()
             tell.close()

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from hal.errors import PortError
+from hal.guardian import lock
 from hal.guardian.lock import AdapterLock, Note, wait_while_guarded, write_note
 from tests.hal.guardian.two_servos import ENVIRONMENT
 
@@ -50,13 +51,48 @@ def test_a_new_run_waits_while_a_guardian_acts_and_says_so(
 
 
 def test_a_run_that_is_only_armed_is_not_waited_for(device: str) -> None:
-    lock = AdapterLock(device)
-    write_note(lock.take(), Note(1, ""))
+    held = AdapterLock(device)
+    write_note(held.take(), Note(1, ""))
     began = time.monotonic()
     wait_while_guarded(device)
     assert time.monotonic() - began < 5.0
-    lock.close()
+    held.close()
 
 
-def test_ports_of_this_process_have_no_lock() -> None:
-    wait_while_guarded("twin://op3")
+def test_a_port_in_this_process_waits_for_no_lock_of_its_name(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    with subprocess.Popen(
+        [sys.executable, "-c", ACTING, "twin://op3"], stdout=subprocess.PIPE, env=ENVIRONMENT
+    ) as somebody:
+        assert somebody.stdout is not None and somebody.stdout.readline() == b"taken\n"
+        wait_while_guarded("twin://op3")
+    assert caplog.text == ""
+
+
+def test_a_lock_has_no_number_of_a_standard_stream(
+    device: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(lock, "RESERVED", 300)
+    held = AdapterLock(device)
+    assert held.take() >= 300
+    assert not AdapterLock(device).free()
+    held.close()
+
+
+def test_a_note_replaces_a_longer_one(device: str) -> None:
+    held = AdapterLock(device)
+    number = held.take()
+    for note in (Note(1, "r_knee, " * 500), Note(2, "")):
+        write_note(number, note)
+        assert held.note() == note
+    held.close()
+
+
+def test_a_lock_that_was_let_go_does_not_close_the_next_file_of_its_number(device: str) -> None:
+    held = AdapterLock(device)
+    number = held.take()
+    held.close()
+    assert os.dup2(0, number) == number
+    held.close()
+    os.close(number)

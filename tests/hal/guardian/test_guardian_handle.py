@@ -8,7 +8,8 @@ import pytest
 
 from hal.errors import GuardianError, HardwareError, PortError, UsageError
 from hal.guard.levels import HealthLevels, Kind
-from hal.guardian.handle import Guardian, _charge, guardian_for
+from hal.guardian.charges import charge_of
+from hal.guardian.handle import Guardian, guardian_for
 from hal.open_port import open_port
 from hal.servos import servo_model
 from tests.hal.fake_bus1 import STS
@@ -91,7 +92,7 @@ def test_a_guardian_lets_go_at_the_stop_levels_of_the_run() -> None:
     backend = robot(wires, [mount(STS, "legs", 7)])
     backend.connect()
     levels = HealthLevels.of([mount(STS, "legs", 7)], 7.4, {Kind.TEMPERATURE: (50.0, 55.0)})
-    charged = _charge(backend.links[0], None, levels)
+    charged = charge_of(backend.links[0], None, levels)
     assert charged.levels == {7: (55.0, float(levels.stop[Kind.SUPPLY_LOW, 0]))}
     backend.disconnect()
 

@@ -12,12 +12,17 @@ from hal.guardian.handle import Guardian
 from hal.guardian.host import Host
 from hal.guardian.order import Charge, Order
 from hal.guardian.takeover import Takeover
-from tests.hal.guardian.two_servos import GOAL, TORQUE, charge, host, runs, show, switch_on
-
-
-def wait_for_end(number: int) -> None:
-    while runs(number):
-        pass
+from tests.hal.guardian.two_servos import (
+    GOAL,
+    NAMES,
+    TORQUE,
+    charge,
+    host,
+    runs,
+    show,
+    switch_on,
+    wait_for_end,
+)
 
 
 def test_the_servos_of_a_host_that_was_killed_go_off(sts_bus: Path) -> None:
@@ -65,12 +70,14 @@ def test_a_servo_beyond_the_stop_levels_of_its_robot_is_not_held(
     sts_bus: Path, capfd: pytest.CaptureFixture[str], levels: tuple[float, float], why: str
 ) -> None:
     guardian = Guardian(
-        [msgspec.structs.replace(charge(sts_bus), levels={2: levels})], "hold", 60.0
+        [msgspec.structs.replace(charge(sts_bus), levels={2: levels}, names=NAMES)],
+        "hold",
+        60.0,
     )
     switch_on(sts_bus)
     guardian.hand_over()
     guardian._process.wait()
-    assert f"id 2 {why}" in capfd.readouterr().err
+    assert f"r_knee (id 2) {why}" in capfd.readouterr().err
     assert show(sts_bus, TORQUE) == [0, 0]
 
 
@@ -100,7 +107,7 @@ def test_a_bus_that_stays_away_does_not_keep_another_from_its_stop(
     order = Order(
         host=os.getpid(), policy="limp", charges=(charge(tmp_path / "no"), charge(sts_bus))
     )
-    takeover = Takeover(order)
+    takeover = Takeover(order, print)
     assert takeover.switch_off_once() == [str(tmp_path / "no")]
     assert show(sts_bus, TORQUE) == [0, 0]
 
@@ -116,4 +123,4 @@ def test_a_host_that_has_been_gone_for_long_is_known_to_be_gone() -> None:
 def test_servos_that_nobody_knows_are_refused_before_torque() -> None:
     strange = Charge(url="x", baud=1, servos={1: "XX"})
     with pytest.raises(UnknownNameError, match="servo"):
-        Takeover(Order(host=1, policy="limp", charges=(strange,)))
+        Takeover(Order(host=1, policy="limp", charges=(strange,)), print)

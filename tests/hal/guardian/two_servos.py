@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import partial
@@ -16,6 +17,7 @@ from hal.guardian.order import Charge
 from hal.open_port import open_port
 from hal.registers import Register
 
+NAMES = {1: "l_knee", 2: "r_knee"}
 IDS = {1: "STS3215-7.4V", 2: "STS3215-7.4V"}
 TORQUE = FEETECH_STS.registers["torque_enable"]
 GOAL = FEETECH_STS.registers["goal_position"]
@@ -62,6 +64,28 @@ def switch_on(path: Path) -> None:
             patiently(partial(bus.write, id, TORQUE, 1))
 
 
+@contextmanager
+def full_pipe() -> Iterator[int]:
+    """Yield the writing end of a pipe that is full, and that nobody reads."""
+    reading, writing = os.pipe()
+    os.set_blocking(writing, False)
+    for size in (4096, 1):
+        with suppress(BlockingIOError):
+            while True:
+                os.write(writing, b"x" * size)
+    os.set_blocking(writing, True)
+    try:
+        yield writing
+    finally:
+        os.close(reading)
+        os.close(writing)
+
+
+def wait_for_end(number: int) -> None:
+    while runs(number):
+        time.sleep(0.01)
+
+
 def runs(number: int) -> bool:
     """Does the process still run?"""
     try:
@@ -89,13 +113,17 @@ while True:
 
 @contextmanager
 def host(
-    path: Path, policy: str, hold: float = 60.0
+    path: Path, policy: str, hold: float = 60.0, errors: int | None = subprocess.PIPE
 ) -> "Iterator[tuple[subprocess.Popen[str], int]]":
-    """Start a program with two servos on; yield its process and the number of its guardian."""
+    """Start a program with two servos on; yield its process and the number of its guardian.
+
+    Its standard error goes to `errors`; it is closed with None.
+    """
+    start = [sys.executable, "-c", HOST, str(path), policy, str(hold)]
     with subprocess.Popen(
-        [sys.executable, "-c", HOST, str(path), policy, str(hold)],
+        ["sh", "-c", 'exec "$@" 2>&-', "sh", *start] if errors is None else start,
         stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
+        stderr=errors,
         env=ENVIRONMENT,
         text=True,
     ) as process:

@@ -51,9 +51,9 @@ def test_what_is_not_safe_is_counted_told_and_ends_with_status_1(
         return Verdict(moment.activity, moment.after, 0.31 if wrong else 0.1, 130, "off", wrong)
 
     monkeypatch.setattr(bench, "_one", one)
-    result = measure_safety(2, only=["SIGTERM"], robots=("duck",))
+    result = measure_safety(2, only=["SIGHUP"], robots=("duck",))
     assert (result["safe"], result["trials"], result["met"]) == (1, 2, False)
-    row = result["rows"]["SIGTERM"]
+    row = result["rows"]["SIGHUP"]
     assert row["longest_s"] == 0.31 and row["wrong"][0]["wrong"] == "driven for 0.31 s"
 
 
@@ -69,7 +69,7 @@ def test_a_program_that_was_not_under_way_is_tried_again_and_counted(
         return Verdict(moment.activity, moment.after, 0.1, 130, "off", "")
 
     monkeypatch.setattr(bench, "_one", one)
-    row = measure_safety(1, only=["SIGTERM"], robots=("op3",))["rows"]["SIGTERM"]
+    row = measure_safety(1, only=["SIGHUP"], robots=("op3",))["rows"]["SIGHUP"]
     assert row["trials"] == 1 and row["not_measured"] == {"op3: it fell": 1}
 
 

@@ -1,0 +1,73 @@
+"""What a guardian is told of a robot's buses: those that another process can reach."""
+
+import numpy as np
+
+from hal.errors import UsageError
+from hal.guard.levels import HealthLevels, Kind
+from hal.guardian.order import Charge
+from hal.joints import Array
+from hal.network_port import NETWORK
+from hal.open_port import stable_url
+from hal.port import DevicePort
+from hal.servo_backend import ServoBackend
+from hal.servo_link import ServoLink
+
+
+def charges_of(
+    backend: ServoBackend, crouch: Array | None, levels: HealthLevels | None
+) -> list[Charge]:
+    """Return what a guardian has to know of the buses that are outside of this process.
+
+    Args:
+        backend: The backend, whose ports are open.
+        crouch: (n,) pose of the robot's crouch, rad.
+        levels: Of the robot's joints.
+
+    Raises:
+        UsageError: Servos without a bus watchdog behind a network.
+    """
+    links = [link for link in backend.links if _outside(link)]
+    for link in links:
+        _check_network(link)
+    goals = None if crouch is None else backend.goal_counts(crouch)
+    return [charge_of(link, goals, levels) for link in links]
+
+
+def charge_of(link: ServoLink, goals: Array | None, levels: HealthLevels | None) -> Charge:
+    """Return what a guardian has to know of a bus; `goals` are (n,) counts of the crouch."""
+    port, line = link.bus.port, link.line
+    counts = {} if goals is None else dict(zip(line.ids, goals[line.rows].tolist(), strict=True))
+    hot_and_low = {}
+    if levels is not None:
+        stop = levels.stop[[Kind.TEMPERATURE, Kind.SUPPLY_LOW]][:, line.rows]
+        hot_and_low = {
+            id: (float(hot), float(low)) for id, hot, low in zip(line.ids, *stop, strict=True)
+        }
+    return Charge(
+        url=stable_url(port.place),
+        baud=port.baud,
+        servos={mount.id: mount.model.name for mount in line.mounts},
+        crouch={id: int(np.rint(count)) for id, count in counts.items()},
+        levels=hot_and_low,
+        names=dict(zip(line.ids, line.names, strict=False)),  # of joints, where they are known
+    )
+
+
+def _outside(link: ServoLink) -> bool:
+    """Return whether another process can reach the servos of a bus."""
+    port = link.bus.port
+    return isinstance(port, DevicePort) or port.url.startswith(NETWORK)
+
+
+def _check_network(link: ServoLink) -> None:
+    """Refuse a network where its loss would leave nobody who can stop the servos.
+
+    Raises:
+        UsageError: The servos have no bus watchdog of their own.
+    """
+    url, registers = link.bus.port.url, link.bus.family.registers
+    if url.startswith(NETWORK) and "bus_watchdog" not in registers:
+        raise UsageError(
+            f"{url}: these servos cannot watch their bus, so nobody could stop them when the "
+            "network fails; run Windup on the machine that the adapter is plugged into"
+        )

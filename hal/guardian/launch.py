@@ -1,0 +1,43 @@
+"""The guardian's process as it is started: what it inherits, and what not."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+
+BODY = "from hal.guardian.process import main; main()"
+STANDARD_ERROR = 2
+
+
+def launch(locks: Sequence[int]) -> "subprocess.Popen[bytes]":
+    """Start a guardian that hears on its standard input and answers on its standard output.
+
+    Signals that this thread holds back wait for it too, until it ignores them.
+
+    Args:
+        locks: Descriptors that it inherits, under the same numbers.
+
+    Raises:
+        OSError: There are too many processes or open files.
+    """
+    return subprocess.Popen(
+        [sys.executable, "-P", "-c", BODY],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=None if _has_standard_error() else subprocess.DEVNULL,
+        pass_fds=locks,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        start_new_session=True,  # signals of the terminal are for the host
+    )
+
+
+def _has_standard_error() -> bool:
+    """Return whether the second descriptor is what it should be.
+
+    Where it was closed, the next file that was opened has its number: maybe a servo port. Files
+    that Python opens are not inherited.
+    """
+    try:
+        return os.get_inheritable(STANDARD_ERROR)
+    except OSError:
+        return False

@@ -1,0 +1,69 @@
+"""Signals that would end or stop a guardian, at any time of its life."""
+
+import os
+import signal
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from hal.guardian import handle
+from hal.guardian.handle import Guardian
+from hal.guardian.launch import launch
+from hal.guardian.signals import IGNORED, held_back
+from tests.hal.guardian.two_servos import TORQUE, charge, host, show, switch_on, wait_for_end
+
+
+def send_all(number: int) -> None:
+    for each in sorted(IGNORED):
+        os.kill(number, each)
+
+
+def test_what_ends_a_service_or_a_terminal_is_ignored() -> None:
+    ends = {"TERM", "INT", "HUP", "QUIT", "PIPE", "TSTP", "TTOU", "TTIN", "USR1", "ALRM", "XCPU"}
+    assert {signal.Signals[f"SIG{each}"] for each in ends} <= IGNORED
+
+
+def test_a_guardian_that_only_starts_ignores_them(
+    sts_bus: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def launch_and_send(locks: Sequence[int]) -> "subprocess.Popen[bytes]":
+        process = launch(locks)
+        send_all(process.pid)
+        return process
+
+    monkeypatch.setattr(handle, "launch", launch_and_send)
+    guardian = Guardian([charge(sts_bus)], "limp")
+    assert guardian.alive
+    guardian.release()
+    assert guardian._process.returncode == 0
+
+
+def test_a_guardian_that_watches_ignores_them(sts_bus: Path) -> None:
+    guardian = Guardian([charge(sts_bus)], "limp")
+    send_all(guardian.pid)
+    switch_on(sts_bus)
+    guardian.release()
+    assert guardian._process.returncode == 0
+    assert show(sts_bus, TORQUE) == [1, 1]
+
+
+def test_a_guardian_that_stops_a_robot_ignores_them(sts_bus: Path) -> None:
+    with host(sts_bus, "hold", 0.5) as (program, guardian):
+        program.kill()
+        assert program.stderr is not None
+        for line in program.stderr:
+            if "holds its pose" in line:
+                break
+        send_all(guardian)
+        assert "torque is off at all servos, read back" in program.stderr.read()
+        wait_for_end(guardian)
+    assert show(sts_bus, TORQUE) == [0, 0]
+
+
+def test_signals_to_this_process_wait_while_it_starts_one() -> None:
+    with pytest.raises(KeyboardInterrupt), held_back():
+        os.kill(os.getpid(), signal.SIGINT)
+        reached = True
+    assert reached
