@@ -102,9 +102,12 @@ class Stoppable(OnStack):
     def _stop(self, policy: StopPolicy | None, asked: Asked) -> None:
         """Stop; the guardian is let go only if torque has been read back as off.
 
-        A robot that has fallen, or has not made its first motion, goes limp whatever its policy.
+        A robot that has fallen goes limp, and so does one that would crouch before it has made its
+        first motion.
         """
-        if self.fallen or (self.start is not None and not self.start.motion.made):
+        policy = policy or self.backend.stop_policy
+        moved = self.start is None or self.start.motion.made
+        if self.fallen or (policy == "crouch" and not moved):
             policy = "limp"
         before = self.armed
         self.armed = not self.backend.stop(policy, lambda: asked.impatient).all_off
@@ -133,7 +136,8 @@ class Stoppable(OnStack):
         self._failed, before = error, self.armed
         try:
             policy = self.backend.stop_policy if error is None else "limp"
-            if policy == "hold" or self.fallen:
+            moved = self.start is None or self.start.motion.made
+            if policy == "hold" or self.fallen or not moved:
                 policy = "limp"
             self.armed = not self.backend.stop(policy).all_off
         except WindupError as failed:

@@ -77,7 +77,7 @@ def _guard(order: Order, orders: int, words: Words) -> None:
     with suppress(Exception):
         if ending in (Ending.SILENT, Ending.CLOSED, Ending.DEAF):
             host.kill()
-    takeover.carry_out(ending.value, limp=not moved)
+    takeover.carry_out(ending.value, moved)
     if ending is not Ending.HANDED_OVER:
         takeover.wait_for(host)
 
