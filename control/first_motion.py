@@ -45,6 +45,7 @@ class FirstMotion:
 
     Attributes:
         due: The first motion is still to come.
+        made: It has been made since torque came on, or there was no way to go.
         share: (n,) of each joint's stiffness now.
     """
 
@@ -62,7 +63,7 @@ class FirstMotion:
 
     def begin(self) -> None:
         """Torque comes on: begin anew."""
-        self.due = True
+        self.due, self.made = True, False
         self.share = self._begins_with
 
     def before(self, controller: Controller, upright: bool) -> "Approach":
@@ -115,7 +116,7 @@ class Approach:
         if self._following is None:
             command = self.controller.step(observation, dt)
             if self._is_there(command, observation):
-                self.active = False
+                self.active, self.motion.made = False, True
                 return command
             self._plan(command, observation)
         return self._on_the_way(observation, dt)
@@ -171,6 +172,7 @@ class Approach:
     def _hand_over(self, observation: Observation, goal: Array, dt: float) -> JointCommand:
         """Let the controller begin; one that starts from a pose starts from the goal."""
         self.active, self._goal = False, goal
+        self.motion.made = True
         if np.abs(self._way).max() >= CLOSE:
             self.motion.due = False
         start = observation

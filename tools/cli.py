@@ -17,7 +17,7 @@ from tools.emulate import Emulate
 from tools.estimate import Estimate
 from tools.footprints import Footprints
 from tools.health import Health
-from tools.interrupts import end_on_signals
+from tools.interrupts import end_on_signals, ignore_signals
 from tools.output import check_writable, console, error_record, write_json
 from tools.parse_errors import wrong_number
 from tools.play import Play
@@ -59,7 +59,9 @@ Command = (
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line; does not return."""
-    sys.exit(run(arguments))
+    status = run(arguments)
+    ignore_signals()
+    sys.exit(status)
 
 
 def run(arguments: list[str] | None = None) -> int:

@@ -3,8 +3,10 @@
 import logging
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from weakref import WeakMethod
 
+from control.first_motion import FirstMotion
 from hal.clock import WallClock
 from hal.errors import GuardianError, WindupError
 from hal.guard import GuardedBackend
@@ -22,6 +24,7 @@ class Custody:
         robot: The robot.
         backend: Its backend.
         give_up: Stops the robot, when it is idle for too long or unwell.
+        motion: Its first motion; None where no servos are at stake.
 
     Attributes:
         guardian: The process that stops the robot when this one dies or hangs; None without torque,
@@ -33,11 +36,19 @@ class Custody:
         robot: RobotDescription,
         backend: GuardedBackend,
         give_up: Callable[[WindupError | None], None],
+        motion: FirstMotion | None = None,
     ) -> None:
         self._robot, self._backend = robot, backend
         self._give_up = WeakMethod(give_up)  # a robot that is closed and forgotten is freed at once
+        self._motion = motion
         self.guardian: Guardian | None = None
         self._keeper: IdleKeeper | None = None
+
+    def interrupt(self, by: str) -> None:
+        """Hold the robot no longer: its program was interrupted between two runs."""
+        keeper = self._keeper
+        if keeper is not None:
+            keeper.interrupt(by)
 
     def begin(self) -> None:
         """Have a guardian watch, before torque comes on.
@@ -54,7 +65,7 @@ class Custody:
         levels = None if watch is None else watch.levels
         self.guardian = guardian_for(servos, robot.stop, robot.crouch, hold, levels)
         if self.guardian is not None:
-            self._backend.heartbeat = self.guardian.tick
+            self._backend.heartbeat = partial(_tick, self.guardian, self._motion)
             if isinstance(servos, ServoBackend):
                 servos.heartbeat = self._alive
 
@@ -93,6 +104,11 @@ class Custody:
         )
         self._forget_guardian()
 
+    def disown(self) -> None:
+        """Leave guardian and robot to the process that this one was forked from."""
+        self._keeper = None
+        self._forget_guardian()
+
     def _drop_guardian(self) -> None:
         if self.guardian is not None:
             self.guardian.release()
@@ -123,3 +139,8 @@ class Custody:
         """The same, where a guardian that is gone must not be in the way of a stop."""
         with suppress(GuardianError):
             self._beat()
+
+
+def _tick(guardian: Guardian, motion: FirstMotion | None) -> None:
+    """Tell a guardian of a tick, and whether the robot has made its first motion."""
+    guardian.tick(first=motion is not None and not motion.made)

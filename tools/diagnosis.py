@@ -215,7 +215,7 @@ class Diagnosis:
     def _judge_loop(self) -> None:
         if self.state == "dead":
             what = f"process {self.header.pid} died without ending its run"
-            self._complain("loop", what, "look at its output; servos without a watchdog may hold")
+            self._complain("loop", what, "torque may be on: switch it off with `windup stop`")
         elif self.state == "standing still":
             what = f"no tick for {self.silence:.1f} s"
             self._complain("loop", what, f"is process {self.header.pid} stopped or swapped out?")

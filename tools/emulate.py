@@ -2,6 +2,7 @@
 
 import signal
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -9,7 +10,7 @@ import tyro
 
 from hal.ranges import Range
 from sim_twin.wire import Address, parse_address
-from sim_twin.wire.address import SCHEME
+from sim_twin.wire.address import BENCH, SCHEME
 from sim_twin.wire.emulate import Emulator, Outlet, emulate
 from sim_twin.wire.fault_text import parse_rules
 from tools.command import Command
@@ -41,7 +42,9 @@ class Emulate(Command):
 
     def run(self) -> int:
         """Serve; returns the exit status."""
-        emulate(self._address(), self.pty, self.tcp, on_ready=_on_ready)
+        address = self._address()
+        ready = partial(_on_ready, "" if address.robot == BENCH else self.robot)
+        emulate(address, self.pty, self.tcp, on_ready=ready)
         console.print("windup emulate: stopped")
         return 0
 
@@ -58,13 +61,24 @@ class Emulate(Command):
         )
 
 
-def _on_ready(emulator: Emulator) -> None:
-    """Say where it serves, and end cleanly when told to."""
+def _on_ready(robot: str, emulator: Emulator) -> None:
+    """Say where it serves, and end cleanly when told to; `robot` is "" for servos of none."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: emulator.stop())
     for outlet in emulator.outlets:
         console.print(_describe(outlet), markup=False, soft_wrap=True)
+    if robot:
+        console.print(_how_to_run(robot, emulator), markup=False, soft_wrap=True)
     console.print("Ctrl-C ends it", markup=False)
+
+
+def _how_to_run(robot: str, emulator: Emulator) -> str:
+    """Return the command that stands the robot on these buses."""
+    name = parse_address(robot).robot if "://" in robot else robot
+    outlets = {outlet.bus.name: outlet.name for outlet in emulator.outlets}
+    ports = ",".join(f"{bus}={name}" for bus, name in outlets.items())
+    port = ports if len(outlets) > 1 else next(iter(outlets.values()))
+    return f"in another terminal: windup stand {name} --port {port} --arm"
 
 
 def _describe(outlet: Outlet) -> str:

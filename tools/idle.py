@@ -14,6 +14,8 @@ from hal.guard import GuardedBackend
 from tools.interrupts import note_interruption
 from tools.stop_request import pressed_button
 
+LEAVE = 0.2
+"""What an interrupted program is given to end by itself, s."""
 PERIOD = 0.04
 """Between two looks at the servos, s; their bus watchdog waits for 0.2 s."""
 
@@ -38,9 +40,15 @@ class IdleKeeper:
     ) -> None:
         self._backend, self._seconds = backend, seconds
         self._alive, self._give_up = alive, give_up
+        self._until, self._by = backend.clock.now() + seconds, ""
         self._over = threading.Event()
         self._thread = threading.Thread(target=self._hold, name="windup-idle", daemon=True)
         self._thread.start()
+
+    def interrupt(self, by: str) -> None:
+        """The program was interrupted, by whom in words: unless it takes the robot, it stops."""
+        self._by = self._by or by
+        self._until = min(self._until, self._backend.clock.now() + LEAVE)
 
     def end(self) -> None:
         """End the thread; the caller has the robot from now on."""
@@ -50,10 +58,9 @@ class IdleKeeper:
 
     def _hold(self) -> None:
         clock = self._backend.clock
-        until = clock.now() + self._seconds
         try:
             while not self._over.wait(PERIOD):
-                if clock.now() > until:
+                if clock.now() > self._until:
                     self._let_go()
                     return
                 self._backend.read()
@@ -68,6 +75,10 @@ class IdleKeeper:
             self._give_up(error)
 
     def _let_go(self) -> None:
+        if self._by:
+            logging.getLogger(__name__).warning("stopped by %s", self._by)
+            self._give_up(None)
+            return
         logging.getLogger(__name__).warning(
             "no command for %g s: torque goes off; where your program waits, call "
             "robot.stand(seconds), or set [safety] idle in robot.toml",

@@ -126,6 +126,16 @@ def end_on_signals() -> None:
             signal.signal(number, _end_once)
 
 
+def ignore_signals() -> None:
+    """Let no signal change the exit status of a program that has done everything.
+
+    At its very end Python gives signals back their first meaning: death. Not of ignored ones.
+    """
+    if current_thread() is main_thread():
+        for number in (signal.SIGHUP, signal.SIGQUIT, signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, signal.SIG_IGN)
+
+
 def _end_once(number: int, frame: Any) -> None:
     for each in (signal.SIGHUP, signal.SIGQUIT, signal.SIGTERM, signal.SIGINT):
         signal.signal(each, _count_on)

@@ -14,7 +14,7 @@ from sim_twin.twin import Twin
 from tools.stack import Stack
 
 
-@dataclass
+@dataclass(eq=False)
 class OnStack:
     """A robot on its stack.
 

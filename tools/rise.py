@@ -41,7 +41,10 @@ class Rise(TwinOptions, Common):
         robot = load_robot(self.robot)
         motions = [f"get_up_{side}" for side in get_args(Side)]
         if missing := set(motions) - set(robot.gaits()):
-            raise UsageError(f"{self.robot} has no {', '.join(sorted(missing))} in its gaits")
+            raise UsageError(
+                f"{self.robot} cannot get up by itself, for it has no gait "
+                f"{' and '.join(sorted(missing))}: put it on its feet"
+            )
         for motion in motions:
             find_gait(robot, motion)
 

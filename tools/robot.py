@@ -41,7 +41,7 @@ START_SECONDS = 1.0
 PLAY_SECONDS = 5.0
 
 
-@dataclass
+@dataclass(eq=False)
 class Robot(Session):
     """A robot that can be run; open one with `Robot.open`.
 

@@ -13,8 +13,7 @@ from control.loop import Estimator, LoopReport, Until, run_loop
 from control.play import PoseHolder
 from hal.clock import punctual
 from hal.controller import Controller, Stopwatch
-from hal.errors import ControllerError, TelemetryError, UnhealthyError, WindupError
-from hal.guard import StopPolicy
+from hal.errors import ControllerError, TelemetryError, WindupError
 from hal.guard.finding import Finding
 from hal.guard.imu_watch import ImuWatch
 from hal.leftovers import remove_leftovers
@@ -38,7 +37,7 @@ REST_SECONDS = 1.5
 Watch = Callable[[Observation], None]
 
 
-@dataclass
+@dataclass(eq=False)
 class Session(Armed):
     """A robot that controllers run on.
 
@@ -84,13 +83,17 @@ class Session(Armed):
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        if self._closed:
+            return
         with counted_signals(self.stack.wired) as asked:
             try:
                 self._let_go(error)
             finally:
-                self.close()
-        if asked() and error is None:
-            raise RunInterruptedError(self.loop, asked.by)
+                self._disconnect()
+        if asked():
+            note_interruption(asked.by)
+            if error is None:
+                raise RunInterruptedError(self.loop, asked.by)
 
     def _let_go(self, error: BaseException | None) -> None:
         """Rest after a run that went well, else stop; an error is never replaced by the stop's."""
@@ -157,6 +160,7 @@ class Session(Armed):
         ):
             estimator = self._estimator(needs_imu)
             self._get_ready(down, asked)
+            self.loop = LoopReport()
             begin = self.backend.clock.now()
 
             def end(observation: Observation) -> str | None:
@@ -166,7 +170,9 @@ class Session(Armed):
                     self.watch(observation)
                 if (by := wanted()) is not None:
                     asked.add(by)
-                if asked() or self._running.asked:
+                if by := self._running.asked:
+                    asked.add(by)
+                if asked():
                     return INTERRUPTED
                 if protected is not None and protected.active:
                     return self._landed() if protected.finished else None
@@ -180,9 +186,13 @@ class Session(Armed):
                 over = seconds is not None and observation.time >= begin + seconds - 1e-9
                 return "done" if over else None
 
-            self._run(controller, end, rollouts, asked, estimator)
+            if asked():
+                self.loop.reason = INTERRUPTED
+                note_interruption(asked.by)
+            else:
+                self._run(controller, end, rollouts, asked, estimator)
         if self.loop.reason == INTERRUPTED:
-            raise RunInterruptedError(self.loop, asked.by or "robot.stop()")
+            raise RunInterruptedError(self.loop, asked.by)
         return self.loop
 
     def _estimator(self, needs_imu: bool) -> Estimator | None:
@@ -213,7 +223,6 @@ class Session(Armed):
         estimator: Estimator | None,
     ) -> None:
         """Run the loop; stop the robot if it ends by an error or a wish."""
-        self.loop = LoopReport()
         self._publish()
         try:
             with punctual() if self.paced else nullcontext():
@@ -231,21 +240,23 @@ class Session(Armed):
                 )
             if self.loop.reason == INTERRUPTED:
                 if self.stack.wired:
-                    note_interruption(asked.by or "robot.stop()")
-                    logging.getLogger(__name__).warning("stopped by %s", asked.by or "robot.stop()")
+                    note_interruption(asked.by)
+                    logging.getLogger(__name__).warning("stopped by %s", asked.by)
                 self._stop_after_error(asked)
         except WindupError as error:
             self.loop.reason = str(error)
             self._record_last()
-            self._stop_after_error(asked, self._policy_after(error))
+            self._stop_after_error(asked, error)
             raise
         except (KeyboardInterrupt, SystemExit) as ended:  # raised by a controller of one's own
             asked.by = asked.by or type(ended).__name__
             self.loop.reason = INTERRUPTED
             self._stop_after_error(asked)
-        except Exception as error:
+        except BaseException as error:
             self.loop.reason = f"the controller failed: {type(error).__name__}: {error}"
             self._stop_after_error(asked)
+            if not isinstance(error, Exception):  # a task that is cancelled, a test that fails
+                raise
             raise ControllerError(self.loop.reason) from error
         finally:
             self.slowness.ticks += self.loop.ticks
@@ -273,22 +284,17 @@ class Session(Armed):
         except TelemetryError as error:
             logging.getLogger(__name__).warning("no telemetry: %s", error)
 
-    def _policy_after(self, error: WindupError) -> StopPolicy | None:
-        """Return what to do instead of the stop policy: nobody holds a joint that is unwell."""
-        unwell = isinstance(error, UnhealthyError) and self.backend.stop_policy == "hold"
-        return "limp" if error.limp or unwell else None
-
-    def _stop_after_error(self, asked: Asked, policy: StopPolicy | None = None) -> None:
-        """Carry out the stop policy, or another one; a twin that has diverged can no longer."""
-        try:
-            self._stop(policy, asked)
-        except WindupError as error:
-            self.loop.reason += f"; and the stop failed: {error}"
-
     def close(self) -> None:
-        """Disconnect; torque that has not been read back as off is left to the guardian."""
+        """Rest and disconnect, as at the end of a `with`; once more is no matter.
+
+        Raises:
+            HardwareError: Torque is not off at every joint; the guardian has the robot now.
+        """
+        self.__exit__(None, None, None)
+
+    def _disconnect(self) -> None:
         if not self._closed:
             NOTES.add(self.warnings, self.slowness)
-        super().close()
+        super()._disconnect()
         if self.telemetry is not None:
             self.telemetry.close()

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from control.play import PoseHolder
+from hal.observation import Observation
 from robots import load_robot
 from sim_twin.impact import ImpactGauge
 from tools.fall_report import fall_result, fall_said
@@ -16,23 +17,38 @@ from tools.robot import Robot
 from tools.twin_options import TwinOptions
 
 
+class Last:
+    """What a robot's joints read last in a run, before it is stopped.
+
+    Attributes:
+        position: (n,) rad.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self.position = robot.backend.read().joints.position
+        robot.watch = self._look
+
+    def _look(self, observation: Observation) -> None:
+        self.position = observation.joints.position
+
+
 @dataclass(frozen=True, kw_only=True)
 class Stand(TwinOptions, Common):
     """Stand for some seconds; a twin that is pushed over says how hard it fell."""
 
     seconds: Duration = 5.0
-    """How long to stand, with the second that it takes to get there; on a port, after that."""
+    """How long to stand, with the second that it takes to get there; on a port, from then on."""
 
     def run(self) -> int:
         """Stand; returns the exit status."""
         world = self.world(load_robot(self.robot), self.seed)
         with self.open_robot(self.seed, world=world) as robot:
             gauge = self._pushed(robot)
+            pose = Last(robot)
             with suppress(KeyboardInterrupt):  # the robot has stopped
                 self._stand(robot)
             report = robot.loop
-            joints = robot.backend.read().joints
-            error = np.degrees(np.abs(joints.position - robot.description.stance))
+            error = np.degrees(np.abs(pose.position - robot.description.stance))
             result = {
                 "robot": robot.description.name,
                 "fell": robot.fallen,

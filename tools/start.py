@@ -1,5 +1,6 @@
 """What comes before the first command to an armed robot: how it is, and its first motion."""
 
+from collections.abc import Sequence
 from math import degrees
 
 import numpy as np
@@ -10,6 +11,7 @@ from control.planted import Planted
 from control.posture import Posture, PostureSense
 from hal.controller import Controller
 from hal.errors import PostureError
+from hal.observation import Observation
 from hal.servo_backend import ServoBackend
 from robots import RobotDescription
 from tools.protect import leg_joints, spread
@@ -19,6 +21,10 @@ LOOK = 0.3
 """How long the accelerometer is averaged, s."""
 PERIOD = 0.01
 """Between two looks, s."""
+STILL = 0.5
+"""A robot that turns no faster than this is at rest, or in somebody's hands, rad/s."""
+PATIENCE = 5.0
+"""How long one that moves is waited for, s: limp, it may just be falling."""
 OUTSIDE = 0.12
 """A joint that is farther outside of its limits would jump, rad; their stops are not exact."""
 CLEAR = 0.02
@@ -104,10 +110,25 @@ class Start:
         raise PostureError(f"{self.robot.name} {how}: put it on its feet{self._or_rise()}")
 
     def _look(self) -> Posture | None:
-        """Return how the robot is, or None where it cannot be told."""
+        """Return how the robot is once it is at rest, or None where that cannot be told.
+
+        Raises:
+            PostureError: It does not come to rest.
+        """
         if self._sense is None:
             return None
-        seen, clock = [], self.backend.clock
+        until = self.backend.clock.now() + PATIENCE
+        while _fastest(seen := self._look_on()) > STILL:
+            if self.backend.clock.now() > until:
+                raise PostureError(f"{self.robot.name} is moving: hold it still until it stands")
+        if seen[-1].joints.age.max() > LOOK:
+            return None  # arming will say which servo is silent
+        return self._sense.posture(seen)
+
+    def _look_on(self) -> list[Observation]:
+        """Return what is seen within a while."""
+        seen: list[Observation] = []
+        clock = self.backend.clock
         for _ in range(round(LOOK / PERIOD)):
             self.backend.heartbeat()
             seen.append(self.backend.peek())
@@ -115,9 +136,7 @@ class Start:
                 # Once torque comes on, an accelerometer feels more than gravity.
                 self.stack.estimator.update(seen[-1], PERIOD)
             clock.wait_until(clock.now() + PERIOD)
-        if seen[-1].joints.age.max() > LOOK:
-            return None  # arming will say which servo is silent
-        return self._sense.posture(seen)
+        return seen
 
     def _or_rise(self) -> str:
         """Return what else a person can do, for those robots that get up by themselves."""
@@ -125,3 +144,9 @@ class Start:
             return ""
         arm = " --arm" if self.stack.real else ""
         return f", or run `windup rise {self.robot.name} --port {self.stack.port}{arm}`"
+
+
+def _fastest(seen: Sequence[Observation]) -> float:
+    """Return the fastest turn that an IMU felt, rad/s; 0 without any."""
+    turns = [item.imu.angular_velocity for item in seen if item.imu is not None]
+    return float(np.linalg.norm(turns, axis=1).max()) if turns else 0.0

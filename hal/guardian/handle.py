@@ -21,7 +21,7 @@ from hal.guardian.charges import charges_of
 from hal.guardian.in_words import in_words
 from hal.guardian.launch import launch
 from hal.guardian.lock import AdapterLock
-from hal.guardian.order import HAND_OVER, IDLE, READY, RELEASE, TICK, Charge, Order
+from hal.guardian.order import FIRST, HAND_OVER, IDLE, READY, RELEASE, TICK, Charge, Order
 from hal.guardian.signals import held_back
 from hal.guardian.traceback_signal import show_traceback_on_signal
 from hal.joints import Array
@@ -79,13 +79,16 @@ class Guardian:
         """True while it is watching."""
         return self._process.poll() is None
 
-    def tick(self) -> None:
+    def tick(self, first: bool = False) -> None:
         """Say that the loop has done a tick; from now on the next one is due within 0.15 s.
+
+        Args:
+            first: The robot has not made its first motion: no crouch, it is to go limp.
 
         Raises:
             GuardianError: The guardian has died, or does not read.
         """
-        self._say(TICK)
+        self._say(FIRST if first else TICK)
 
     def idle(self) -> None:
         """Say that this process is alive though no loop runs; more is due within 1 s.

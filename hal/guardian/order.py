@@ -6,11 +6,12 @@ from hal.guard.limits import StopPolicy
 
 READY = b"r"
 """Guardian to host: the first heartbeat has arrived; torque may come on."""
-TICK, IDLE, RELEASE, HAND_OVER = b"t", b"i", b"x", b"h"
-"""Host to guardian: a tick of the loop; alive between two runs, or switching torque; torque was
-read back as off; the host has given up its ports with torque that it could not read."""
+TICK, FIRST, IDLE, RELEASE, HAND_OVER = b"t", b"f", b"i", b"x", b"h"
+"""Host to guardian: a tick of the loop, and one of the first motion after torque came on; alive
+between two runs, or switching torque; torque was read back as off; the host has given up its ports
+with torque that it could not read."""
 
-SILENCE = {TICK: 0.15, IDLE: 1.0}
+SILENCE = {TICK: 0.15, FIRST: 0.15, IDLE: 1.0}
 """How long the guardian waits for the next byte after one of these, s. A robot that only holds its
 pose may wait longer: a program between two runs may load a file, or import a package."""
 

@@ -18,7 +18,7 @@ import msgspec
 from hal.clock import PRIORITY
 from hal.guardian.host import Host
 from hal.guardian.in_words import in_words
-from hal.guardian.order import HAND_OVER, IDLE, READY, RELEASE, SILENCE, Order
+from hal.guardian.order import HAND_OVER, IDLE, READY, RELEASE, SILENCE, TICK, Order
 from hal.guardian.signals import ignore_signals
 from hal.guardian.takeover import Takeover
 from hal.guardian.words import Words, standard_error
@@ -68,23 +68,27 @@ def _guard(order: Order, orders: int, words: Words) -> None:
     os.write(sys.stdout.fileno(), READY)
     os.close(sys.stdout.fileno())
     try:
-        ending = watch(orders, host)
+        ending, moved = watch(orders, host)
     except Exception as error:  # nobody else is left to stop the robot
         words.say(in_words(error))
-        ending = Ending.DEAF
+        ending, moved = Ending.DEAF, False
     if ending is Ending.RELEASED:
         return
     with suppress(Exception):
         if ending in (Ending.SILENT, Ending.CLOSED, Ending.DEAF):
             host.kill()
-    takeover.carry_out(ending.value)
+    takeover.carry_out(ending.value, moved)
     if ending is not Ending.HANDED_OVER:
         takeover.wait_for(host)
 
 
-def watch(orders: int, host: Host) -> Ending:
-    """Read heartbeats from a descriptor until there is a reason to stop watching."""
-    heard, patience = time.monotonic(), SILENCE[IDLE]
+def watch(orders: int, host: Host) -> tuple[Ending, bool]:
+    """Read heartbeats from a descriptor until there is a reason to stop watching.
+
+    Returns:
+        The reason, and whether the robot has made its first motion: before, it may be anywhere.
+    """
+    heard, patience, moved = time.monotonic(), SILENCE[IDLE], False
     poller = select.poll()
     for descriptor in (orders, *host.descriptors):
         poller.register(descriptor, select.POLLIN)
@@ -95,14 +99,16 @@ def watch(orders: int, host: Host) -> Ending:
         if orders in ready:
             data = os.read(orders, 4096)
             if (ending := _ending(data, host)) is not None:
-                return ending
+                return ending, moved
+            if ticks := data.replace(IDLE, b""):
+                moved = ticks.endswith(TICK)
             heard, patience = time.monotonic(), SILENCE[data[-1:]]
         elif ready:
-            return Ending.DIED
+            return Ending.DIED, moved
         elif time.monotonic() - due > OVERSLEPT:
             heard, patience = time.monotonic(), SECOND_CHANCE
         else:
-            return Ending.SILENT
+            return Ending.SILENT, moved
 
 
 def _ending(data: bytes, host: Host) -> Ending | None:

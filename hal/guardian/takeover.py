@@ -37,11 +37,12 @@ class Takeover:
         self._trouble = ""
         self._note("")
 
-    def carry_out(self, why: str) -> None:
+    def carry_out(self, why: str, moved: bool = True) -> None:
         """Stop the servos; return when torque has been read as off, whatever goes wrong before.
 
         Args:
             why: That the host does not do it; new runs that wait for the adapters are told too.
+            moved: The robot has made its first motion. Before, it does not crouch.
         """
         self._said, policy = time.monotonic(), self._order.policy
         self._say(f"{why} (process {self._order.host}); stopping its servos")
@@ -49,7 +50,7 @@ class Takeover:
             self._note("switching the torque off")
             if policy == "hold":
                 self._hold()
-            elif policy == "crouch" and all(bus.charge.crouch for bus in self._buses):
+            elif policy == "crouch" and moved and all(bus.charge.crouch for bus in self._buses):
                 self._crouch()
         except Exception as error:
             self._say(f"it cannot {policy} ({in_words(error)}); torque goes off")

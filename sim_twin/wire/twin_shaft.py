@@ -112,6 +112,11 @@ class TwinShaft:
             self._limit_open = open_
 
 
+NOISE = 0.02
+"""Of an accelerometer, m/s2: an MPU-9250 has 0.3 mg/rtHz (datasheet, table 2), over 50 Hz. Without
+any, a robot that stands still would look as if its IMU hung."""
+
+
 class TwinImu:
     """The IMU of a twin, behind the low-pass filter of an OpenCR's; a source for `OpenCr`.
 
@@ -137,6 +142,8 @@ class TwinImu:
         self._places = np.r_[gyro : gyro + 3, acceleration : acceleration + 3]
         self._filter = LowPass(OPENCR.lag, twin.timestep)
         self._base = twin.data.qpos
+        self._noise = np.random.default_rng(0).normal(0.0, NOISE, (1009, 3))
+        self._steps = 0
         twin.on_step = _while_alive(self._feel)
 
     @property
@@ -147,7 +154,8 @@ class TwinImu:
     @property
     def acceleration(self) -> Array:
         """(3,) m/s2."""
-        return self._filter.value(self._felt())[3:]
+        felt: Array = self._filter.value(self._felt())[3:]
+        return felt + self._noise[self._steps % len(self._noise)]
 
     @property
     def orientation(self) -> Array:
@@ -155,6 +163,7 @@ class TwinImu:
         return np.asarray(self._base[3:7])
 
     def _feel(self) -> None:
+        self._steps += 1
         self._filter.follow(self._felt())
 
     def _felt(self) -> Array:

@@ -95,7 +95,7 @@ def test_nothing_arms_by_itself_in_a_program_that_was_told_to_end() -> None:
     check_not_interrupted()
 
 
-def interrupted(robot: Robot, at: float = 1.0, times: int = 1) -> None:
+def interrupted(robot: Robot, at: float = 2.2, times: int = 1) -> None:
     """Press Ctrl-C once the run has gone on for so long, s."""
 
     def watch(observation: Observation) -> None:

@@ -63,7 +63,10 @@ def test_what_does_not_get_up_ends_with_status_1_and_why(windup: Windup, my_op3:
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("rise duck --lying back", "duck has no get_up_back, get_up_front in its gaits"),
+        (
+            "rise duck --lying back",
+            "duck cannot get up by itself, for it has no gait get_up_back",
+        ),
         ("rise op3 --tries 0", "--tries 0: give 1 .. 1000"),
     ],
 )

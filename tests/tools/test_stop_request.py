@@ -92,7 +92,7 @@ def test_a_command_that_a_button_stops_has_status_130_and_says_so(
     assert "stopped by the mode button" in caplog.text
 
 
-def test_a_key_of_the_terminal_ends_a_run_on_a_real_port_and_the_first_line_says_so(
+def test_a_key_of_the_terminal_ends_a_run_on_a_real_port_and_the_lines_say_so(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     ours, theirs = os.openpty()
@@ -109,6 +109,9 @@ def test_a_key_of_the_terminal_ends_a_run_on_a_real_port_and_the_first_line_says
             robot.stand(60.0)
         assert not robot.armed
     assert termios.tcgetattr(theirs)[3] & termios.ICANON
-    assert capsys.readouterr().err == "arming duck: space, q or Ctrl-C stops it\n"
+    assert capsys.readouterr().err == (
+        "arming duck: space, q or Ctrl-C stops it\n"
+        "duck: torque is off at all 14 joints, read back\n"
+    )
     os.close(ours)
     os.close(theirs)

@@ -63,7 +63,11 @@ def test_a_guardian_that_stops_a_robot_ignores_them(sts_bus: Path) -> None:
 
 
 def test_signals_to_this_process_wait_while_it_starts_one() -> None:
-    with pytest.raises(KeyboardInterrupt), held_back():
-        os.kill(os.getpid(), signal.SIGINT)
-        reached = True
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt), held_back():
+            os.kill(os.getpid(), signal.SIGINT)
+            reached = True
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert reached

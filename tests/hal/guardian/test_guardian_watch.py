@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pytest
 
 from hal.guardian.host import Host
-from hal.guardian.order import HAND_OVER, IDLE, RELEASE, SILENCE, TICK
+from hal.guardian.order import FIRST, HAND_OVER, IDLE, RELEASE, SILENCE, TICK
 from hal.guardian.process import Ending, watch
 
 Pipe = tuple[int, int]
@@ -39,7 +39,25 @@ def test_what_is_heard_last_says_how_it_ends(
     program: "subprocess.Popen[bytes]", pipe: Pipe, said: bytes, ending: Ending
 ) -> None:
     os.write(pipe[1], said)
-    assert watch(pipe[0], Host(program.pid)) is ending
+    assert watch(pipe[0], Host(program.pid))[0] is ending
+    os.close(pipe[1])
+
+
+@pytest.mark.parametrize(
+    ("said", "moved"),
+    [
+        (IDLE, False),
+        (FIRST, False),
+        (FIRST + TICK, True),
+        (TICK + IDLE, True),
+        (TICK + FIRST, False),
+    ],
+)
+def test_a_robot_that_has_not_made_its_first_motion_does_not_crouch(
+    program: "subprocess.Popen[bytes]", pipe: Pipe, said: bytes, moved: bool
+) -> None:
+    os.write(pipe[1], said + IDLE)
+    assert watch(pipe[0], Host(program.pid)) == (Ending.SILENT, moved)
     os.close(pipe[1])
 
 
@@ -48,7 +66,7 @@ def test_a_host_that_dies_is_seen_though_its_pipe_is_open(
 ) -> None:
     host = Host(program.pid)
     program.kill()
-    assert watch(pipe[0], host) is Ending.DIED
+    assert watch(pipe[0], host)[0] is Ending.DIED
     os.close(pipe[1])
 
 
@@ -57,7 +75,7 @@ def test_a_pipe_that_closes_while_the_host_lives_is_no_release(
 ) -> None:
     os.write(pipe[1], TICK)
     os.close(pipe[1])
-    assert watch(pipe[0], Host(program.pid)) is Ending.CLOSED
+    assert watch(pipe[0], Host(program.pid))[0] is Ending.CLOSED
 
 
 def test_a_robot_that_moves_is_given_less_time_than_one_that_is_held() -> None:
