@@ -26,6 +26,8 @@ LONGEST = {"standing": 1.0, "walking": 1.5, "closing crouch": 1.2}
 """Until the end, from the beginning of each activity, s, at most."""
 WIDE = 150
 """Of the table, characters."""
+SPARE = 1
+"""Trials at a time beyond one a core: each of them waits for half of its time."""
 AGAIN = 3
 """How often a trial is done anew whose program was not under way when it should have been."""
 
@@ -72,7 +74,7 @@ def _measure(
     """Return how one row went."""
     failed: Counter[str] = Counter()
     todo = list(_moments(row, moments, rng, robots))
-    with ThreadPoolExecutor(cpu_count()) as side_by_side:
+    with ThreadPoolExecutor((cpu_count() or 1) + SPARE) as side_by_side:
         tried = side_by_side.map(lambda item: _try(item[0], row, item[1], failed), todo)
         both = zip(todo, tried, strict=True)
         seen = [(name, verdict) for (name, _), verdict in both if verdict is not None]
