@@ -118,6 +118,7 @@ class Bno08xRvc:
         self.parser = FrameParser()
         self._port: Port | None = None
         self._state: ImuState | None = None
+        self._before: Array | None = None
         self._clock = FrameClock(PERIOD)
         self._index, self._seen, self._at = 0, -np.inf, -np.inf
         self.implausible = 0
@@ -151,18 +152,24 @@ class Bno08xRvc:
     def _take(self, frame: Frame, now: float) -> None:
         orientation = multiply(euler_zxy(*frame.angles), self._back)
         rates = self._rates(frame.number, orientation, now)
+        if rates is None:
+            # The rates of a hole are unknown, and as 0 they would look as if they jumped.
+            self._before = orientation
+            self._index, self._seen = frame.number, now
+            return
         if (np.abs(frame.angles) > LARGEST).any() or np.linalg.norm(rates) > FASTEST:
             self.implausible += 1
             return
         acceleration = rotate(self.mounting, frame.acceleration)
         self._state = ImuState(orientation, rates, acceleration, 0.0)
+        self._before = orientation
         self._index, self._seen = frame.number, now
         self._at = self._clock.date(frame.number, now) - ON_THE_WIRE
 
-    def _rates(self, index: int, orientation: Array, now: float) -> Array:
-        """Return the body's rates (3,) rad/s since the last frame; 0 where that is too old."""
-        last, frames = self._state, (index - self._index) % 256
+    def _rates(self, index: int, orientation: Array, now: float) -> Array | None:
+        """Return the body's rates (3,) rad/s since the last frame; None where that is too old."""
+        frames = (index - self._index) % 256
         recent = now - self._seen < LONGEST_GAP * PERIOD and 0 < frames <= LONGEST_GAP
-        if last is None or last.orientation is None or not recent:
+        if self._before is None:
             return np.zeros(3)
-        return between(last.orientation, orientation) / (frames * PERIOD)
+        return between(self._before, orientation) / (frames * PERIOD) if recent else None

@@ -98,6 +98,19 @@ def test_lost_frames_are_counted_by_the_index() -> None:
     assert state is not None and state.angular_velocity[2] == pytest.approx(100 * pi / 180)
 
 
+def test_behind_a_long_hole_the_last_sample_ages_until_two_frames_show_the_rates() -> None:
+    serial, imu = listening()
+    for index in range(2):
+        send(serial, imu, rvc(index, (1.0 * index, 0, 0)))
+    send(serial, imu, rvc(40, (40.0, 0, 0)), wait=0.4)
+    state = imu.state(serial.clock.now())
+    assert state is not None and state.age > 0.3, "rates of 0 would look like a jump"
+    send(serial, imu, rvc(41, (41.0, 0, 0)))
+    state = imu.state(serial.clock.now())
+    assert state is not None and state.age < 0.02
+    assert state.angular_velocity[2] == pytest.approx(100 * pi / 180)
+
+
 def test_the_body_is_not_the_chip() -> None:
     # The chip lies on its back: x ahead, z down.
     serial, imu = listening((0, 1, 0, 0))
@@ -142,8 +155,9 @@ def test_the_backend_listens_beside_its_buses_and_survives_an_unplugged_imu() ->
     assert imu is not None and imu.age > 0.3 and wires.open == 1
     wires.unplugged.clear()
     ticks(backend, 40)
-    wires["imu"].arrivals = [(wires.clock.now(), b) for b in rvc(9, (0, 0, 0))]
-    ticks(backend, 1)
+    for index in (9, 10):  # rates need two
+        wires["imu"].arrivals = [(wires.clock.now(), b) for b in rvc(index, (0, 0, 0))]
+        ticks(backend, 1)
     imu = backend.read().imu
     assert imu is not None and imu.age < 0.01
     backend.disconnect()

@@ -16,7 +16,7 @@ from robots import load_robot
 from tools.output import console
 from tools.safety.refusals import measure_refusals
 from tools.safety.row import Row
-from tools.safety.rows import ROWS
+from tools.safety.rows import ROWS, SIGNALS
 from tools.safety.scripts import BY_ITSELF
 from tools.safety.trial import Moment, NotMeasuredError, trial, under_way
 from tools.safety.verdict import Verdict, judge
@@ -131,7 +131,10 @@ def _one(name: str, row: Row, moment: Moment) -> Verdict:
             running.journal.listen(moment.after)
             if BY_ITSELF in (said := running.errors()):
                 raise NotMeasuredError(said)
-        return judge(running, row, load_robot(name), row.do(running))
+        verdict = judge(running, row, load_robot(name), row.do(running))
+        if verdict.wrong and row in SIGNALS and BY_ITSELF in (said := running.errors()):
+            raise NotMeasuredError(said)  # it fell in the very moment
+        return verdict
 
 
 def _table(result: dict[str, Any]) -> Table:

@@ -1,14 +1,21 @@
 """An emulated robot in a process of its own, that takes faults and dates what becomes of it."""
 
+import os
 import threading
 import time
+from contextlib import suppress
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
 
+from hal.clock import PRIORITY
 from sim_twin.wire import parse_address
 from sim_twin.wire.emulate import Emulator, emulate
 from sim_twin.wire.journal import Event
+
+
+FIRST = PRIORITY + 10
+"""Of an emulator among real-time processes: servos and physics wait for no program."""
 
 
 def serve(name: str, path: Path | None, pipe: Connection, faults: str = "") -> None:
@@ -25,6 +32,8 @@ def serve(name: str, path: Path | None, pipe: Connection, faults: str = "") -> N
         pipe.send(port_of(emulator))
         threading.Thread(target=_inject, args=(emulator, pipe), daemon=True).start()
 
+    with suppress(OSError):
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(FIRST))
     address = parse_address(f"twin://{name}?clock=real&faults={faults}")
     emulate(address, path, None if path else 0, on_ready=ready, events=pipe.send)
 
