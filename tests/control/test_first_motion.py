@@ -105,8 +105,8 @@ def test_a_robot_that_is_there_only_gets_stiff_and_still_has_its_first_motion_be
     assert first.due and (first.share == 1.0).all()
     away = np.abs(np.array([command.position for _, command in ticks]) - BENT)
     assert away.max() <= 0.5 * CLOSE + 1e-9
-    # The next controller starts far away: slowly, and no weaker than the robot is by now.
-    ticks = run(first, Still(np.zeros(N)), start=BENT)
+    # The next one goes to a pose far away: slowly, and no weaker than the robot is by now.
+    ticks = run(first, PoseHolder(JOINTS, np.zeros(N)), start=BENT)
     assert ticks[0][0] and not first.due
     assert ticks[0][1].stiffness == pytest.approx(JOINTS.stiffness)
 
