@@ -47,7 +47,10 @@ class FirstMotion:
         due: The first motion is still to come.
         made: It has been made since torque came on, or there was no way to go.
         share: (n,) of each joint's stiffness now.
+        goal: (n,) rad that the joints were told last; None before they were told any.
     """
+
+    goal: Array | None
 
     def __init__(
         self,
@@ -63,7 +66,7 @@ class FirstMotion:
 
     def begin(self) -> None:
         """Torque comes on: begin anew."""
-        self.due, self.made = True, False
+        self.due, self.made, self.goal = True, False, None
         self.share = self._begins_with
 
     def before(self, controller: Controller, upright: bool) -> "Approach":
@@ -93,7 +96,7 @@ class Approach:
     ) -> None:
         self.controller, self.motion, self.joints = controller, motion, motion.joints
         self._planted = planted
-        self.active = motion.due
+        self.active = self._needed()
 
     def reset(self, observation: Observation) -> None:
         """Begin at the present pose.
@@ -102,8 +105,16 @@ class Approach:
             StateMissingError: From the controller.
         """
         self.controller.reset(observation)
-        self.active = self.motion.due
+        self.active = self._needed()
         self._following: Following | None = None
+
+    def _needed(self) -> bool:
+        """Return whether there is a way to go first.
+
+        The first command of a controller that does not say where it begins may be the middle of a
+        step: a robot that is stiff already, if it has not moved, leaves that to the controller.
+        """
+        return self.motion.due and (not self.motion.made or isinstance(self.controller, Begins))
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the command on the way, or the controller's.
@@ -111,6 +122,11 @@ class Approach:
         Raises:
             FirstMotionError: A joint does not follow.
         """
+        command = self._command(observation, dt)
+        self.motion.goal = command.position
+        return command
+
+    def _command(self, observation: Observation, dt: float) -> JointCommand:
         if not self.active:
             return self._left_alone(observation, dt)
         if self._following is None:
@@ -139,9 +155,16 @@ class Approach:
         return bool(away < CLOSE and (self.motion.share == 1.0).all())
 
     def _plan(self, command: JointCommand, observation: Observation) -> None:
-        """Plan the way from the present pose to the controller's first one."""
-        joints = self.joints
-        self._from = np.clip(observation.joints.position, joints.lower, joints.upper)
+        """Plan the way from the present pose to the controller's first one.
+
+        Joints that are stiff hang behind their goals under load: from where they are, goals would
+        drop what they bear.
+        """
+        joints, before = self.joints, self.motion.goal
+        start = observation.joints.position
+        if before is not None and self.motion.made:
+            start = before
+        self._from = np.clip(start, joints.lower, joints.upper)
         first = first_pose_of(self.controller, command)
         self._way = np.clip(first, joints.lower, joints.upper) - self._from
         self._began, self._share = observation.time, self.motion.share

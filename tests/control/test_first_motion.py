@@ -105,8 +105,8 @@ def test_a_robot_that_is_there_only_gets_stiff_and_still_has_its_first_motion_be
     assert first.due and (first.share == 1.0).all()
     away = np.abs(np.array([command.position for _, command in ticks]) - BENT)
     assert away.max() <= 0.5 * CLOSE + 1e-9
-    # The next controller starts far away: slowly, and no weaker than the robot is by now.
-    ticks = run(first, Still(np.zeros(N)), start=BENT)
+    # The next one goes to a pose far away: slowly, and no weaker than the robot is by now.
+    ticks = run(first, PoseHolder(JOINTS, np.zeros(N)), start=BENT)
     assert ticks[0][0] and not first.due
     assert ticks[0][1].stiffness == pytest.approx(JOINTS.stiffness)
 
@@ -221,3 +221,20 @@ def test_a_controller_that_moves_fast_afterwards_is_not_judged() -> None:
 
     ticks = run(motion(), Jumps(BENT), joint=lambda goal: 0.9 * goal)
     assert ticks[-1][1].position == pytest.approx(np.zeros(N))
+
+
+def test_a_robot_that_is_stiff_leaves_it_to_a_controller_where_that_begins() -> None:
+    first = motion()
+    run(first, Still(np.zeros(N)))
+    assert first.made and first.due
+    ticks = run(first, Still(BENT), seconds=0.1)
+    assert not ticks[0][0] and (ticks[0][1].position == BENT).all()
+
+
+def test_a_way_of_a_stiff_robot_begins_at_its_goal_for_under_load_it_hangs_behind() -> None:
+    first = motion()
+    run(first, Still(np.zeros(N)))
+    sagging = np.full(N, -0.04)
+    ticks = run(first, PoseHolder(JOINTS, BENT), start=sagging, seconds=0.1)
+    assert ticks[0][0]
+    assert ticks[0][1].position == pytest.approx(np.zeros(N), abs=1e-3)

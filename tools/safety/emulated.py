@@ -13,7 +13,6 @@ from sim_twin.wire import parse_address
 from sim_twin.wire.emulate import Emulator, emulate
 from sim_twin.wire.journal import Event
 
-
 FIRST = PRIORITY + 10
 """Of an emulator among real-time processes: servos and physics wait for no program."""
 

@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -30,6 +31,9 @@ class Faulty:
 
     def __init__(self, controller: Controller, fault: Fault, begin: Begin) -> None:
         self._controller, self._fault, self._begin = controller, fault, begin
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._controller, name)
 
     def reset(self, observation: Observation) -> None:
         """See `Controller`."""

@@ -104,6 +104,7 @@ crouch = {1: 1800, 2: 2300}
 charge = Charge(url=path, baud=1_000_000, servos=IDS, crouch=crouch)
 guardian = Guardian([charge], policy, float(hold))
 switch_on(path)
+guardian.tick()
 print(guardian.pid, flush=True)
 while True:
     guardian.tick()
