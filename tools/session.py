@@ -30,8 +30,8 @@ from tools.run_notes import NOTES
 from tools.slowness import Slowness
 from tools.stack import look_with
 from tools.stop_request import stop_requests
+from tools.stopping import INTERRUPTED
 
-INTERRUPTED = "interrupted"
 REST_SECONDS = 1.5
 # Called once a tick with the observation.
 Watch = Callable[[Observation], None]
@@ -187,8 +187,7 @@ class Session(Armed):
                 return "done" if over else None
 
             if asked():
-                self.loop.reason = INTERRUPTED
-                note_interruption(asked.by)
+                self._stop_before(asked)
             else:
                 self._run(controller, end, rollouts, asked, estimator)
         if self.loop.reason == INTERRUPTED:

@@ -19,6 +19,9 @@ from tools.overheard import forget, overhear
 from tools.running import Running
 from tools.start import Start
 
+INTERRUPTED = "interrupted"
+"""The reason of a run that somebody ended."""
+
 
 @dataclass(eq=False)
 class Stoppable(OnStack):
@@ -121,6 +124,13 @@ class Stoppable(OnStack):
             console.print(
                 f"{self.description.name}: torque is off at all {count} joints, read back"
             )
+
+    def _stop_before(self, asked: Asked) -> None:
+        """Stop a robot whose run was to end before its first tick."""
+        self.loop.reason = INTERRUPTED
+        note_interruption(asked.by)
+        if self.armed:
+            self._stop_after_error(asked)
 
     def _stop_after_error(self, asked: Asked, error: WindupError | None = None) -> None:
         """Carry out the stop policy; nobody holds a joint that is unwell, or bad news."""

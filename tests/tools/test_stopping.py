@@ -84,6 +84,18 @@ def test_ctrl_c_while_somebody_looks_how_the_robot_is_keeps_torque_off(
         robot.stand(1.0)
 
 
+def test_ctrl_c_between_an_armed_robot_and_its_first_tick_stops_it(
+    bus: ServoBus, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot = bus.robot()
+    robot.stand(0.2)
+    assert robot.armed
+    monkeypatch.setattr(robot, "_estimator", lambda needs_imu: ctrl_c())
+    with pytest.raises(RunInterruptedError):
+        robot.stand(1.0)
+    assert not robot.armed and not driving(bus)
+
+
 def test_ctrl_c_while_torque_comes_on_switches_it_off_again(
     bus: ServoBus, monkeypatch: pytest.MonkeyPatch
 ) -> None:
