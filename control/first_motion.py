@@ -104,9 +104,20 @@ class Approach:
         Raises:
             StateMissingError: From the controller.
         """
-        self.controller.reset(observation)
+        self._begin(observation, self.motion.goal if self.motion.made else None)
         self.active = self._needed()
         self._following: Following | None = None
+
+    def _begin(self, observation: Observation, goal: Array | None) -> None:
+        """Reset the controller; one that starts from a pose starts from the goal there was.
+
+        Joints hang behind their goals under load: from where they are, the goals would drop what
+        they bear.
+        """
+        if goal is not None and isinstance(self.controller, Begins):
+            joints = replace(observation.joints, position=goal)
+            observation = replace(observation, joints=joints)
+        self.controller.reset(observation)
 
     def _needed(self) -> bool:
         """Return whether there is a way to go first.
@@ -155,11 +166,7 @@ class Approach:
         return bool(away < CLOSE and (self.motion.share == 1.0).all())
 
     def _plan(self, command: JointCommand, observation: Observation) -> None:
-        """Plan the way from the present pose to the controller's first one.
-
-        Joints that are stiff hang behind their goals under load: from where they are, goals would
-        drop what they bear.
-        """
+        """Plan the way to the controller's first pose: from the last goal, or the present pose."""
         joints, before = self.joints, self.motion.goal
         start = observation.joints.position
         if before is not None and self.motion.made:
@@ -198,9 +205,5 @@ class Approach:
         self.motion.made = True
         if np.abs(self._way).max() >= CLOSE:
             self.motion.due = False
-        start = observation
-        if isinstance(self.controller, Begins):
-            # The joints hang behind their goals under load: from there, goals would jump.
-            start = replace(observation, joints=replace(observation.joints, position=goal))
-        self.controller.reset(start)
+        self._begin(observation, goal)
         return self.controller.step(observation, dt)

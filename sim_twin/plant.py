@@ -5,6 +5,11 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from robots import RobotDescription
+
+XM430 = 4.1
+"""Stall torque of the servo that the friction was drawn for, N m."""
+
 
 @dataclass(frozen=True)
 class Plant:
@@ -27,20 +32,23 @@ class Plant:
     supply: float | None = None
 
     @classmethod
-    def random(cls, seed: int, timestep: float) -> "Plant":
+    def random(cls, seed: int, robot: RobotDescription) -> "Plant":
         """Return one of the random plants that a walk should survive untuned.
 
-        kp -20..+20 %, friction loss 0-0.3 N m, delay 4-24 ms in whole physics steps, floor
-        0.5-1.0, mass -10..+10 %, supply 10.5-12.6 V.
+        kp -20..+20 %, friction loss 0-0.3 N m (less with servos weaker than 4.1 N m), delay
+        4-24 ms in whole physics steps, floor 0.5-1.0, mass -10..+10 %, supply -12.5..+5 %
+        (10.5-12.6 V of 12).
         """
+        weak = min(float(robot.joints.torque.min()) / XM430, 1.0)
+        timestep, nominal = robot.timestep, robot.drive.supply / 12.0
         draw = np.random.default_rng([7, seed]).uniform
         return cls(
             stiffness=draw(0.8, 1.2),
-            friction_loss=draw(0.0, 0.3),
+            friction_loss=draw(0.0, 0.3) * weak,
             delay=round(draw(0.004, 0.024) / timestep) * timestep,
             floor=draw(0.5, 1.0),
             mass=draw(0.9, 1.1),
-            supply=draw(10.5, 12.6),
+            supply=draw(10.5, 12.6) * nominal,
         )
 
     def change(self, spec: mujoco.MjSpec) -> None:

@@ -22,6 +22,7 @@ from hal.ranges import check_numbers, numbers_checked
 from robots import load_robot
 from sim_twin.clearance import FootClearance
 from sim_twin.rollouts import RolloutPredictor
+from sim_twin.wire.world import RealClock
 from sim_twin.world import World
 from tools.build import build_walk
 from tools.gaits import find_gait
@@ -135,7 +136,7 @@ class Robot(Session):
             period=steps * description.timestep,
             noise=noise,
             seed=seed,
-            paced=realtime or stack.twin is None,
+            paced=realtime or stack.twin is None or isinstance(stack.backend.clock, RealClock),
             protect=protect,
         )
 
@@ -210,7 +211,9 @@ class Robot(Session):
         self.predictor.stopwatch = Stopwatch()
         stopwatch = None if self.paced else self.predictor.stopwatch
         with ExitStack() as stack:
-            walker = build_walk(self.description, options, self.predictor)
+            # A plan takes its time on a robot; an emulated one waits for it as long.
+            wait = self.description.model_latency if self.stack.wired else 0.0
+            walker = build_walk(self.description, options, self.predictor, latency=wait)
             self.supervisor = None
             if options.catch is not None:
                 self.supervisor = build_supervisor(self.description, walker, options.catch)
@@ -242,9 +245,10 @@ class Robot(Session):
         return report
 
     def _when_ready(self, planner: ProcessPlanner) -> ProcessPlanner:
-        """Wait for a planner; hold the pose meanwhile, or the servos' watchdogs would trip."""
+        """Wait for a planner; meanwhile joints hold what they were told last, or where they are."""
         if self.armed:
-            pose = self.backend.read().joints.position
+            told = None if self.start is None else self.start.motion.goal
+            pose = self.backend.read().joints.position if told is None else told
             holder = PoseHolder(self.description.joints, pose, ramp=0.0)
             self.run(holder, until=lambda _: "ready" if planner.ready() else None)
         return planner.wait_ready()

@@ -45,7 +45,7 @@ class WorldOptions(Command):
 
     def world(self, robot: RobotDescription, seed: int) -> World | None:
         """Return the twin's world, or None where nothing is odd."""
-        plant = Plant() if self.plant is None else Plant.random(self.plant, robot.timestep)
+        plant = Plant() if self.plant is None else Plant.random(self.plant, robot)
         if self.friction is not None:
             plant = replace(plant, floor=self.friction)
         if self.gains != 1.0:

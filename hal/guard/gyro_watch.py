@@ -19,6 +19,9 @@ from hal.joints import Array
 
 JUMP = 0.7
 """Change of the rates from one sample to the next that an accelerometer feels, rad/s."""
+PIVOT = 1.6
+"""How much larger than that it is about the vertical before it is doubted: a body that begins to
+turn on one foot below its IMU shakes it little. Ducks that slip while walking reach 0.8 rad/s."""
 SHAKE = 1.4
 """What it then changes by, or differs from gravity, at least: m/s2 for each rad/s. Twins that are
 pushed, fall, roll over and get up show 2.3 or more."""
@@ -73,15 +76,25 @@ class GyroWatch:
     def compare(self, sample: Sequence[float], last: Sequence[float], now: float) -> None:
         """Doubt a jump from the last sample, shortly before, or be satisfied that it is over."""
         if self.doubted:
-            self.doubted = distance(sample, self._believed) > 0.5 * JUMP
+            self.doubted = (
+                self._change(self._believed, sample) > 0.5 * JUMP
+                and distance(sample, NOTHING) > distance(self._believed, NOTHING)
+            )
             return
-        jump = distance(sample, last)
+        jump = self._change(last, sample)
         if jump < JUMP or distance(sample, NOTHING) < distance(last, NOTHING):
             return  # who has stopped turning does not spin
         felt = sample[3:]
         shaken = max(abs(distance(felt, NOTHING) - GRAVITY), distance(felt, last[3:]))
         if shaken < SHAKE * jump:
             self.doubted, self._believed, self._jumped = True, last[:3], now
+
+    def _change(self, before: Sequence[float], after: Sequence[float]) -> float:
+        """Return by how much the rates have changed, rad/s; less about the vertical."""
+        x, y, z = after[0] - before[0], after[1] - before[1], after[2] - before[2]
+        about = x * self.up[0] + y * self.up[1] + z * self.up[2]
+        whole = x * x + y * y + z * z
+        return sqrt(max(whole - about * about * (1.0 - 1.0 / PIVOT**2), 0.0))
 
     def judge(
         self, sample: Sequence[float], now: float, dt: float, velocity: Array
@@ -91,7 +104,7 @@ class GyroWatch:
         if not self.doubted:
             return self._turn(sample, felt, dt, velocity)
         if now - self._jumped >= PERSIST:
-            return LEAP, distance(sample, self._believed), JUMP
+            return LEAP, self._change(self._believed, sample), JUMP
         return self._turn(self._believed, felt, dt, velocity)
 
     def _turn(

@@ -238,3 +238,11 @@ def test_a_way_of_a_stiff_robot_begins_at_its_goal_for_under_load_it_hangs_behin
     ticks = run(first, PoseHolder(JOINTS, BENT), start=sagging, seconds=0.1)
     assert ticks[0][0]
     assert ticks[0][1].position == pytest.approx(np.zeros(N), abs=1e-3)
+
+
+def test_a_pose_after_the_first_motion_begins_at_the_last_goal_too() -> None:
+    first = motion()
+    run(first, PoseHolder(JOINTS, BENT))
+    assert not first.due
+    ticks = run(first, PoseHolder(JOINTS, BENT), joint=lambda _: BENT - 0.08, start=BENT - 0.08)
+    assert all(command.position == pytest.approx(BENT) for _, command in ticks)

@@ -113,6 +113,21 @@ def test_a_turn_about_the_vertical_takes_joints_that_move(speed: float, wrong: b
     assert (found(ImuWatch(), turning) is not None) == wrong
 
 
+def test_a_foot_that_slips_turns_the_body_about_the_vertical_unfelt_and_is_no_spin() -> None:
+    watch = ImuWatch()
+    walking = still(1.0)
+    turning = [seen(1.0 + k * DT, (0.0, 0.0, 0.9), upright(k), speed=2.0) for k in range(60)]
+    assert found(watch, [*walking, *turning]) is None
+
+
+def test_a_jump_that_ends_slower_than_it_began_was_one() -> None:
+    watch = ImuWatch()
+    walking = still(0.5, rate=(0.0, 0.0, 0.6))
+    knock = [seen(0.5, (0.9, 0.0, 0.6), upright(0), speed=2.0)]
+    after = [seen(0.5 + (k + 1) * DT, (0.0, 0.0, 0.1), upright(k), speed=2.0) for k in range(60)]
+    assert found(watch, [*walking, *knock, *after]) is None
+
+
 def test_a_warning_has_its_worst_value_and_how_often_it_began() -> None:
     watch = ImuWatch()
     for begin in (0.0, 2.0, 4.0):

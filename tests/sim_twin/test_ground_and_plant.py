@@ -81,9 +81,18 @@ def test_a_plant_is_stiffer_whatever_gains_are_sent(op3: RobotDescription) -> No
 
 
 def test_random_plants_stay_in_their_ranges() -> None:
-    plants = [Plant.random(seed, 0.002) for seed in range(40)]
-    assert plants[3] == Plant.random(3, 0.002)
+    op3 = load_robot("op3")
+    plants = [Plant.random(seed, op3) for seed in range(40)]
+    assert plants[3] == Plant.random(3, op3)
+    assert all(10.5 <= (p.supply or 0.0) <= 12.6 for p in plants)
     assert all(0.004 <= (p.delay or 0.0) <= 0.024 and 0.8 <= p.stiffness <= 1.2 for p in plants)
+
+
+def test_a_random_plant_has_the_servos_of_its_robot() -> None:
+    duck = load_robot("duck")
+    plants = [Plant.random(seed, duck) for seed in range(40)]
+    assert all(6.4 <= (p.supply or 0.0) <= 7.8 for p in plants)
+    assert max(p.friction_loss or 0.0 for p in plants) < 0.15
 
 
 @pytest.mark.parametrize("name", ["op3", "human"])
