@@ -76,10 +76,9 @@ class GyroWatch:
     def compare(self, sample: Sequence[float], last: Sequence[float], now: float) -> None:
         """Doubt a jump from the last sample, shortly before, or be satisfied that it is over."""
         if self.doubted:
-            self.doubted = (
-                self._change(self._believed, sample) > 0.5 * JUMP
-                and distance(sample, NOTHING) > distance(self._believed, NOTHING)
-            )
+            self.doubted = self._change(self._believed, sample) > 0.5 * JUMP and distance(
+                sample, NOTHING
+            ) > distance(self._believed, NOTHING)
             return
         jump = self._change(last, sample)
         if jump < JUMP or distance(sample, NOTHING) < distance(last, NOTHING):
