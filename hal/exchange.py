@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from hal.joints import Mask
-from hal.port import Port
+from hal.port import BITS, Port
 from hal.protocols.batched1 import ChainRead
 from hal.protocols.cyclic import CyclicRead
 
@@ -16,8 +16,10 @@ TURNAROUND = 20e-6
 """What a servo with a return delay of 0 takes to answer, s."""
 UNSET_TURNAROUND = 550e-6
 """The same as it leaves the factory, s."""
-BITS = 10.0
-"""A byte on the wire: start, eight, stop."""
+STRANGE = 256
+"""Bytes that may come before an answer: noise, or what an adapter gives back."""
+STILL_COMING = 0.03
+"""So long after a request that got no answer one may still come, s."""
 GRACE = 3e-3
 """Silence granted to servos that are late, before all are asked again, s."""
 LATE = 6
@@ -55,6 +57,7 @@ class Exchange:
         self._deadline = 0.0
         self._pending: CyclicRead | None = None
         self._owed: dict[int, int] = {}  # who has not answered, and how often by now
+        self._parts_owed: dict[int, float] = {}  # who may still answer alone, and until when, s
         self._silence = 0.0
 
     def move_to(self, port: Port) -> None:
@@ -62,7 +65,7 @@ class Exchange:
         self.port = port
         self._wire_free = self._deadline = self._silence = 0.0
         self._pending = None
-        self._owed = {}
+        self._owed, self._parts_owed = {}, {}
 
     def send(self, frames: Iterable[bytes]) -> None:
         """Send frames that nobody answers."""
@@ -89,7 +92,7 @@ class Exchange:
             return self._collect_chain(read)
         gone = len(self._owed) == len(read.spans) and min(self._owed.values()) > LATE
         read.owed = frozenset() if gone else frozenset(self._owed)
-        stream = self.port.read(read.length, self._deadline)
+        stream = self._answer(read)
         if read.owed:
             stream = self._newest(read, stream)
         read.decode(stream)
@@ -99,6 +102,16 @@ class Exchange:
             self._owed = {}  # they have power again, and may be late from now on
         self._note_owed(read)
         return read.valid
+
+    def _answer(self, read: CyclicRead) -> bytes:
+        """Return as many bytes as the answer has, without the request if that came back."""
+        stream = self.port.read(read.length, self._deadline)
+        request = read.request
+        if stream and request.startswith(stream[: len(request)]):
+            stream += self.port.read(len(request), self._deadline)
+            if stream.startswith(request):
+                return stream[len(request) :]
+        return stream
 
     def _newest(self, read: CyclicRead, stream: bytes) -> bytes:
         """Return `stream` as far as it can be an answer, where earlier ones may still be coming.
@@ -132,12 +145,25 @@ class Exchange:
         for row, part in enumerate(chain.parts):
             if row:
                 self._ask(part)
-            stream = self.port.read(part.length, self._deadline)
-            part.decode(stream)
-            if not part.complete:
-                self._resynchronise(part, stream)
+            self._collect_part(part)
             chain.collected(row)
         return chain.valid
+
+    def _collect_part(self, part: CyclicRead) -> None:
+        """Take in the answer of one servo; an earlier one that comes late has another behind it."""
+        id = part.spans[0].id
+        stream = self._answer(part)
+        if id in self._parts_owed:
+            stream = self._newest(part, stream)
+            wait = part.length * BITS / self.port.baud + self.turnaround + self.port.latency
+            stream += self.port.read(part.longest, self.port.clock.now() + wait)
+        part.decode(stream)
+        now = self.port.clock.now()
+        if now > self._parts_owed.get(id, now):
+            del self._parts_owed[id]
+        if not part.complete:
+            self._resynchronise(part, stream)
+            self._parts_owed.setdefault(id, now + STILL_COMING)
 
     def answer_time(self, read: CyclicRead) -> float:
         """Return how long the answer to `read` may take once the request is on the wire, s."""
@@ -159,7 +185,7 @@ class Exchange:
             if not more:
                 break
             stream += more
-            if len(stream) > 2 * read.longest:
+            if len(stream) > 2 * read.longest + STRANGE:
                 break
             read.decode(stream)
         lost = int((~read.valid).sum())

@@ -51,13 +51,15 @@ def check_writable(*targets: Path | None) -> None:
 def write_json(target: Path | None, command: str, result: dict[str, Any]) -> None:
     """Write one JSON object to `target`: a file, standard output for "-", or nowhere for None.
 
-    Where a robot was run, what there was to warn about is part of it.
+    Where a robot was run, what there was to warn about, and what the driver of its servos has
+    clamped, are part of it.
     """
     if target is None:
         return
     whole = {"schema": SCHEMA, "command": command, **result}
     if NOTES.ran:
         whole["warnings"] = NOTES.records()
+        whole["driver_clamps"] = NOTES.driver_clamps
     text = json.dumps(plain(whole), indent=2)
     if str(target) == "-":
         sys.stdout.write(text + "\n")

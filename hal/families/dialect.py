@@ -5,6 +5,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from hal.adapter import Probe
 from hal.errors import HardwareError
 from hal.port import Port
 from hal.protocols import protocol1, protocol2
@@ -58,6 +59,10 @@ class Dialect(ABC):
         """Return the frames that write `size` bytes at `address` of each id in `data`."""
 
     @abstractmethod
+    def probe(self, id: int) -> Probe:
+        """Return a request to one servo whose answer cannot be taken for its echo."""
+
+    @abstractmethod
     def who(self, port: Port, link: Link) -> list[Answered]:
         """Return who is there at the port's present baud rate."""
 
@@ -82,6 +87,11 @@ class Protocol2(Dialect):
     def sync_write(self, data: Mapping[int, bytes], address: int, size: int) -> list[bytes]:
         """Return the frame that writes `size` bytes at `address` of each id in `data`."""
         return [protocol2.sync_write(data, address, size)]
+
+    def probe(self, id: int) -> Probe:
+        """Return a ping: a status has an instruction byte of its own."""
+        answer = protocol2.status(id, bytes(3))
+        return Probe(protocol2.ping(id), len(answer), answer[:8])
 
     def who(self, port: Port, link: Link) -> list[Answered]:
         """Ping everybody at once; every reply that is whole counts."""
@@ -125,6 +135,12 @@ class Protocol1(Dialect):
     def sync_write(self, data: Mapping[int, bytes], address: int, size: int) -> list[bytes]:
         """Return the frames that write `size` bytes at `address` of each id in `data`."""
         return protocol1.split_sync_write(data, address, size, self.longest)
+
+    def probe(self, id: int) -> Probe:
+        """Return a read of one byte: unlike the answer to a ping, its answer has another length."""
+        answer = protocol1.status(id, bytes(1))
+        request = protocol1.read(id, self.model_number.address, 1)
+        return Probe(request, len(answer), answer[:4])
 
     def who(self, port: Port, link: Link) -> list[Answered]:
         """Ping one id after the other: all who hear a common ping would answer at once."""

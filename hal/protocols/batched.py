@@ -51,7 +51,7 @@ class BlockRead(CyclicRead):
 
     def _statuses(self, stream: bytes) -> Sequence[Status]:
         if self.fast:
-            return list(protocol2.salvage_fast(stream, self.spans[0].size))
+            return list(protocol2.salvage_fast(stream, self.spans[0].size, self._rows))
         return list(protocol2.salvage(stream, self.longest))
 
     def _lay_out(self, answer: bytes) -> None:

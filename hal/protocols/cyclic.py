@@ -11,6 +11,9 @@ from hal.joints import Mask
 from hal.protocols.protocol2 import Span, Status
 from hal.protocols.turns import doubtful, in_turn, newest
 
+NOBODY = -1
+"""The id of a reply that is not what anybody was asked for."""
+
 Bytes = npt.NDArray[np.uint8]
 Index = npt.NDArray[np.intp]
 
@@ -70,7 +73,7 @@ class CyclicRead(ABC):
 
     def decode(self, stream: bytes) -> Mask:
         """Take in an answer and return (n,) bool: whose reply was in it and good."""
-        if len(stream) == self.length:
+        if len(stream) == self.length and not stream.startswith(self.request):
             data = np.frombuffer(stream, dtype=np.uint8)
             if self._sound(data):
                 data.take(self._payload_at, out=self.payload, mode="clip")
@@ -95,13 +98,15 @@ class CyclicRead(ABC):
         """Return the good replies in a dirty stream."""
 
     def _salvage(self, stream: bytes) -> None:
+        """Take in the good replies of a stream in which our own request may have come back."""
         self.valid.fill(False)
-        found = [item for item in self._statuses(stream) if self._fits(item)]
+        stream = stream.replace(self.request, b"")
+        found = self._told_apart(self._statuses(stream))
         self.doubted = frozenset()
         if self.owed:
             found = newest(found, self._rows, self.owed)
             if doubtful(found, self._rows, self.owed):
-                self.doubted = frozenset(item.id for item in found)
+                self.doubted = frozenset(item.id for item in found if item.id in self._rows)
                 found = []
         for item in in_turn(found, self._rows):
             self._take(self._rows[item.id], item)
@@ -113,9 +118,19 @@ class CyclicRead(ABC):
         self.error[row] = item.error
         self.valid[row] = True
 
-    def _fits(self, item: Status) -> bool:
-        row = self._rows.get(item.id)
-        return row is not None and len(item.params) == self.spans[row].size
+    def _told_apart(self, items: Iterable[Status]) -> list[Status]:
+        """Return the frames that are as long as was asked; others lose their id, and keep a turn.
+
+        Where one servo was asked they are left out: they can only be somebody's late answer.
+        """
+        found = []
+        for item in items:
+            row = self._rows.get(item.id)
+            if row is not None and len(item.params) == self.spans[row].size:
+                found.append(item)
+            elif len(self.spans) > 1:
+                found.append(item._replace(id=NOBODY))
+        return found
 
 
 class CyclicWrite(Protocol):

@@ -36,10 +36,14 @@ class Language(Protocol):
     Attributes:
         id_at: Where a frame has its id.
         length_at: Where it has its length, the low byte.
+        data_at: Where a status has its data.
+        tail: Bytes of its checksum.
     """
 
     id_at: int
     length_at: int
+    data_at: int
+    tail: int
 
     def seal(self, frame: bytes, /) -> bytes:
         """Return `frame` with the checksum that it should have."""
@@ -149,9 +153,16 @@ class Bus:
         self._collide(burst)
         if self.tap is not None:
             self.tap(">", self._baud, burst)
+        if self.faults.active and self.faults.asked(self):
+            self._echo(burst)
         for item in self.language.feed(bytes(burst.data)):
             end = start + item.end * burst.byte
             self.schedule.at(end, partial(self._hear, item, burst, end))
+
+    def _echo(self, burst: Burst) -> None:
+        """Give the host back what it sends."""
+        if self.plugged:
+            self.inbox.append(Burst(burst.start, burst.byte, bytearray(burst.data)))
 
     def available(self) -> int:
         """Return the number of bytes that the host has got and not read."""
