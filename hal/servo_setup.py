@@ -1,5 +1,6 @@
 """What happens once, between opening the ports of a robot and the first tick of its loop."""
 
+import logging
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
@@ -22,9 +23,11 @@ from hal.servo_link import BusPort, ServoLink
 from hal.servo_model import ServoMount
 from hal.servo_settings import assert_settings
 from hal.units import Units
-from hal.wiring import check_servos, row_groups
+from hal.wiring import Differences, check_servos, row_groups
 
 BuildLine = Callable[[Port], ServoLine]
+MANY = 4
+"""More joints than these are counted, not named."""
 
 
 def one_clock(clocks: Sequence[Clock]) -> Clock:
@@ -98,8 +101,36 @@ def set_up(
     """
     if board is not None:
         power_up(buses[board.bus], board)
-    for bus, id, settings in check_servos(joints, mounts, buses, board):
-        assert_settings(bus, id, settings)
+    found = check_servos(joints, mounts, buses, board)
+    if said := settings_said(found):
+        logging.getLogger(__name__).warning("%s", said)
+    for differs in found:
+        assert_settings(differs.bus, differs.id, differs.settings)
+
+
+def settings_said(found: Differences) -> str:
+    """Return in one line what is changed in the EEPROM of which joints; "" for nothing.
+
+    What a servo forgets without power is set at every start, and not worth a word.
+    """
+    joints: dict[str, list[str]] = {}
+    for differs in found:
+        changes = [
+            f"{setting.register.name} {setting.present} -> {setting.wanted}"
+            for setting in differs.settings
+            if setting.register.area == "eeprom"
+        ]
+        for change in filter(None, [differs.repaired, *changes]):
+            joints.setdefault(change, []).append(differs.joint)
+    said = [f"{change} at {_some(names, len(found))}" for change, names in joints.items()]
+    return f"servo settings are changed: {'; '.join(said)}" if said else ""
+
+
+def _some(names: Sequence[str], all_: int) -> str:
+    """Return the names of some joints, or how many, where a list would be long."""
+    if len(names) == all_ > 1:
+        return f"all {all_} joints"
+    return ", ".join(names) if len(names) <= MANY else f"{len(names)} joints"
 
 
 def power_up(bus: Bus, board: OpenCr) -> None:
