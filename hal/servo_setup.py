@@ -10,7 +10,7 @@ from hal.bus import Bus
 from hal.clock import WallClock
 from hal.errors import UsageError
 from hal.families import family_of
-from hal.guardian.lock import wait_while_guarded
+from hal.guardian.lock import EMULATED, wait_while_guarded
 from hal.imu.opencr import POWER, POWER_UP_TIME, OpenCr
 from hal.imu.source import ImuSource
 from hal.imu_link import ImuLink
@@ -22,12 +22,11 @@ from hal.servo_line import ServoLine
 from hal.servo_link import BusPort, ServoLink
 from hal.servo_model import ServoMount
 from hal.servo_settings import assert_settings
+from hal.setting_words import in_words
 from hal.units import Units
-from hal.wiring import Differences, check_servos, row_groups
+from hal.wiring import check_servos, row_groups
 
 BuildLine = Callable[[Port], ServoLine]
-MANY = 4
-"""More joints than these are counted, not named."""
 
 
 def one_clock(clocks: Sequence[Clock]) -> Clock:
@@ -94,7 +93,9 @@ def open_links(
 def set_up(
     joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, Bus], board: OpenCr | None
 ) -> None:
-    """Give the servos power, check all of them, then write the settings that differ.
+    """Give the servos power, check all of them, then say and write the settings that differ.
+
+    Emulated servos forget them with the program: there they are not worth a word.
 
     Raises:
         HardwareError: Something is not as wired; nothing has been written.
@@ -102,35 +103,11 @@ def set_up(
     if board is not None:
         power_up(buses[board.bus], board)
     found = check_servos(joints, mounts, buses, board)
-    if said := settings_said(found):
-        logging.getLogger(__name__).warning("%s", said)
+    real = [differs for differs in found if not differs.bus.port.url.startswith(EMULATED)]
+    for line in in_words(real):
+        logging.getLogger(__name__).warning("%s", line)
     for differs in found:
         assert_settings(differs.bus, differs.id, differs.settings)
-
-
-def settings_said(found: Differences) -> str:
-    """Return in one line what is changed in the EEPROM of which joints; "" for nothing.
-
-    What a servo forgets without power is set at every start, and not worth a word.
-    """
-    joints: dict[str, list[str]] = {}
-    for differs in found:
-        changes = [
-            f"{setting.register.name} {setting.present} -> {setting.wanted}"
-            for setting in differs.settings
-            if setting.register.area == "eeprom"
-        ]
-        for change in filter(None, [differs.repaired, *changes]):
-            joints.setdefault(change, []).append(differs.joint)
-    said = [f"{change} at {_some(names, len(found))}" for change, names in joints.items()]
-    return f"servo settings are changed: {'; '.join(said)}" if said else ""
-
-
-def _some(names: Sequence[str], all_: int) -> str:
-    """Return the names of some joints, or how many, where a list would be long."""
-    if len(names) == all_ > 1:
-        return f"all {all_} joints"
-    return ", ".join(names) if len(names) <= MANY else f"{len(names)} joints"
 
 
 def power_up(bus: Bus, board: OpenCr) -> None:

@@ -3,12 +3,12 @@
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 from math import degrees
-from typing import NamedTuple
 
 import numpy as np
 
 from hal.bus import Bus
 from hal.coupling import Couplings
+from hal.differs import Differs
 from hal.errors import (
     ConfigError,
     CorruptAnswerError,
@@ -20,29 +20,9 @@ from hal.families import DYNAMIXEL_X, Family, family_of
 from hal.imu.opencr import OpenCr
 from hal.joints import Joints
 from hal.servo_model import ServoMount
-from hal.servo_settings import Setting, differences
+from hal.servo_settings import Setting, differences, limits
 from hal.status_level import make_answer
 from hal.units import Units
-
-class Differs(NamedTuple):
-    """What one servo holds that is not as the stack needs it.
-
-    Attributes:
-        bus: Its bus.
-        id: Its id there.
-        joint: Its joint's name.
-        settings: What has to be written.
-        repaired: What had to be written already for it to answer, in words; "" for nothing.
-    """
-
-    bus: Bus
-    id: int
-    joint: str
-    settings: list[Setting]
-    repaired: str
-
-
-Differences = list[Differs]
 
 
 def check_mounts(
@@ -103,7 +83,7 @@ def _check_families(named: Sequence[tuple[str, ServoMount]]) -> None:
 
 def check_servos(
     joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, Bus], board: OpenCr | None
-) -> Differences:
+) -> list[Differs]:
     """Return what has to be written to each servo.
 
     Nothing is written here but the status return level of a servo that does not answer.
@@ -113,7 +93,7 @@ def check_servos(
             torque is on: every such servo in one message, with the command to run next.
     """
     problems: dict[str, list[str]] = {}
-    found: Differences = []
+    found: list[Differs] = []
     for name, mount in zip(joints.names, mounts, strict=True):
         bus = buses[mount.bus]
         try:
@@ -134,7 +114,7 @@ def check_servos(
     return found
 
 
-def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], str]:
+def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting], str]:
     try:
         number = bus.ping(mount.id)
     except HardwareError as error:
@@ -148,7 +128,7 @@ def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], str]:
     locked = [str(setting) for setting in settings if setting.register.area == "eeprom"]
     if locked and bus.read(mount.id, bus.family.registers["torque_enable"]):
         raise HardwareError(f"torque is on and {', '.join(locked)}; `windup stop` first")
-    return settings, repaired
+    return settings, limits(bus, mount.id, mount.model), repaired
 
 
 def _check_offset(bus: Bus, mount: ServoMount) -> None:
@@ -157,8 +137,11 @@ def _check_offset(bus: Bus, mount: ServoMount) -> None:
     Raises:
         HardwareError: The joint would be driven off by the difference.
     """
-    register = bus.family.table(mount.model.name).get("homing_offset")
-    if register is None or (present := bus.read(mount.id, register)) == mount.offset:
+    table = bus.family.table(mount.model.name)
+    if "homing_offset" not in table:
+        return
+    register = table["homing_offset"]
+    if (present := bus.read(mount.id, register)) == mount.offset:
         return
     off = degrees(abs(present - mount.offset) * register.unit)
     raise HardwareError(

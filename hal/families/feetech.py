@@ -61,6 +61,15 @@ def _wanted(model: ServoModel) -> tuple[Want, ...]:
     )
 
 
+USUAL = (
+    Want("protection_current", 500),
+    Want("overload_torque", 80),
+    Want("protective_torque", 20),
+    Want("protection_time", 200),
+    Want("overcurrent_time", 200),
+)
+"""What protects a servo, as its maker delivers it (memory table, 28 and 34 to 38)."""
+
 _STS_GAIN = Gain(STS["position_p_gain"], LARGEST_P)
 _SCS_GAIN = Gain(SCS["position_p_gain"], LARGEST_P)
 
@@ -89,6 +98,7 @@ FEETECH_STS = Family(
     health=Block(56, 8, _STS_STATE),
     check=Block(40, 24, _STS_STATE),
     wanted=_sts_wanted,
+    usual=USUAL,
     gain=_sts_gain,
     alert=_ALERT,
     errors=HARDWARE_ERRORS,
@@ -110,6 +120,7 @@ FEETECH_SCS = Family(
     health=Block(56, 8, _SCS_STATE),
     check=Block(40, 24, _SCS_STATE),
     wanted=_wanted,
+    usual=USUAL,
     gain=_scs_gain,
     alert=_ALERT,
     errors=HARDWARE_ERRORS,
