@@ -2,11 +2,12 @@
 
 from collections import Counter
 from collections.abc import Iterable
+from math import inf
 
 import numpy as np
 
 from hal.joints import Mask
-from hal.port import BITS, Port
+from hal.port import BITS, PLENTY, Port
 from hal.protocols.batched1 import ChainRead
 from hal.protocols.cyclic import CyclicRead
 
@@ -20,6 +21,8 @@ STRANGE = 256
 """Bytes that may come before an answer: noise, or what an adapter gives back."""
 STILL_COMING = 0.03
 """So long after a request that got no answer one may still come, s."""
+JITTER = 1e-4
+"""What a servo may answer later than it should, s."""
 GRACE = 3e-3
 """Silence granted to servos that are late, before all are asked again, s."""
 LATE = 6
@@ -58,6 +61,7 @@ class Exchange:
         self._pending: CyclicRead | None = None
         self._owed: dict[int, int] = {}  # who has not answered, and how often by now
         self._parts_owed: dict[int, float] = {}  # who may still answer alone, and until when, s
+        self._whole_owed = -inf  # until when a fast answer may still come, s
         self._silence = 0.0
 
     def move_to(self, port: Port) -> None:
@@ -66,6 +70,7 @@ class Exchange:
         self._wire_free = self._deadline = self._silence = 0.0
         self._pending = None
         self._owed, self._parts_owed = {}, {}
+        self._whole_owed = -inf
 
     def send(self, frames: Iterable[bytes]) -> None:
         """Send frames that nobody answers."""
@@ -91,9 +96,9 @@ class Exchange:
         if isinstance(read, ChainRead):
             return self._collect_chain(read)
         gone = len(self._owed) == len(read.spans) and min(self._owed.values()) > LATE
-        read.owed = frozenset() if gone else frozenset(self._owed)
+        read.owed = {} if gone else self._owed
         stream = self._answer(read)
-        if read.owed:
+        if self._owed or self.port.clock.now() < self._whole_owed:
             stream = self._newest(read, stream)
         read.decode(stream)
         if not read.complete:
@@ -116,14 +121,18 @@ class Exchange:
     def _newest(self, read: CyclicRead, stream: bytes) -> bytes:
         """Return `stream` as far as it can be an answer, where earlier ones may still be coming.
 
-        A whole answer that comes sooner than the wire can carry it, or has more behind it, is
-        what an adapter held back.
+        What an adapter held back comes sooner than the wire can carry an answer, or has more
+        behind it.
         """
-        soonest = self._wire_free + (read.length - 1) * BITS / self.port.baud
         now = self.port.clock.now()
-        if len(stream) == read.length and now < soonest:
+        if len(stream) < read.length:
+            return stream + self.port.read(read.longest, now)
+        soonest = self._wire_free + (read.length - 1) * BITS / self.port.baud
+        if now < soonest:
+            self.port.read(PLENTY, now)
             return b""
-        return stream + self.port.read(read.longest, now)
+        last = now + len(read.spans) * self.turnaround + self.port.latency + JITTER
+        return stream + self.port.read(read.longest, last)
 
     def _note_owed(self, read: CyclicRead) -> None:
         """Remember who was asked and has not answered; a doubtful reply may have been it.
@@ -133,6 +142,8 @@ class Exchange:
         """
         if read.complete or not read.confusable:
             self._owed = {}
+            if not read.complete:
+                self._whole_owed = self.port.clock.now() + STILL_COMING
             return
         silent = [span.id for span, came in zip(read.spans, read.valid, strict=True) if not came]
         self._owed = {id: self._owed.get(id, 0) + 1 for id in silent if id not in read.doubted}
@@ -155,8 +166,6 @@ class Exchange:
         stream = self._answer(part)
         if id in self._parts_owed:
             stream = self._newest(part, stream)
-            wait = part.length * BITS / self.port.baud + self.turnaround + self.port.latency
-            stream += self.port.read(part.longest, self.port.clock.now() + wait)
         part.decode(stream)
         now = self.port.clock.now()
         if now > self._parts_owed.get(id, now):

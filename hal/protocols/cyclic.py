@@ -1,7 +1,7 @@
 """What all cyclic reads are: one request, n replies, and the last good bytes of each."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from hal.joints import Mask
 from hal.protocols.protocol2 import Span, Status
-from hal.protocols.turns import doubtful, in_turn, newest
+from hal.protocols.turns import in_turn, newest
 
 NOBODY = -1
 """The id of a reply that is not what anybody was asked for."""
@@ -31,7 +31,8 @@ class CyclicRead(ABC):
         longest: Bytes of the longest answer there can be.
         valid: (n,) bool: who answered the last request.
         complete: Did all?
-        owed: Ids that an earlier request may still be answered by; who asks keeps it.
+        owed: Ids that earlier requests may still be answered by, to the number of those; who asks
+            keeps it.
         doubted: Ids whose replies may have been to an earlier request.
         confusable: Could a late answer pass for that to another request?
         error: (n,) error bytes, and what the properties below show: as of each servo's last
@@ -52,7 +53,7 @@ class CyclicRead(ABC):
         self._ends: list[int] = np.cumsum([span.size for span in self.spans]).tolist()
         self.valid: Mask = np.zeros(len(self.spans), dtype=bool)
         self.complete = False
-        self.owed: frozenset[int] = frozenset()
+        self.owed: Mapping[int, int] = {}
         self.doubted: frozenset[int] = frozenset()
         self.error: Bytes = np.zeros(len(self.spans), dtype=np.uint8)
         self.payload: Bytes = np.zeros(self._ends[-1], dtype=np.uint8)
@@ -104,10 +105,10 @@ class CyclicRead(ABC):
         found = self._told_apart(self._statuses(stream))
         self.doubted = frozenset()
         if self.owed:
-            found = newest(found, self._rows, self.owed)
-            if doubtful(found, self._rows, self.owed):
+            sure = newest(found, self._rows, self.owed)
+            if not sure:
                 self.doubted = frozenset(item.id for item in found if item.id in self._rows)
-                found = []
+            found = sure
         for item in in_turn(found, self._rows):
             self._take(self._rows[item.id], item)
         self.complete = bool(self.valid.all())

@@ -9,19 +9,42 @@ somebody has sent each of them in a turn of his own.
 """
 
 from collections import Counter
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from hal.protocols.protocol2 import Status
 
 
-def newest(items: Sequence[Status], rows: Mapping[int, int], owed: Collection[int]) -> list[Status]:
-    """Return the replies that are not certainly those to an earlier request.
+def newest(
+    items: Sequence[Status], rows: Mapping[int, int], owed: Mapping[int, int]
+) -> list[Status]:
+    """Return the replies that are certainly not those to an earlier request.
+
+    Behind a stale reply come those that waited for it, to the last. With a newer one among them
+    the order would have begun anew; without any, nobody may have heard the new request. And where
+    fewer answers came than are owed, the last one is no newer than the others.
 
     Args:
         items: Good frames, in the order in which they came.
         rows: The ids that were asked, to their turns.
-        owed: Ids that have not answered an earlier request.
+        owed: Ids that have not answered earlier requests, to the number of those.
+
+    Returns:
+        The last answer, or what there is of it; nothing where all of it may be an earlier one.
     """
+    runs = _runs(items, rows)
+    stale = 0
+    while stale < len(runs) - 1 and all(id in owed for id in _asked(runs[stale], rows)):
+        stale += 1
+    left = [item for run in runs[stale:] for item in run]
+    asked = _asked(left, rows)
+    if not all(id in owed for id in asked):
+        return left
+    late = 0 < stale < max((owed[id] for id in asked), default=0)
+    return [] if late or len(asked) < len(rows) else left
+
+
+def _runs(items: Sequence[Status], rows: Mapping[int, int]) -> list[list[Status]]:
+    """Return the items in runs of rising turns; who was not asked has none."""
     runs: list[list[Status]] = [[]]
     last = -1
     for item in items:
@@ -31,22 +54,12 @@ def newest(items: Sequence[Status], rows: Mapping[int, int], owed: Collection[in
                 runs.append([])
             last = row
         runs[-1].append(item)
-    stale = 0
-    while stale < len(runs) - 1 and all(
-        item.id in owed for item in runs[stale] if item.id in rows
-    ):
-        stale += 1
-    return [item for run in runs[stale:] for item in run]
+    return runs
 
 
-def doubtful(items: Sequence[Status], rows: Mapping[int, int], owed: Collection[int]) -> bool:
-    """Return True where all of the `newest` may be an earlier answer; for the arguments see there.
-
-    Behind a stale reply come those that waited for it, to the last. With a newer one among them
-    the order would have begun anew; without any, nobody may have heard the new request.
-    """
-    asked = [item.id for item in items if item.id in rows]
-    return len(asked) < len(rows) and all(id in owed for id in asked)
+def _asked(items: Sequence[Status], rows: Mapping[int, int]) -> list[int]:
+    """Return the ids of those who were asked."""
+    return [item.id for item in items if item.id in rows]
 
 
 def in_turn(items: Sequence[Status], rows: Mapping[int, int]) -> list[Status]:

@@ -42,7 +42,7 @@ def test_nothing_wrong_is_reported_fresh_while_everything_goes_wrong(family: str
 @families
 @pytest.mark.parametrize("kind", ["wrong_id", "late_byte", "echo", "twice", LATE_ADAPTER])
 def test_what_order_length_or_id_tells_is_never_believed(family: str, kind: str) -> None:
-    item = bench_faults.Item(bench_faults.Cell(family, kind, 0.05), 2000, 1)
+    item = bench_faults.Item(bench_faults.Cell(family, kind, 0.01), 4000, 1)
     tally, _ = bench_faults._soak(item)
     assert sum(tally.faults.values()) > 10
     assert tally.fresh > 1000
