@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from hal.adapter import Probe
+from hal.adapter import MARGIN, Probe
 from hal.errors import HardwareError
 from hal.port import Port
 from hal.protocols import protocol1, protocol2
@@ -21,6 +21,8 @@ PING_SLOT = 3e-3
 """Servos answer a broadcast ping of protocol 2 one after the other, each in its slot of this, s."""
 PING_TIME = 3e-3
 """What a servo may take to answer a ping of its own, return delay and driver included, s."""
+LATEST = 0.1
+"""What comes later than this is noise, s."""
 
 
 class Answered(NamedTuple):
@@ -143,11 +145,21 @@ class Protocol1(Dialect):
         return Probe(request, len(answer), answer[:4])
 
     def who(self, port: Port, link: Link) -> list[Answered]:
-        """Ping one id after the other: all who hear a common ping would answer at once."""
+        """Ping one id after the other: all who hear a common ping would answer at once.
+
+        Where one answers while another is asked, the adapter is slower than was thought.
+        """
         found, firmware = [], self.firmware
+        asked: dict[int, float] = {}
         for id in range(self.last_id + 1):
+            asked[id] = port.clock.now()
+            pongs = _pongs(port, id)
+            if late := [port.clock.now() - asked[other] for other in pongs & asked.keys() - {id}]:
+                if max(late) < LATEST:
+                    port.latency = max(port.latency, MARGIN * max(late))
+                    return self.who(port, link)
             # Noise, or two servos with this id, may pass for an answer; they have no model.
-            if _pings(port, id):
+            if id in pongs:
                 with contextlib.suppress(HardwareError):
                     version = link.read(id, firmware.address, firmware.size)
                     found.append(Answered(id, link.ping(id), firmware.decode(version)))
@@ -205,11 +217,12 @@ class Feetech(Protocol1):
         return servos + protocol1.OVERHEAD + 2 <= self.longest
 
 
-def _pings(port: Port, id: int) -> bool:
+def _pongs(port: Port, id: int) -> set[int]:
+    """Ping one id; return the ids under which an answer came."""
     request = protocol1.ping(id)
     port.flush_input()
     port.write(request)
     wire = (len(request) + protocol1.OVERHEAD) * 10.0 / port.baud
     deadline = port.clock.now() + wire + 2.0 * port.latency + PING_TIME
     stream = port.read(protocol1.OVERHEAD, deadline)
-    return any(True for _ in protocol1.salvage(stream, {id: 0}))
+    return {item.id for item in protocol1.salvage(stream, {}, (0,))}

@@ -134,3 +134,17 @@ def test_one_request_that_comes_back_makes_no_echoing_adapter(
     monkeypatch.setattr(serial, "write", once)
     bus.get_to_know_adapter(IDS)
     assert not bus.port.echoes
+
+
+@makers
+def test_a_scan_finds_servos_behind_an_adapter_that_is_late(maker: str) -> None:
+    serial, port, family = adapter_port(maker, 17, 18)
+    serial.held = 16e-3
+    assert [found.id for found in Bus(port, family).scan([1_000_000])] == [17, 18]
+
+
+@makers
+def test_a_scan_finds_servos_behind_an_adapter_that_gives_back(maker: str) -> None:
+    serial, port, family = adapter_port(maker, 17, 18)
+    serial.echoes = True
+    assert [found.id for found in Bus(port, family).scan([1_000_000])] == [17, 18]

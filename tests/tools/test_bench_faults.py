@@ -34,7 +34,7 @@ def test_nothing_wrong_is_reported_fresh_while_everything_goes_wrong(family: str
     hit = {kind for kind, times in tally.faults.items() if times}
     assert {*TOLD, *CHANCE, *BREAKDOWNS} == hit
     assert tally.reads >= 6000
-    assert tally.fresh > 2000
+    assert tally.fresh > 1000
     assert (tally.stale, tally.outside, dict(tally.raised)) == (0, 0, {})
     assert tally.waited <= 1
 
@@ -45,7 +45,7 @@ def test_what_order_length_or_id_tells_is_never_believed(family: str, kind: str)
     item = bench_faults.Item(bench_faults.Cell(family, kind, 0.01), 4000, 1)
     tally, _ = bench_faults._soak(item)
     assert sum(tally.faults.values()) > 10
-    assert tally.fresh > 1000
+    assert tally.fresh > 200
     assert (tally.stale, tally.borrowed, tally.garbled, dict(tally.raised)) == (0, 0, 0, {})
 
 
