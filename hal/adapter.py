@@ -56,8 +56,8 @@ def get_to_know(port: Port, probes: Iterable[Probe], heartbeat: Heartbeat = no_h
     """
     if port.known:
         return
-    echoed = silent = 0
-    for probe in probes:
+    echoed = 0
+    for silent, probe in enumerate(probes, 1):
         times: list[float] = []
         for _ in range(REQUESTS):
             heartbeat()
@@ -70,7 +70,6 @@ def get_to_know(port: Port, probes: Iterable[Probe], heartbeat: Heartbeat = no_h
         if times:
             _note(port, times)
             return
-        silent += 1
         if silent == SILENT:
             return
 

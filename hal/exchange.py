@@ -126,13 +126,13 @@ class Exchange:
         """
         now = self.port.clock.now()
         if len(stream) < read.length:
-            return stream + self.port.read(read.longest, now)
+            return stream + self.port.read(PLENTY, now)
         soonest = self._wire_free + (read.length - 1) * BITS / self.port.baud
         if now < soonest:
             self.port.read(PLENTY, now)
             return b""
         last = now + len(read.spans) * self.turnaround + self.port.latency + JITTER
-        return stream + self.port.read(read.longest, last)
+        return stream + self.port.read(PLENTY, last)
 
     def _note_owed(self, read: CyclicRead) -> None:
         """Remember who was asked and has not answered; a doubtful reply may have been it.
@@ -164,13 +164,15 @@ class Exchange:
         """Take in the answer of one servo; an earlier one that comes late has another behind it."""
         id = part.spans[0].id
         stream = self._answer(part)
-        if id in self._parts_owed:
+        if id in self._parts_owed or id in self._owed:
             stream = self._newest(part, stream)
         part.decode(stream)
         now = self.port.clock.now()
         if now > self._parts_owed.get(id, now):
             del self._parts_owed[id]
-        if not part.complete:
+        if part.complete:
+            self._owed.pop(id, None)
+        else:
             self._resynchronise(part, stream)
             self._parts_owed.setdefault(id, now + STILL_COMING)
 

@@ -35,9 +35,7 @@ class RunNotes:
         self._slowness: Slowness | None = None
         self._rows: list[Row] = []
 
-    def add(
-        self, findings: Iterable[Finding], slowness: Slowness, backend: object = None
-    ) -> None:
+    def add(self, findings: Iterable[Finding], slowness: Slowness, backend: object = None) -> None:
         """Take in what a session had to warn about, and what its backend has clamped."""
         self.ran = True
         if isinstance(backend, BusHealth):

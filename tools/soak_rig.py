@@ -67,9 +67,7 @@ class SoakRig:
         url: The port.
     """
 
-    def __init__(
-        self, family: str, servos: int = 20, seed: int = 0, latency: float = 0.0
-    ) -> None:
+    def __init__(self, family: str, servos: int = 20, seed: int = 0, latency: float = 0.0) -> None:
         model, rng = servo_model(FAMILIES[family]), np.random.default_rng(seed)
         self.name, self.servos = f"soak-{family}-{next(_worlds)}", servos
         self.url = (

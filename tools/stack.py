@@ -154,9 +154,7 @@ def wire_stack(
     return Stack(backend, twin, estimator, delay, True, arm or emulated, world, given)
 
 
-def _estimator(
-    robot: RobotDescription, twin: Twin | None, state: State, lag: float
-) -> Estimator:
+def _estimator(robot: RobotDescription, twin: Twin | None, state: State, lag: float) -> Estimator:
     """Return what fills in the base state behind a port; no servo bus carries foot switches."""
     if state == "estimated":
         apart = not _imu_on_the_bus(robot)

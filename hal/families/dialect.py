@@ -154,10 +154,10 @@ class Protocol1(Dialect):
         for id in range(self.last_id + 1):
             asked[id] = port.clock.now()
             pongs = _pongs(port, id)
-            if late := [port.clock.now() - asked[other] for other in pongs & asked.keys() - {id}]:
-                if max(late) < LATEST:
-                    port.latency = max(port.latency, MARGIN * max(late))
-                    return self.who(port, link)
+            late = [port.clock.now() - asked[other] for other in pongs & asked.keys() - {id}]
+            if 0.0 < max(late, default=0.0) < LATEST:
+                port.latency = max(port.latency, MARGIN * max(late))
+                return self.who(port, link)
             # Noise, or two servos with this id, may pass for an answer; they have no model.
             if id in pongs:
                 with contextlib.suppress(HardwareError):

@@ -16,7 +16,6 @@ from hal.protocols.crc16 import distance_table
 from hal.protocols.cyclic import Bytes, CyclicRead, Index
 from hal.protocols.protocol2 import Span, Status
 
-
 FAST_HEAD = protocol2.HEADER + bytes([protocol2.BROADCAST])
 """How the answer to a fast sync read begins."""
 

@@ -4,12 +4,12 @@ import math
 from dataclasses import replace
 
 from hal.errors import UsageError
+from hal.imu.bno08x_rvc import Bno08xRvc
+from hal.imu.opencr import OpenCr as Board
 from hal.servo_model import ServoMount
 from hal.servos import servo_model
 from robots import RobotDescription, load_robot
 from sim_twin.twin import Twin
-from hal.imu.bno08x_rvc import Bno08xRvc
-from hal.imu.opencr import OpenCr as Board
 from sim_twin.wire.address import BENCH, Address, parse_servos
 from sim_twin.wire.bus import Bus, Language, Timing
 from sim_twin.wire.device import Device

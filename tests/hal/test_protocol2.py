@@ -66,7 +66,10 @@ def test_a_frame_is_what_the_manual_prints(frame: bytes, printed: str) -> None:
 def test_each_block_of_a_fast_answer_is_checked_by_itself() -> None:
     answer = FAST_ANSWER + bytes([0, 4, 0xFF, 3, 0, 0])
     answer += crc16(answer).to_bytes(2, "little")
-    values = [int.from_bytes(item.params, "little") for item in protocol2.salvage_fast(answer, 4, (3, 7, 4))]
+    values = [
+        int.from_bytes(item.params, "little")
+        for item in protocol2.salvage_fast(answer, 4, (3, 7, 4))
+    ]
     assert values == [166, 2079, 1023]
     broken = bytearray(answer)
     broken[18] ^= 1  # a byte of id 7

@@ -109,7 +109,9 @@ def test_it_drives_a_motor_in_position(motor: Any) -> None:
         (OperatingMode.PWM, "setGoalPWM", -200),
     ],
 )
-def test_it_drives_a_motor_backward(motor: Any, mode: OperatingMode, goal: str, counts: int) -> None:
+def test_it_drives_a_motor_backward(
+    motor: Any, mode: OperatingMode, goal: str, counts: int
+) -> None:
     motor.setOperatingMode(mode)
     motor.enableTorque()
     getattr(motor, goal)(counts)
