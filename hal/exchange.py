@@ -27,6 +27,8 @@ GRACE = 3e-3
 """Silence granted to servos that are late, before all are asked again, s."""
 LATE = 6
 """Requests without an answer after which a servo is not late, but gone."""
+DOUBTS = 2
+"""Doubtful answers, one behind the other, after which the line is let fall quiet."""
 
 
 _NOBODY: Mask = np.zeros(0, dtype=bool)
@@ -63,6 +65,7 @@ class Exchange:
         self._parts_owed: dict[int, float] = {}  # who may still answer alone, and until when, s
         self._whole_owed = -inf  # until when a fast answer may still come, s
         self._silence = 0.0
+        self._doubts = 0
 
     def move_to(self, port: Port) -> None:
         """Go on over another port; what was asked on the old one is forgotten."""
@@ -95,16 +98,16 @@ class Exchange:
         self.cycles += 1
         if isinstance(read, ChainRead):
             return self._collect_chain(read)
-        gone = len(self._owed) == len(read.spans) and min(self._owed.values()) > LATE
-        read.owed = {} if gone else self._owed
+        read.owed = self._owed
         stream = self._answer(read)
-        if self._owed or self.port.clock.now() < self._whole_owed:
-            stream = self._newest(read, stream)
-        read.decode(stream)
-        if not read.complete:
-            self._resynchronise(read, stream)
-        if gone and read.valid.any():
-            self._owed = {}  # they have power again, and may be late from now on
+        if not read.confusable and self.port.clock.now() < self._whole_owed:
+            self._alone(read, stream)
+        else:
+            if self._owed:
+                stream = self._newest(read, stream)
+            read.decode(stream)
+            if not read.complete:
+                self._resynchronise(read, stream)
         self._note_owed(read)
         return read.valid
 
@@ -134,19 +137,33 @@ class Exchange:
         last = now + len(read.spans) * self.turnaround + self.port.latency + JITTER
         return stream + self.port.read(PLENTY, last)
 
+    def _alone(self, read: CyclicRead, stream: bytes) -> None:
+        """Take in an answer that must be whole and alone: an earlier one may still be coming."""
+        stream = self._newest(read, stream)
+        read.decode(stream if len(stream) == read.length else b"")
+        if not read.complete:
+            self._count_lost(read, stream)
+
     def _note_owed(self, read: CyclicRead) -> None:
-        """Remember who was asked and has not answered; a doubtful reply may have been it.
+        """Remember who was asked and has not answered, also where a reply may have been another's.
 
         Where a servo is late, so are all behind it: they are let finish before the next request,
-        a few times. One that is silent alone is not waited for.
+        a few times. One that is silent alone is not waited for. Where answers go on being doubtful,
+        the line is let fall quiet.
         """
-        if read.complete or not read.confusable:
-            self._owed = {}
-            if not read.complete:
-                self._whole_owed = self.port.clock.now() + STILL_COMING
+        now = self.port.clock.now()
+        self._doubts = self._doubts + 1 if read.doubted else 0
+        if self._doubts == DOUBTS:
+            self._owed, self._doubts, self._silence = {}, 0, now + STILL_COMING
+            return
+        if read.complete:
+            self._owed, self._whole_owed = {}, -inf
+            return
+        if not read.confusable:
+            self._whole_owed = now + STILL_COMING
             return
         silent = [span.id for span, came in zip(read.spans, read.valid, strict=True) if not came]
-        self._owed = {id: self._owed.get(id, 0) + 1 for id in silent if id not in read.doubted}
+        self._owed = {id: self._owed.get(id, 0) + 1 for id in silent}
         late = self._owed.get(read.spans[-1].id, 0)
         if len(silent) > 1 and 0 < late <= LATE:
             self._silence = self._deadline + GRACE
@@ -163,18 +180,17 @@ class Exchange:
     def _collect_part(self, part: CyclicRead) -> None:
         """Take in the answer of one servo; an earlier one that comes late has another behind it."""
         id = part.spans[0].id
-        stream = self._answer(part)
-        if id in self._parts_owed or id in self._owed:
-            stream = self._newest(part, stream)
-        part.decode(stream)
-        now = self.port.clock.now()
-        if now > self._parts_owed.get(id, now):
-            del self._parts_owed[id]
+        stream, now = self._answer(part), self.port.clock.now()
+        if id in self._owed or now < self._parts_owed.get(id, -inf):
+            self._alone(part, stream)
+        else:
+            part.decode(stream)
+            if not part.complete:
+                self._resynchronise(part, stream)
         if part.complete:
             self._owed.pop(id, None)
-        else:
-            self._resynchronise(part, stream)
-            self._parts_owed.setdefault(id, now + STILL_COMING)
+        elif now >= self._parts_owed.get(id, -inf):
+            self._parts_owed[id] = now + STILL_COMING
 
     def answer_time(self, read: CyclicRead) -> float:
         """Return how long the answer to `read` may take once the request is on the wire, s."""
@@ -199,13 +215,16 @@ class Exchange:
             if len(stream) > 2 * read.longest + STRANGE:
                 break
             read.decode(stream)
-        lost = int((~read.valid).sum())
-        if not lost:
+        if read.complete:
             self.stuffed += 1
         else:
-            self.errors["resynchronised"] += 1
-            kind = "corrupt" if len(stream) > read.answered() else "no answer"
-            self.errors[kind] += lost
+            self._count_lost(read, stream)
+
+    def _count_lost(self, read: CyclicRead, stream: bytes) -> None:
+        """Count who is missing in an answer."""
+        self.errors["resynchronised"] += 1
+        kind = "corrupt" if len(stream) > read.answered() else "no answer"
+        self.errors[kind] += int((~read.valid).sum())
 
     def _occupy(self, count: int) -> None:
         start = max(self._wire_free, self.port.clock.now())

@@ -20,8 +20,8 @@ TOLD: Final = tuple(kind for kind in (*ANSWERS, *REQUESTS) if kind not in (*CHAN
 """Order, length or id tell these."""
 PASSES: Final = {"dynamixel2": 2.0**-16, "dynamixel2_plain": 2.0**-16}
 """Chance that a garbled frame has a checksum that fits; else 2^-8."""
-CHAINED: Final = "dynamixel2"
-"""In a fast sync read each block is checked with those before it: nothing fits that is forged."""
+RECOVER: Final = 3
+"""Cycles after which all who can are heard again: two doubtful answers, and silence."""
 STRANGERS: Final = 252
 """Ids that a wrong one may be."""
 
@@ -38,7 +38,7 @@ def verdict(family: str, kind: str, rate: float, tally: Tally, position: float) 
     """
     wrong = tally.stale + tally.borrowed + tally.garbled
     most = expected(family, kind, tally, position)
-    good = not (tally.raised or tally.outside or tally.waited > 1)
+    good = not (tally.raised or tally.outside or tally.waited > RECOVER)
     return {
         "servo": FAMILIES[family],
         "family": family,
@@ -64,7 +64,7 @@ def expected(family: str, kind: str, tally: Tally, position: float) -> float:
     """Return how many wrong readings, at most, nothing in order, length, id or checksum tells."""
     if kind in UNSEEN:
         share = {"stale": 1.0, "zeros": 0.0, "jump": position}[kind]
-        return 0.0 if family == CHAINED else share * tally.faults[kind]
+        return share * tally.faults[kind]
     garbled = sum(tally.faults[each] for each in CHANCE) * PASSES.get(family, 2.0**-8)
     # Under the id of its neighbour in turn, which is silent, an answer is in its order.
     silent = 1.0 - tally.fresh / tally.reads if tally.reads and kind == MIX else 0.0

@@ -14,7 +14,7 @@ class Adapter(FakeSerial):
     echoes = False
 
     def write(self, data: bytes) -> int:
-        before, now = len(self.arrivals), self.clock.time
+        before, now = len(self.arrivals), max(self.clock.time, self.busy)
         super().write(data)
         came, self.arrivals[before:] = self.arrivals[before:], []
         byte = 10.0 / self.baudrate
