@@ -134,7 +134,7 @@ class Bus:
         self._by_id.clear()
         for device in self.devices:
             self._by_id.setdefault(device.identifier, []).append(device)
-            if device.shadow < 253:
+            if device.shadow < 253 and device.shadow != device.identifier:
                 self._by_id.setdefault(device.shadow, []).append(device)
 
     # The host's side
