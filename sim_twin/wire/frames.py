@@ -101,6 +101,11 @@ class Frame(NamedTuple):
     parameters: bytes
     end: int
 
+    @property
+    def noise(self) -> bool:
+        """It is not."""
+        return False
+
 
 class FrameError(NamedTuple):
     """Something that was dropped.
@@ -114,6 +119,11 @@ class FrameError(NamedTuple):
     reason: str
     end: int
     identifier: int = BROADCAST
+
+    @property
+    def noise(self) -> bool:
+        """Whether it is not even a frame with a wrong CRC."""
+        return self.reason != "crc"
 
 
 class Parser:
