@@ -76,13 +76,19 @@ def test_a_program_that_sends_megabytes_is_held_up(world: World) -> None:
     outlet = outlet_of(world, program)
     serve(world, outlet, 0.5)
     assert 0.9 * WAITING < len(outlet.waiting) <= WAITING
-    outlet.receive()
-    assert outlet.descriptors() == []
     assert outlet.bus.backlog <= ON_THE_WIRE + 1e-3
     assert len(HEADERS) - len(program.left) < WAITING + 0.6 / 1e-5
     program.left = PING  # it gives up, and asks
     serve(world, outlet, 1.0)
     assert len(program.got) == ANSWER
+
+
+def test_nobody_listens_to_a_program_while_its_bytes_fill_the_buffer(world: World) -> None:
+    outlet = outlet_of(world, Program())
+    outlet.waiting += bytes(WAITING - 1)
+    assert outlet.descriptors() == [-1]
+    outlet.waiting += bytes(1)
+    assert outlet.descriptors() == []
 
 
 def test_what_waited_is_lost_with_the_adapter(world: World) -> None:
