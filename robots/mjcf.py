@@ -1,5 +1,6 @@
 """The MJCF side of a robot: parsed and compiled, with errors of one line, and asked for names."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import mujoco
@@ -36,14 +37,19 @@ def parse_mjcf(path: Path) -> mujoco.MjSpec:
         raise ConfigError(f"{path}: {_one_line(error)}") from None
 
 
-def compile_mjcf(path: Path) -> mujoco.MjModel:
-    """Return the MJCF at `path` as a model.
+def compile_mjcf(
+    path: Path, complete: Callable[[mujoco.MjSpec], None] | None = None
+) -> mujoco.MjModel:
+    """Return the MJCF at `path` as a model, after `complete` has added to it.
 
     Raises:
         ConfigError: The file is missing, MuJoCo refuses it, or a number in it cannot be.
     """
     try:
-        model = parse_mjcf(path).compile()
+        spec = parse_mjcf(path)
+        if complete is not None:
+            complete(spec)
+        model = spec.compile()
     except ValueError as error:
         raise ConfigError(f"{path}: {_one_line(error)}") from None
     if wrong := wrong_number(model):
@@ -68,11 +74,11 @@ def hinge_names(model: mujoco.MjModel) -> tuple[str, ...]:
     return tuple(model.joint(j).name for j in np.flatnonzero(model.jnt_type == HINGE))
 
 
-def hinge_axes(model: mujoco.MjModel) -> Array:
-    """Return the hinges' unit axes (n, 3) in the world, in the zero pose."""
+def hinge_axes(model: mujoco.MjModel, names: tuple[str, ...]) -> Array:
+    """Return the unit axes (n, 3) of hinges in the world, in the zero pose."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    return data.xaxis[model.jnt_type == HINGE].copy()
+    return data.xaxis[[model.joint(name).id for name in names]].copy()
 
 
 def _one_line(error: Exception) -> str:
