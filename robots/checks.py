@@ -136,7 +136,10 @@ class Checks:
     def _feet(self) -> None:
         self._unique("foot", "foot", [foot.name for foot in self.robot.foot])
         self._unique("foot", "sensor", [s for foot in self._feet_named for s in foot.sensors])
-        self._unique("foot", "side", [foot.side for foot in self.robot.foot if foot.side])
+        feet = self._feet_named
+        if len(feet) == 2 and feet[0].side and feet[0].side == feet[1].side:
+            one, other = (foot.name for foot in feet)
+            self._fail("foot", f"{one!r} and {other!r} are both {feet[0].side}: give them a side")
         for foot in self._feet_named:
             key = f"foot {foot.name!r}"
             self._known(f"{key}: body", "body", foot.body, mjcf.names(self.model, "body"))

@@ -1,5 +1,6 @@
 """The MJCF side of a robot: parsed and compiled, with errors of one line, and asked for names."""
 
+from codecs import BOM_UTF8
 from collections.abc import Callable
 from pathlib import Path
 
@@ -22,7 +23,7 @@ FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
 
 def parse_mjcf(path: Path) -> mujoco.MjSpec:
-    """Return the MJCF at `path`, parsed afresh.
+    """Return the MJCF, or URDF, at `path`, parsed afresh, whatever its name ends in.
 
     Raises:
         ConfigError: The file is missing or not MJCF.
@@ -32,7 +33,14 @@ def parse_mjcf(path: Path) -> mujoco.MjSpec:
     if path.stat().st_size > MOST:
         raise ConfigError(f"{path}: cannot be read: longer than {MOST >> 20} MB")
     try:
-        return mujoco.MjSpec.from_file(str(path))
+        if path.suffix == ".xml" and not path.read_bytes().startswith(BOM_UTF8):
+            return mujoco.MjSpec.from_file(str(path))
+        # MuJoCo reads by the name's ending, and takes a byte-order mark for a letter.
+        spec = mujoco.MjSpec.from_string(path.read_text("utf-8-sig"))
+        spec.modelfiledir = str(path.parent)
+        return spec
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError as error:
         raise ConfigError(f"{path}: {_one_line(error)}") from None
 
