@@ -58,8 +58,8 @@ class Checks:
             ConfigError: The first thing that cannot be.
         """
         self._rate()
-        self._structure()
         self._joint_names()
+        self._structure()
         for joint in self.robot.joint:
             self._limits(joint)
             self._servo(joint)

@@ -8,7 +8,7 @@ import pytest
 from hal.errors import ConfigError
 from robots import load_robot
 from robots.doubts import doubts
-from tests.shapes import ARM, QUADRUPED, THIRTY, Shape, write_shape
+from tests.shapes import ARM, QUADRUPED, THIRTY, Limb, Shape, write_shape
 
 TOE = '<body name="toe" pos="0 0 0.1"><joint name="toe" {}/><geom size="0.01" mass="0.01"/></body>'
 
@@ -42,7 +42,13 @@ MISTAKES = {
         "this one is fixed",
     ),
     "no fall": (THIRTY, "robot.toml", "[fall]\nheight = 0.05\ntilt = 1.0", "", "fall: is missing"),
-    "two left feet": (THIRTY, "robot.toml", 'site = "', 'side = "left"\nsite = "', "both left"),
+    "two left feet": (
+        THIRTY,
+        "robot.toml",
+        'name = "right"\n',
+        'name = "right"\nside = "left"\n',
+        "are both left",
+    ),
     "a passive joint": (ARM, "robot.toml", "rate_hz", 'passive = ["arm_0"]\nrate_hz', "as well"),
 }
 
@@ -99,7 +105,7 @@ URDF = """<robot name="one"><link name="world"/><link name="arm"><inertial><mass
 
 
 def test_a_urdf_is_read_whatever_its_case(tmp_path: Path) -> None:
-    one = Shape("one", (ARM.limbs[0].__class__("arm", "0 0 0", 1),), floats=False)
+    one = Shape("one", (Limb("arm", "0 0 0", 1),), floats=False)
     folder = write_shape(tmp_path / "robot", one)
     (folder / "one.URDF").write_text(URDF)
     file = folder / "robot.toml"

@@ -8,6 +8,7 @@ import pytest
 from hal.command import JointCommand
 from robots import RobotDescription, load_robot
 from sim_twin.backend import TwinBackend
+from sim_twin.places import places
 from sim_twin.twin import Twin
 from tests.shapes import Limb, Shape, write_shape
 from tools.servo_bus import ServoBus
@@ -38,6 +39,11 @@ def coupled(folder: Path) -> Path:
     model.write_text(text.replace("</mujoco>", f"{COUPLED}</mujoco>"))
     file.write_text('passive = ["finger"]\n' + file.read_text())
     return path
+
+
+def test_places_that_follow_each_other_are_a_view() -> None:
+    assert places(np.array([7, 8, 9])) == slice(7, 10)
+    np.testing.assert_array_equal(places(np.array([0, 2])), [0, 2])
 
 
 @pytest.mark.parametrize("ratio", [0.5, 1.0, 2.0])
