@@ -15,20 +15,29 @@ DEEP = 1e-3
 def doubts(robot: RobotDescription) -> list[str]:
     """Return what is doubtful about a robot's MJCF, a line each, with what would be better."""
     model = robot.spec().compile()
-    return [*_points(robot, model), *_armature(robot, model), *_neighbours(robot, model)]
+    data = mujoco.MjData(model)
+    for name, angle in zip(robot.joints.names, robot.stance, strict=True):
+        data.joint(name).qpos[0] = angle
+    mujoco.mj_kinematics(model, data)
+    return [
+        *_points(robot, model, data),
+        *_armature(robot, model),
+        *_neighbours(model, data),
+    ]
 
 
-def _points(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
+def _points(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[str]:
+    """Yield the feet whose lowest geoms are round, and too few to bear a moment."""
     solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
     for foot in robot.feet:
-        kinds = model.geom_type[solid & (model.geom_bodyid == model.body(foot.body).id)]
-        if not kinds.size:
+        geoms = np.flatnonzero(solid & (model.geom_bodyid == model.body(foot.body).id))
+        if not geoms.size:
             yield f"foot {foot.name!r} touches nothing: no geom of body {foot.body!r} collides"
-        elif np.isin(kinds, POINTS).all() and kinds.size < 3:
-            yield (
-                f"foot {foot.name!r} stands on points: {kinds.size} round geom(s) bear no moment; "
-                "a box for the sole does"
-            )
+            continue
+        kinds = model.geom_type[geoms]
+        lowest = kinds[data.geom_xpos[geoms, 2].argmin()]
+        if lowest in POINTS and np.isin(kinds, POINTS).sum() < 3:
+            yield f"foot {foot.name!r} stands on points, which bear no moment; a box for its sole does"
 
 
 def _armature(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
@@ -46,12 +55,8 @@ def _armature(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
         )
 
 
-def _neighbours(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
+def _neighbours(model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[str]:
     """Yield the pairs of bodies that are in each other where the robot stands."""
-    data = mujoco.MjData(model)
-    for name, angle in zip(robot.joints.names, robot.stance, strict=True):
-        data.joint(name).qpos[0] = angle
-    mujoco.mj_kinematics(model, data)
     mujoco.mj_collision(model, data)
     pairs = set()
     for contact in data.contact:

@@ -4,13 +4,11 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from hal.joints import Array
-
 Place = slice | npt.NDArray[np.intp]
 """Places in an array: a slice, which gives a view, where they follow each other."""
 
 
-def places(addresses: Array | npt.NDArray[np.int32]) -> Place:
+def places(addresses: npt.ArrayLike) -> Place:
     """Return the places `addresses` (k,) of an array."""
     at = np.asarray(addresses, dtype=np.intp)
     first = int(at[0]) if at.size else 0

@@ -134,13 +134,13 @@ baud = 1_000_000
 
 
 def _graph(shape: Shape) -> str:
-    first = joint_names(shape)[-1]
+    last = (joint_names(shape) or ["none"])[-1]
     return f"""title = "Nods"
 start = "stand"
 loop = false
 [[state]]
 name = "nod"
-pose = {{ {first} = 4 }}
+pose = {{ {last} = 4 }}
 until = {{ time = 0.3 }}
 [[state]]
 name = "back"

@@ -61,7 +61,7 @@ def test_a_linkage_trades_speed_for_torque_in_the_twin(tmp_path: Path, ratio: fl
 def test_stiffness_is_that_of_the_joint_behind_any_linkage(tmp_path: Path, ratio: float) -> None:
     robot = geared(tmp_path, ratio)
     backend = TwinBackend(Twin(robot))
-    real = backend.write(JointCommand.of(robot.joints, position=np.array([0.1])))
+    real = backend.write(JointCommand.hold(robot.joints, np.array([0.1])))
     servo = robot.servos[0]
     assert servo is not None
     unit = ratio**2 * servo.model.stiffness(1.0, robot.drive.supply)

@@ -37,6 +37,7 @@ def test_full_inertias_are_scaled_too() -> None:
     np.testing.assert_allclose(heavy.body_inertia, 1.5 * build_model(robot).body_inertia)
 
 
+@pytest.mark.filterwarnings("ignore:compiler attribute")
 @pytest.mark.parametrize("geoms_win", ["auto", "true"])
 @pytest.mark.parametrize("total", ["-1", "2"])
 def test_what_the_compiler_decides_is_kept(geoms_win: str, total: str) -> None:
