@@ -7,7 +7,7 @@ import numpy as np
 
 from robots.description import RobotDescription
 
-POINTS = (mujoco.mjtGeom.mjGEOM_SPHERE, mujoco.mjtGeom.mjGEOM_ELLIPSOID)
+POINTS = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 DEEP = 1e-3
 """Bodies that are no deeper than this in each other only touch, m."""
 
@@ -35,9 +35,10 @@ def _points(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData)
             yield f"foot {foot.name!r} touches nothing: no geom of body {foot.body!r} collides"
             continue
         kinds = model.geom_type[geoms]
-        lowest = kinds[data.geom_xpos[geoms, 2].argmin()]
+        lowest = int(kinds[data.geom_xpos[geoms, 2].argmin()])
         if lowest in POINTS and np.isin(kinds, POINTS).sum() < 3:
-            yield f"foot {foot.name!r} stands on points, which bear no moment; a box for its sole does"
+            bears = "a box for its sole does"
+            yield f"foot {foot.name!r} stands on points, which bear no moment; {bears}"
 
 
 def _armature(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
