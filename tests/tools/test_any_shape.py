@@ -86,3 +86,13 @@ def test_the_arm_of_the_package_waves_through_its_bus() -> None:
         assert robot.play("wave").reason == "done"
         robot.rest()
         assert not robot.armed
+
+
+def test_a_hand_turns_a_limp_joint_of_an_arm() -> None:
+    with ServoBus("so101") as bus:
+        robot = bus.robot()
+        index = robot.description.joints.index("elbow_flex")
+        before = robot.backend.peek().joints.position[index]
+        bus.hand("elbow_flex", 10.0, 0.5)
+        bus.wait(0.25)
+        assert abs(robot.backend.peek().joints.position[index] - before) > 0.01
