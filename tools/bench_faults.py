@@ -12,7 +12,7 @@ from tools.soak_rig import FAMILIES, SoakRig
 from tools.soak_verdict import CHANCE, KINDS, LATE_ADAPTER, MIX, TOLD, verdict
 
 RATES = (0.01, 0.05)
-"""Of the answers. Everything at once comes at the first alone: at the second hardly any is whole."""
+"""Of the answers. Everything at once comes at the first alone: at the second few are whole."""
 CHUNK = 25_000
 """Readings of one emulated bus."""
 BREAKDOWNS = 0.01
