@@ -168,6 +168,7 @@ class ServoMount:
         sign: +1 or -1: does the servo turn with the joint or against it?
         zero: Counts at joint angle 0, before calibration.
         ratio: Turns of the servo for one of the joint.
+        offset: What its register `homing_offset` holds, counts: it shifts what it calls `zero`.
     """
 
     model: ServoModel
@@ -176,3 +177,4 @@ class ServoMount:
     sign: int
     zero: int
     ratio: float
+    offset: int = 0

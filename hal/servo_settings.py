@@ -32,6 +32,17 @@ def differences(bus: Bus, id: int, model: ServoModel) -> list[Setting]:
     return found
 
 
+def limits(bus: Bus, id: int, model: ServoModel) -> list[Setting]:
+    """Return what limits servo `id` more than its maker does; `wanted` is the maker's value."""
+    table = bus.family.table(model.name)
+    found = []
+    for name, usual, _ in bus.family.usual:
+        present = bus.read(id, table[name]) if name in table else usual
+        if present < usual:
+            found.append(Setting(table[name], present, usual))
+    return found
+
+
 def assert_settings(bus: Bus, id: int, settings: list[Setting]) -> None:
     """Write `settings` and read each one back.
 

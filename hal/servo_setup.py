@@ -1,5 +1,6 @@
 """What happens once, between opening the ports of a robot and the first tick of its loop."""
 
+import logging
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
@@ -9,7 +10,7 @@ from hal.bus import Bus
 from hal.clock import WallClock
 from hal.errors import UsageError
 from hal.families import family_of
-from hal.guardian.lock import wait_while_guarded
+from hal.guardian.lock import EMULATED, wait_while_guarded
 from hal.imu.opencr import POWER, POWER_UP_TIME, OpenCr
 from hal.imu.source import ImuSource
 from hal.imu_link import ImuLink
@@ -21,6 +22,7 @@ from hal.servo_line import ServoLine
 from hal.servo_link import BusPort, ServoLink
 from hal.servo_model import ServoMount
 from hal.servo_settings import assert_settings
+from hal.setting_words import in_words
 from hal.units import Units
 from hal.wiring import check_servos, row_groups
 
@@ -91,15 +93,21 @@ def open_links(
 def set_up(
     joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, Bus], board: OpenCr | None
 ) -> None:
-    """Give the servos power, check all of them, then write the settings that differ.
+    """Give the servos power, check all of them, then say and write the settings that differ.
+
+    Emulated servos forget them with the program: there they are not worth a word.
 
     Raises:
         HardwareError: Something is not as wired; nothing has been written.
     """
     if board is not None:
         power_up(buses[board.bus], board)
-    for bus, id, settings in check_servos(joints, mounts, buses, board):
-        assert_settings(bus, id, settings)
+    found = check_servos(joints, mounts, buses, board)
+    real = [differs for differs in found if not differs.bus.port.url.startswith(EMULATED)]
+    for line in in_words(real):
+        logging.getLogger(__name__).warning("%s", line)
+    for differs in found:
+        assert_settings(differs.bus, differs.id, differs.settings)
 
 
 def power_up(bus: Bus, board: OpenCr) -> None:

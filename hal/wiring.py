@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations
+from math import degrees
 
 import numpy as np
 
 from hal.bus import Bus
 from hal.coupling import Couplings
+from hal.differs import Differs
 from hal.errors import (
     ConfigError,
     CorruptAnswerError,
@@ -18,10 +20,9 @@ from hal.families import DYNAMIXEL_X, Family, family_of
 from hal.imu.opencr import OpenCr
 from hal.joints import Joints
 from hal.servo_model import ServoMount
-from hal.servo_settings import Setting, differences
+from hal.servo_settings import Setting, differences, limits
+from hal.status_level import make_answer
 from hal.units import Units
-
-Differences = list[tuple[Bus, int, list[Setting]]]
 
 
 def check_mounts(
@@ -82,19 +83,21 @@ def _check_families(named: Sequence[tuple[str, ServoMount]]) -> None:
 
 def check_servos(
     joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, Bus], board: OpenCr | None
-) -> Differences:
-    """Return what has to be written to each servo. Nothing is written here.
+) -> list[Differs]:
+    """Return what has to be written to each servo.
+
+    Nothing is written here but the status return level of a servo that does not answer.
 
     Raises:
         HardwareError: Somebody is missing, is another model, or has to be written while its
             torque is on: every such servo in one message, with the command to run next.
     """
     problems: dict[str, list[str]] = {}
-    found: Differences = []
+    found: list[Differs] = []
     for name, mount in zip(joints.names, mounts, strict=True):
         bus = buses[mount.bus]
         try:
-            found.append((bus, mount.id, _inspect(bus, mount)))
+            found.append(Differs(bus, mount.id, name, *_inspect(bus, mount)))
         except HardwareError as error:
             problems.setdefault(bus.port.url, []).append(f"joint {name!r} id {mount.id}: {error}")
     if board is not None:
@@ -111,7 +114,7 @@ def check_servos(
     return found
 
 
-def _inspect(bus: Bus, mount: ServoMount) -> list[Setting]:
+def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting], str]:
     try:
         number = bus.ping(mount.id)
     except HardwareError as error:
@@ -119,11 +122,33 @@ def _inspect(bus: Bus, mount: ServoMount) -> list[Setting]:
     if number != mount.model.model_number:
         there = bus.family.model_name(number)
         raise HardwareError(f"is a {there} where a {mount.model.name} should be")
+    repaired = make_answer(bus, mount.id, mount.model)
+    _check_offset(bus, mount)
     settings = differences(bus, mount.id, mount.model)
     locked = [str(setting) for setting in settings if setting.register.area == "eeprom"]
     if locked and bus.read(mount.id, bus.family.registers["torque_enable"]):
         raise HardwareError(f"torque is on and {', '.join(locked)}; `windup stop` first")
-    return settings
+    return settings, limits(bus, mount.id, mount.model), repaired
+
+
+def _check_offset(bus: Bus, mount: ServoMount) -> None:
+    """Refuse a homing offset that is not the one with which the joint's zero was found.
+
+    Raises:
+        HardwareError: The joint would be driven off by the difference.
+    """
+    table = bus.family.table(mount.model.name)
+    if "homing_offset" not in table:
+        return
+    register = table["homing_offset"]
+    if (present := bus.read(mount.id, register)) == mount.offset:
+        return
+    off = degrees(abs(present - mount.offset) * register.unit)
+    raise HardwareError(
+        f"its homing offset is {present} counts where robot.toml says {mount.offset}: {off:.1f} "
+        f"degrees off; write `offset = {present}` there if its zero was found with it, else set "
+        f"the offset of the servo to {mount.offset}"
+    )
 
 
 def _short(error: HardwareError) -> str:

@@ -196,7 +196,7 @@ def _mount(entry: JointEntry) -> ServoMount | None:
         return None
     model = servo_model(entry.servo)
     zero = model.middle if entry.zero is None else entry.zero
-    return ServoMount(model, entry.bus, entry.id, entry.sign, zero, entry.ratio)
+    return ServoMount(model, entry.bus, entry.id, entry.sign, zero, entry.ratio, entry.offset)
 
 
 def _joint(entry: JointEntry, servo: ServoMount | None, drive: Drive) -> Joint:

@@ -57,6 +57,7 @@ class JointEntry(Record, frozen=True):
         velocity: Largest velocity, rad/s; by default the servo's without load, or none.
         zero: Counts of the servo at joint angle 0; by default half a turn.
         ratio: Turns of the servo for one of the joint.
+        offset: Counts that the servo holds in its own homing offset, which shifts all its counts.
     """
 
     name: str
@@ -72,6 +73,7 @@ class JointEntry(Record, frozen=True):
     sign: Literal[1, -1] = 1
     zero: int | None = None
     ratio: Annotated[float, Meta(gt=0.0, le=1_000.0)] = 1.0
+    offset: Annotated[int, Meta(ge=-1_044_479, le=1_044_479)] = 0
 
 
 class Foot(Record, frozen=True):

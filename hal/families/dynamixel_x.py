@@ -15,6 +15,9 @@ from hal.servos.x_series_registers import (
 
 POSITION_MODE = 3
 PWM_FULL = 885
+NO_SECOND_ID = 255
+GUARDED = 0x34
+"""Errors that have to end torque: overheating, electrical shock, overload (e-Manual, Shutdown)."""
 REGISTERS = {register.name: register for register in COMMON}
 
 # Current or load, velocity, position: one run of registers, the same in the whole family.
@@ -28,6 +31,8 @@ WANTED = (
     Want("return_delay", 0),
     Want("drive_mode", 0),  # counts up, velocity profile, a goal does not switch torque on
     Want("operating_mode", POSITION_MODE),
+    Want("secondary_id", NO_SECOND_ID),  # with one it obeys what others are told
+    Want("shutdown", GUARDED, GUARDED),
     Want("pwm_limit", PWM_FULL),
     Want("min_position_limit", 0),  # a goal beyond these is ignored without a word
     Want("max_position_limit", 4095),

@@ -26,6 +26,8 @@ MARKED = FULL - 1
 """The same, and it shows a restart, which loads the limit from `max_torque` (memory table, 48)."""
 OVERLOAD = 1 << 5
 """Bit of the one error that leaves the torque on, at Protective Torque (memory table, 34)."""
+GUARDED = 1 << 2 | OVERLOAD
+"""Errors that have to unload the motor: overheating, overload (memory table, 19)."""
 LARGEST_P = 254
 _ALERT = sum(1 << bit for bit in HARDWARE_ERRORS)
 
@@ -35,6 +37,9 @@ def _sts_wanted(model: ServoModel) -> tuple[Want, ...]:
         *_wanted(model),
         Want("phase", STEP_SPEED, STEP_SPEED | MULTI_TURN),  # steps a second, one turn
         Want("operating_mode", 0),
+        Want("angular_resolution", 1),  # else a count is several steps
+        Want("cw_dead_zone", 1),
+        Want("ccw_dead_zone", 1),
         Want("acceleration", 0),  # no profile
         Want("torque_limit", MARKED),
     )
@@ -47,6 +52,7 @@ def _wanted(model: ServoModel) -> tuple[Want, ...]:
         Want("min_position_limit", 0),
         Want("max_position_limit", model.last_count),
         Want("max_torque", FULL),
+        Want("unloading_condition", GUARDED, GUARDED),
         Want("position_d_gain", 0),
         Want("position_i_gain", 0),
         Want("goal_time", 0),
@@ -54,6 +60,15 @@ def _wanted(model: ServoModel) -> tuple[Want, ...]:
         Want("lock", 1),
     )
 
+
+USUAL = (
+    Want("protection_current", 500),
+    Want("overload_torque", 80),
+    Want("protective_torque", 20),
+    Want("protection_time", 200),
+    Want("overcurrent_time", 200),
+)
+"""What protects a servo, as its maker delivers it (memory table, 28 and 34 to 38)."""
 
 _STS_GAIN = Gain(STS["position_p_gain"], LARGEST_P)
 _SCS_GAIN = Gain(SCS["position_p_gain"], LARGEST_P)
@@ -83,6 +98,7 @@ FEETECH_STS = Family(
     health=Block(56, 8, _STS_STATE),
     check=Block(40, 24, _STS_STATE),
     wanted=_sts_wanted,
+    usual=USUAL,
     gain=_sts_gain,
     alert=_ALERT,
     errors=HARDWARE_ERRORS,
@@ -104,6 +120,7 @@ FEETECH_SCS = Family(
     health=Block(56, 8, _SCS_STATE),
     check=Block(40, 24, _SCS_STATE),
     wanted=_wanted,
+    usual=USUAL,
     gain=_scs_gain,
     alert=_ALERT,
     errors=HARDWARE_ERRORS,

@@ -25,6 +25,8 @@ turn on one foot below its IMU shakes it little. Ducks that slip while walking r
 SHAKE = 1.4
 """What it then changes by, or differs from gravity, at least: m/s2 for each rad/s. Twins that are
 pushed, fall, roll over and get up show 2.3 or more."""
+NEXT = 0.025
+"""After a longer hole a sample is not the next one: a body may have been shaken meanwhile, s."""
 SPUN = 0.5
 """Angle between the verticals of gyroscope and accelerometer, rad. Twins that fall, roll over and
 get up show it for 0.04 s at most."""

@@ -11,7 +11,7 @@ from math import isfinite, nan
 import numpy as np
 
 from hal.guard.finding import AGAIN, CHECK, Finding, Saying
-from hal.guard.gyro_watch import LONGEST, GyroWatch, Verdict
+from hal.guard.gyro_watch import LONGEST, NEXT, GyroWatch, Verdict
 from hal.joints import Array
 from hal.observation import ImuState, Observation
 
@@ -86,7 +86,7 @@ class ImuWatch:
             return (NO_NUMBER, nan, nan), True
         same = now - self._changed
         if sample != self._sample:
-            if self._sample and (same < LONGEST or self.gyro.doubted):
+            if self._sample and (same < NEXT or self.gyro.doubted):
                 self.gyro.compare(sample, self._sample, now)
             self._sample, self._changed, self._pose = sample, now, joints.position
         elif same > FROZEN and np.abs(joints.position - self._pose).max() > MOVED:

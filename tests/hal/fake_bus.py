@@ -46,7 +46,7 @@ class FakeSerial:
     def _fresh() -> bytearray:
         memory = bytearray(256)
         memory[0:2] = (1020).to_bytes(2, "little")
-        memory[9], memory[11], memory[68] = 250, 3, 2
+        memory[9], memory[11], memory[12], memory[63], memory[68] = 250, 3, 255, 0x34, 2
         memory[36:38] = memory[100:102] = (885).to_bytes(2, "little")
         memory[48:52] = (4095).to_bytes(4, "little")
         memory[84:86] = (800).to_bytes(2, "little")

@@ -28,6 +28,7 @@ class FakeSerial1(FakeSerial):
             self.set(id, "firmware_version", 3)
             self.set(id, "id", id)
             self.set(id, "return_delay", 250)
+            self.set(id, "status_return_level", 1 if model.name[0] == "S" else 2)
             self.set(id, "present_position", model.middle)
             self.set(id, "present_voltage", 74)
             self.set(id, "present_temperature", 35)

@@ -120,6 +120,14 @@ def test_a_foot_that_slips_turns_the_body_about_the_vertical_unfelt_and_is_no_sp
     assert found(watch, [*walking, *turning]) is None
 
 
+def test_after_a_hole_between_samples_rates_may_be_others() -> None:
+    watch = ImuWatch()
+    walking = still(1.0)
+    turning = [seen(1.03 + k * DT, (0.8, 0.0, 0.0), upright(k), speed=2.0) for k in range(20)]
+    assert found(watch, [*walking, *turning]) is None
+    assert not watch.gyro.doubted
+
+
 def test_a_jump_that_ends_slower_than_it_began_was_one() -> None:
     watch = ImuWatch()
     walking = still(0.5, rate=(0.0, 0.0, 0.6))
