@@ -8,6 +8,7 @@ from typing import Annotated
 
 import tyro
 
+from hal.errors import PortError
 from hal.ranges import Range
 from sim_twin.wire import Address, parse_address
 from sim_twin.wire.address import BENCH, SCHEME
@@ -16,6 +17,7 @@ from sim_twin.wire.fault_text import parse_rules
 from tools.command import Command
 from tools.output import console
 from tools.quantities import Seed
+from tools.writing import check_writable
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,12 +41,17 @@ class Emulate(Command):
         """Raise what cannot be; see `Command.check`."""
         super().check()
         parse_rules(self._address().faults)
+        check_writable(self.pty)
 
     def run(self) -> int:
         """Serve; returns the exit status."""
         address = self._address()
         ready = partial(_on_ready, "" if address.robot == BENCH else self.robot)
-        emulate(address, self.pty, self.tcp, on_ready=ready)
+        try:
+            emulate(address, self.pty, self.tcp, on_ready=ready)
+        except OSError as error:
+            why = error.strerror or str(error)
+            raise PortError(f"cannot serve: {why}; give another --pty, or --tcp 0") from None
         console.print("windup emulate: stopped")
         return 0
 

@@ -15,6 +15,8 @@ from hal.observation import ImuState
 from hal.protocols.protocol2 import Span
 from hal.registers import Register
 
+MODEL_NUMBER = 0x7400
+"""What the board answers to a ping."""
 GYRO = 2000.0 / 32800.0 * pi / 180.0
 """rad/s of one count."""
 ACCELERATION = 2.0 / 32768.0 * 9.80665
