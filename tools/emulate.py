@@ -1,5 +1,6 @@
 """`windup emulate`: serve a robot's emulated servo buses to other programs, in real time."""
 
+import os
 import signal
 from dataclasses import dataclass, replace
 from functools import partial
@@ -50,7 +51,7 @@ class Emulate(Command):
         try:
             emulate(address, self.pty, self.tcp, on_ready=ready)
         except OSError as error:
-            why = error.strerror or str(error)
+            why = os.strerror(error.errno) if error.errno else str(error)
             raise PortError(f"cannot serve: {why}; give another --pty, or --tcp 0") from None
         console.print("windup emulate: stopped")
         return 0

@@ -22,12 +22,15 @@ def overview(commands: Mapping[str, type]) -> str:
 
 
 def gist(kind: type, room: int) -> str:
-    """Return what the first sentence of a docstring says before its details.
+    """Return the first sentence of a docstring, or as many of its parts as there is room for.
 
     >>> from tools.stand import Stand
-    >>> gist(Stand, 70)
+    >>> gist(Stand, 60)
     'Stand for some seconds'
     """
-    sentence = " ".join((kind.__doc__ or "").split("\n\n")[0].split())
-    first = re.split(r"[.;:](?:\s|$)", sentence)[0]
-    return first if len(first) <= room else first[:room].rpartition(",")[0] or first[:room]
+    text = " ".join((kind.__doc__ or "").split("\n\n")[0].split())
+    sentence = re.split(r"\.(?:\s|$)", text)[0]
+    if len(sentence) <= room:
+        return sentence
+    marks = ";:" if re.search(r"[;:]", sentence[:room]) else ","
+    return re.split(f"[{marks}][^{marks}]*$", sentence[:room])[0]

@@ -53,8 +53,9 @@ class Play(TwinOptions, Common):
             return f"{self.robot} did not play {self.graph!r}: {row['reason']}"
         again = f", {row['retries']} tried again" if row["retries"] else ""
         worked = f"; {load_said(row['peak_load'], row['peak_joint'])}" if row["peak_joint"] else ""
+        seconds = row["sim_time_s"] - row["first_motion_s"]
         return (
-            f"{self.robot} played {self.graph!r} for {row['sim_time_s'] - row['first_motion_s']:.2f} s"
+            f"{self.robot} played {self.graph!r} for {seconds:.2f} s"
             f"{again}: {row['reason']}{worked}"
         )
 

@@ -39,7 +39,7 @@ def test_a_disk_that_is_full_in_the_end_is_an_error_of_ours(tmp_path: Path) -> N
     (tmp_path / "full.png").symlink_to("/dev/full")
     pyplot = load_pyplot()
     figure = pyplot.figure()
-    with pytest.raises(OutputError, match="full.png cannot be written: No space left"):
+    with pytest.raises(OutputError, match=r"full\.png cannot be written: No space left"):
         save_picture(tmp_path / "full.png", figure)
     pyplot.close(figure)
 

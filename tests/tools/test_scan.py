@@ -112,7 +112,7 @@ def test_somebody_who_talks_unasked_is_heard() -> None:
         def read(self, size: int = 1) -> bytes:
             return b"\xaa\xaa\x07"[:size]
 
-    found = Survey(Port(Chatter(None), "line"), {})
+    found = Survey(Port(Chatter(lambda _: b""), "line"), {})
     found.look(4_000_000, lambda _: None)
     assert "not understood (first bytes aa aa 07)" in said(found)
 
@@ -156,7 +156,7 @@ def test_every_baud_rate_is_a_step_of_the_progress() -> None:
 
 
 def test_the_board_of_op3_has_its_name(windup: Windup) -> None:
-    ran = windup("scan", "twin://op3", "--baud", BAUD, "--robot", "op3", "--json", "-")
+    ran = windup("scan", "twin://op3", "--baud", 2 * BAUD, "--robot", "op3", "--json", "-")
     assert ran.status == 0
     (board,) = [row for row in ran.json["servos"] if row["id"] == 200]
     assert (board["model"], board["voltage_v"], board["error"]) == ("OpenCR", None, "")

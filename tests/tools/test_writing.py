@@ -59,7 +59,7 @@ def test_closed_standard_output_is_told_first(monkeypatch: pytest.MonkeyPatch) -
 
 
 def test_what_fails_in_the_end_is_one_line_and_status_1() -> None:
-    with pytest.raises(OutputError, match=r"^/dev/full cannot be written: No space left") as failed:
-        with writing(Path("/dev/full")):
-            Path("/dev/full").write_text("figures")
+    full, said = Path("/dev/full"), r"^/dev/full cannot be written: No space left"
+    with pytest.raises(OutputError, match=said) as failed, writing(full):
+        full.write_text("figures")
     assert failed.value.exit_status == 1
