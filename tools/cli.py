@@ -132,7 +132,7 @@ def parse(arguments: list[str]) -> Any:
     """Return the command that the arguments mean; exits with status 0 behind a help text.
 
     Raises:
-        UsageError: They mean none.
+        UsageError: They mean none, or ask for help where standard output is closed.
         OutputError: The help cannot be written.
     """
     if not arguments:
@@ -147,12 +147,12 @@ def parse(arguments: list[str]) -> Any:
     except SystemExit as ended:
         if ended.code:
             raise UsageError(mistake(arguments, COMMANDS, said.getvalue())) from None
+    check_writable(STANDARD_OUTPUT)
     with writing(STANDARD_OUTPUT):
         try:
             return _parse(arguments)  # its help: again, as wide as the terminal is
         finally:
-            if sys.stdout is not None:
-                sys.stdout.flush()
+            sys.stdout.flush()
 
 
 def _parse(arguments: list[str]) -> Any:

@@ -32,7 +32,7 @@ def mistake(arguments: list[str], commands: Mapping[str, type], said: str) -> st
         if word.startswith("--") and option not in known:
             near = _near(option, known)
             return f"{name}: unknown option {option}{near}; `windup {name} --help` lists all"
-    return wrong_number(said) or f"{name}: {gist(said)}; see `windup {name} --help`"
+    return wrong_number(said) or f"{name}: {gist(said).rstrip('.')}; see `windup {name} --help`"
 
 
 def options(command: Any) -> set[str]:

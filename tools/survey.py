@@ -1,6 +1,6 @@
 """Looking for servos on a port: who answers at which baud rate, and what else does."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -8,7 +8,9 @@ from hal.bus import Bus, Found
 from hal.errors import CorruptAnswerError, HardwareError
 from hal.families import FAMILIES, Family
 from hal.imu.opencr import MODEL_NUMBER as OPENCR
+from hal.imu.opencr import VOLTAGE
 from hal.port import Port
+from hal.registers import Register
 from tools.raw_answers import Strange, is_echo, strange_answers
 
 ANSWER_BYTES: Final = {True: 27, False: 14}
@@ -115,13 +117,14 @@ def places(port: Port, baud: int | None = None) -> Iterator[tuple[Family, int]]:
 
 def _describe(bus: Bus, servo: Found) -> dict[str, Any]:
     """Return what a servo says of itself; "broken" where its answers are no answers."""
-    names = () if servo.model_number == OPENCR else REGISTERS
+    board = servo.model_number == OPENCR
+    registers: Mapping[str, Register] = {VOLTAGE.name: VOLTAGE} if board else bus.family.registers
     read: dict[str, int | None] = dict.fromkeys(REGISTERS)
     broken = False
     bus.port.baud = servo.baud
-    for name in names:
+    for name in REGISTERS:
         try:
-            if register := bus.family.registers.get(name):
+            if register := registers.get(name):
                 read[name] = bus.read(servo.id, register)
         except CorruptAnswerError:
             broken = True
@@ -130,7 +133,7 @@ def _describe(bus: Bus, servo: Found) -> dict[str, Any]:
     volts, heat, error = (read[name] for name in REGISTERS)
     return {
         "id": servo.id,
-        "model": "OpenCR" if servo.model_number == OPENCR else servo.model,
+        "model": "OpenCR" if board else servo.model,
         "firmware": servo.firmware,
         "voltage_v": None if volts is None else round(0.1 * volts, 1),
         "temperature_c": heat,

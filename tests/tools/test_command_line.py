@@ -37,6 +37,15 @@ def test_the_help_fits_one_screen(windup: Windup, word: str) -> None:
     assert all(any(line.startswith(f"{name} ") for line in lines) for name in COMMANDS)
 
 
+@pytest.mark.parametrize("line", [["--help"], ["walk", "--help"]])
+def test_help_that_nobody_can_read_is_told(
+    windup: Windup, monkeypatch: pytest.MonkeyPatch, line: list[str]
+) -> None:
+    monkeypatch.setattr("sys.stdout", None)
+    ran = windup(*line)
+    assert (ran.status, ran.err) == (2, "windup: standard output cannot be written: it is closed\n")
+
+
 def test_every_command_says_in_a_few_words_what_it_does() -> None:
     lines = overview(COMMANDS).splitlines()[-len(COMMANDS) :]
     assert all(len(line.split(maxsplit=1)[1]) >= len("Push a robot") for line in lines)

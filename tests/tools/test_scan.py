@@ -159,7 +159,7 @@ def test_the_board_of_op3_has_its_name(windup: Windup) -> None:
     ran = windup("scan", "twin://op3", "--baud", 2 * BAUD, "--robot", "op3", "--json", "-")
     assert ran.status == 0
     (board,) = [row for row in ran.json["servos"] if row["id"] == 200]
-    assert (board["model"], board["voltage_v"], board["error"]) == ("OpenCR", None, "")
+    assert (board["model"], board["voltage_v"], board["error"]) == ("OpenCR", 12.0, "")
 
 
 @pytest.fixture
