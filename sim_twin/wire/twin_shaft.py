@@ -19,7 +19,7 @@ from weakref import WeakMethod
 
 import numpy as np
 
-from hal.joints import Array
+from hal.joints import Array, Mask
 from hal.servo_model import ServoMount
 from sim_twin.imu_errors import OPENCR, LowPass
 from sim_twin.servo_motor import KD, KP, VMAX
@@ -54,18 +54,19 @@ class TwinShaft:
         self.miswired = False
         self._factor = twin.world.plant.stiffness
         self._damping = mount.model.damping(twin.supply) * mount.ratio**2
-        self._q, self._dq = twin.data.qpos[7:], twin.data.qvel[6:]
+        self._q, self._at = twin.data.qpos, int(twin.places.qpos[joint])
+        self._dq, self._dof = twin.data.qvel, int(twin.places.dofs[joint])
         self._ctrl, self._force = twin.data.ctrl, twin.data.actuator_force
 
     @property
     def position(self) -> float:
         """See `Shaft`."""
-        return self._turn * float(self._q[self.joint]) + self._zero
+        return self._turn * float(self._q[self._at]) + self._zero
 
     @property
     def velocity(self) -> float:
         """See `Shaft`."""
-        return self._turn * float(self._dq[self.joint])
+        return self._turn * float(self._dq[self._dof])
 
     @property
     def torque(self) -> float:
@@ -141,7 +142,9 @@ class TwinImu:
         self._gravity = -twin.model.opt.gravity
         self._places = np.r_[gyro : gyro + 3, acceleration : acceleration + 3]
         self._filter = LowPass(OPENCR.lag, twin.timestep)
-        self._base = twin.data.qpos
+        self._base = (
+            twin.data.body(twin.robot.base).xquat if twin.robot.fixed else twin.data.qpos[3:7]
+        )
         self._noise = np.random.default_rng(0).normal(0.0, NOISE, (1009, 3))
         self._steps = 0
         twin.on_step = _while_alive(self._feel)
@@ -160,7 +163,7 @@ class TwinImu:
     @property
     def orientation(self) -> Array:
         """(4,) wxyz."""
-        return np.asarray(self._base[3:7])
+        return np.asarray(self._base)
 
     def _feel(self) -> None:
         self._steps += 1
@@ -179,13 +182,15 @@ class TwinPhysics:
 
     A robot without torque would fall before its host has said a word. So hands hold it: the base,
     and every joint whose servo has not been driven yet, stay where they are until all servos have
-    been driven once. From then on nobody holds it.
+    been driven once. From then on nobody holds it, unless hands are told to take it again whenever
+    it is limp: where it is, or, if it has fallen, where it began.
 
     Attributes:
         twin: The twin.
         driven: (n,) bool: has the servo of this joint been driven?
         held: Whether the hands still hold.
         hangs: The base hangs in the air for ever, whatever the servos do.
+        again: Hands take the robot again when none of its servos is driven any more.
         jammed: (n,) bool: joints that do not move.
         shafts: The horns of the servos.
     """
@@ -193,6 +198,7 @@ class TwinPhysics:
     twin: Twin
     held: bool = True
     hangs: bool = False
+    again: bool = False
     shafts: Sequence[TwinShaft] = ()
 
     def __post_init__(self) -> None:
@@ -200,6 +206,7 @@ class TwinPhysics:
         self.driven = np.zeros(len(self.twin.robot.joints), dtype=bool)
         self.jammed = np.zeros_like(self.driven)
         self._qpos, self._qvel = self.twin.data.qpos.copy(), np.zeros(self.twin.model.nv)
+        self._start = self._qpos.copy()
 
     def grasp(self) -> None:
         """Hold the robot as it is now, limp."""
@@ -208,30 +215,49 @@ class TwinPhysics:
 
     def step(self) -> None:
         """Advance by one step."""
-        if self.held:
+        if self.held or self.again:
             prm = self.twin.model.actuator_gainprm
-            self.driven |= (prm[:, KP] != 0.0) | (prm[:, KD] != 0.0)
-            if self.driven.all() and not self.hangs:
-                self.held = False
+            driven = (prm[:, KP] != 0.0) | (prm[:, KD] != 0.0)
+            self._take_or_let_go(driven)
         self.twin.step(1)
         if self.held:
             self._hold()
         if self.jammed.any():
             self._jam()
 
+    def turn(self, joint: int, angle: float, rate: float) -> None:
+        """Turn a joint to `angle` rad by hand, at `rate` rad/s."""
+        data, at = self.twin.data, self.twin.places.qpos[joint]
+        data.qpos[at] = self._qpos[at] = angle
+        data.qvel[self.twin.places.dofs[joint]] = rate
+
+    def _take_or_let_go(self, driven: Mask) -> None:
+        """Let go when all servos have been driven, and take again what is limp if told to."""
+        if self.held:
+            self.driven |= driven
+            if self.driven.all() and not self.hangs:
+                self.held = False
+        elif not driven.any():
+            self.grasp()
+            if self.twin.fallen:
+                self._qpos[:] = self._start
+            self.held = True
+
     def _hold(self) -> None:
         """Put back what the hands hold."""
         data = self.twin.data
         free = np.flatnonzero(self.driven)
-        kept_q, kept_v = data.qpos[7 + free].copy(), data.qvel[6 + free].copy()
+        at, dofs = self.twin.places.qpos[free], self.twin.places.dofs[free]
+        kept_q, kept_v = data.qpos[at].copy(), data.qvel[dofs].copy()
         data.qpos[:], data.qvel[:] = self._qpos, self._qvel
-        data.qpos[7 + free], data.qvel[6 + free] = kept_q, kept_v
+        data.qpos[at], data.qvel[dofs] = kept_q, kept_v
 
     def _jam(self) -> None:
         """Put back the joints that do not move."""
         stuck = np.flatnonzero(self.jammed)
-        self.twin.data.qpos[7 + stuck] = self._qpos[7 + stuck]
-        self.twin.data.qvel[6 + stuck] = 0.0
+        at, dofs = self.twin.places.qpos[stuck], self.twin.places.dofs[stuck]
+        self.twin.data.qpos[at] = self._qpos[at]
+        self.twin.data.qvel[dofs] = 0.0
 
 
 def _while_alive(method: Callable[[], None]) -> Callable[[], None]:
