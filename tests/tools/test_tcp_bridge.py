@@ -74,4 +74,3 @@ def test_op3_stands_behind_a_bridge(tmp_path: Path) -> None:
         assert emulator.wait(20) == 0
     assert stood.returncode == 0, stood.stderr
     assert "torque is off at all 20 joints, read back" in stood.stderr
-
