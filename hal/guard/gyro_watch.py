@@ -32,6 +32,8 @@ SPUN = 0.5
 get up show it for 0.04 s at most."""
 PERSIST = 0.1
 """For how long either has to be seen, s."""
+SAMPLES = 8
+"""New samples that a jump has to last: on a busy machine few come within that time."""
 AROUND = 1.0
 """Turn about the vertical while all joints stand still, rad."""
 STANDS = 0.5
@@ -71,13 +73,14 @@ class GyroWatch:
         """Begin anew with the next sample; the vertical stays known."""
         self.doubted = False
         self._believed: Sequence[float] = NOTHING
-        self._jumped = 0.0
+        self._jumped, self._lasts = 0.0, 0
         self._vertical: Vector | None = None
         self._around = self._apart = 0.0
 
     def compare(self, sample: Sequence[float], last: Sequence[float], now: float) -> None:
         """Doubt a jump from the last sample, shortly before, or be satisfied that it is over."""
         if self.doubted:
+            self._lasts += 1
             self.doubted = self._change(self._believed, sample) > 0.5 * JUMP and distance(
                 sample, NOTHING
             ) > distance(self._believed, NOTHING)
@@ -88,7 +91,7 @@ class GyroWatch:
         felt = sample[3:]
         shaken = max(abs(distance(felt, NOTHING) - GRAVITY), distance(felt, last[3:]))
         if shaken < SHAKE * jump:
-            self.doubted, self._believed, self._jumped = True, last[:3], now
+            self.doubted, self._believed, self._jumped, self._lasts = True, last[:3], now, 0
 
     def _change(self, before: Sequence[float], after: Sequence[float]) -> float:
         """Return by how much the rates have changed, rad/s; less about the vertical."""
@@ -104,7 +107,7 @@ class GyroWatch:
         felt = sample[3:]
         if not self.doubted:
             return self._turn(sample, felt, dt, velocity)
-        if now - self._jumped >= PERSIST:
+        if now - self._jumped >= PERSIST and self._lasts >= SAMPLES:
             return LEAP, self._change(self._believed, sample), JUMP
         return self._turn(self._believed, felt, dt, velocity)
 

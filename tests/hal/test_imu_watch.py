@@ -128,6 +128,14 @@ def test_after_a_hole_between_samples_rates_may_be_others() -> None:
     assert not watch.gyro.doubted
 
 
+def test_a_jump_that_few_samples_show_may_be_one() -> None:
+    watch = ImuWatch()
+    held_up = [1.0 + k * DT for k in (0, 8, 12, 16)]
+    turning = [seen(time, (0.9, 0.0, 0.0), upright(k)) for k, time in enumerate(held_up)]
+    assert found(watch, [*still(1.0), *turning]) is None
+    assert watch.gyro.doubted
+
+
 def test_a_jump_that_ends_slower_than_it_began_was_one() -> None:
     watch = ImuWatch()
     walking = still(0.5, rate=(0.0, 0.0, 0.6))

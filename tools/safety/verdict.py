@@ -77,6 +77,8 @@ def _found(trial: Trial, row: Row, robot: RobotDescription) -> str:
     """Return what an independent client finds, and whether a guardian is left."""
     watched = _watched(trial, row)
     if row.end in ("unknown", "unattended"):
+        if not watched and trial.journal.driven == 0:
+            return row.end  # torque was off before the adapter died: there is nothing to watch
         return "unknown" if watched else "unattended"
     if trial.program.is_alive():
         return "the program goes on"
