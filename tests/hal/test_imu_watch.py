@@ -128,6 +128,16 @@ def test_after_a_hole_between_samples_rates_may_be_others() -> None:
     assert not watch.gyro.doubted
 
 
+def test_a_body_that_walks_may_be_turned_more_suddenly_than_one_that_stands() -> None:
+    steps = [1.2 * (-1) ** (k // 12) for k in range(200)]
+    walking = [seen(k * DT, (rate, 0.0, 0.0), (k % 2, 3.0, 11.0)) for k, rate in enumerate(steps)]
+    knocked = [seen(1.5625 + k * DT, (2.2, 0.0, 0.0), upright(k)) for k in range(40)]
+    spun = [seen(1.5625 + k * DT, (5.0, 0.0, 0.0), upright(k)) for k in range(40)]
+    assert found(ImuWatch(), [*walking, *knocked[:20]]) is None
+    first = found(ImuWatch(), [*walking, *spun])
+    assert first is not None and first[0] < 1.5625 + 0.125
+
+
 def test_a_jump_that_few_samples_show_may_be_one() -> None:
     watch = ImuWatch()
     held_up = [1.0 + k * DT for k in (0, 8, 12, 16)]
