@@ -20,8 +20,8 @@ from hal.joints import Array
 JUMP = 0.7
 """Change of the rates from one sample to the next that an accelerometer feels, rad/s."""
 BUSY = 1.0
-"""By how much more that is for each rad/s that the body has been turning lately: the knock of a foot
-falls between two samples, and turns a walking body as suddenly as a gyroscope that fails."""
+"""By how much more that is for each rad/s that the body has been turning lately: the knock of a
+foot falls between two samples, and turns a walking body as suddenly as a gyroscope that fails."""
 PIVOT = 1.6
 """How much larger than that it is about the vertical before it is doubted: a body that begins to
 turn on one foot below its IMU shakes it little. Ducks that slip while walking reach 0.8 rad/s."""

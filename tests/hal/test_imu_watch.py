@@ -129,13 +129,14 @@ def test_after_a_hole_between_samples_rates_may_be_others() -> None:
 
 
 def test_a_body_that_walks_may_be_turned_more_suddenly_than_one_that_stands() -> None:
-    steps = [1.2 * (-1) ** (k // 12) for k in range(200)]
-    walking = [seen(k * DT, (rate, 0.0, 0.0), (k % 2, 3.0, 11.0)) for k, rate in enumerate(steps)]
-    knocked = [seen(1.5625 + k * DT, (2.2, 0.0, 0.0), upright(k)) for k in range(40)]
-    spun = [seen(1.5625 + k * DT, (5.0, 0.0, 0.0), upright(k)) for k in range(40)]
-    assert found(ImuWatch(), [*walking, *knocked[:20]]) is None
+    rates = [1.5 * np.sin(2.0 * np.pi * k / 64) for k in range(257)]
+    walking = [seen(k * DT, (rate, 0.0, 0.0), upright(k)) for k, rate in enumerate(rates)]
+    later = [len(walking) + k for k in range(20)]
+    knocked = [seen(k * DT, (1.2, 0.0, 0.0), upright(k)) for k in later]
+    spun = [seen(k * DT, (3.0, 0.0, 0.0), upright(k)) for k in later]
+    assert found(ImuWatch(), [*walking, *knocked]) is None
     first = found(ImuWatch(), [*walking, *spun])
-    assert first is not None and first[0] < 1.5625 + 0.125
+    assert first is not None and first[0] < (later[0] + 16) * DT
 
 
 def test_a_jump_that_few_samples_show_may_be_one() -> None:
