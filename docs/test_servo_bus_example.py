@@ -47,6 +47,18 @@ def test_servos_can_be_looked_into(servo_bus):
     assert status[8] & 0x80  # the alert bit: 5 V is too little
 
 
+def test_a_wizard_that_records_ranges_finds_one(servo_bus):
+    bus = servo_bus("bench", servos="STS3215:1")
+    bus.hand("1", degrees=90, seconds=2)  # turns the limp shaft to and fro
+    seen = []
+    with bus.serial() as port:
+        for _ in range(50):
+            bus.wait(0.05)
+            port.write(bytes.fromhex("FF FF 01 04 02 38 02 BE"))  # present position
+            seen.append(int.from_bytes(port.read(8)[5:7], "little"))
+    assert max(seen) - min(seen) > 1000  # of 1024
+
+
 def test_the_bytes_are_the_same_as_last_time(servo_bus, servo_replay, tmp_path: Path):
     def talk(bus):
         with bus.serial() as port:

@@ -11,8 +11,10 @@ import tyro
 from hal.ranges import Range
 from sim_twin.wire import Address, parse_address
 from sim_twin.wire.address import BENCH, SCHEME
-from sim_twin.wire.emulate import Emulator, Outlet, emulate
+from sim_twin.wire.emulate import Emulator, emulate
 from sim_twin.wire.fault_text import parse_rules
+from sim_twin.wire.hand import parse_hands
+from sim_twin.wire.outlet import Outlet
 from tools.command import Command
 from tools.output import console
 from tools.quantities import Seed
@@ -34,11 +36,19 @@ class Emulate(Command):
     """Seed of the faults."""
     supply: Annotated[float, Range(0.0, 60.0, "V", above=True)] | None = None
     """Voltage of the servos, V; the robot's own by default."""
+    hold: bool = False
+    """Take the robot up again whenever all its servos are limp; it is held anyway until the first
+    time that all have torque."""
+    hand: str = ""
+    """A hand turns limp joints to and fro: r_knee:20:3s,... (joint or, on a bench, id; degrees;
+    seconds one way)."""
 
     def check(self) -> None:
         """Raise what cannot be; see `Command.check`."""
         super().check()
-        parse_rules(self._address().faults)
+        address = self._address()
+        parse_rules(address.faults)
+        parse_hands(address.hand)
 
     def run(self) -> int:
         """Serve; returns the exit status."""
@@ -58,6 +68,8 @@ class Emulate(Command):
             faults=self.faults or address.faults,
             seed=self.seed or address.seed,
             supply=address.supply if self.supply is None else self.supply,
+            hold="always" if self.hold else address.hold,
+            hand=self.hand or address.hand,
         )
 
 

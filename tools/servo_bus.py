@@ -6,6 +6,7 @@ with ServoBus("op3", seed=1) as bus:
     robot.stand()
 """
 
+import math
 from itertools import count
 from pathlib import Path
 from types import TracebackType
@@ -21,6 +22,7 @@ from hal.port import Port
 from sim_twin.wire import build_world, drop_world, parse_address, put_world
 from sim_twin.wire.device import Device
 from sim_twin.wire.faults import Faults
+from sim_twin.wire.hand import Swing
 from sim_twin.wire.tape import check_played, tape_world
 from sim_twin.wire.trace import Checker, Recorder, Tap
 from sim_twin.wire.world import VirtualClock, World
@@ -107,6 +109,16 @@ class ServoBus:
             if device.identifier == identifier:
                 return device
         raise UsageError(f"there is no servo {identifier} on this bus")
+
+    def hand(self, joint: str, degrees: float, seconds: float) -> None:
+        """Have a hand turn a joint to and fro from now on, while its servo is limp.
+
+        Args:
+            joint: Its name; on a bench, the id of the servo.
+            degrees: How far, from where it is.
+            seconds: How long that takes.
+        """
+        self.world.hand(Swing(joint, math.radians(degrees), seconds))
 
     def wait(self, seconds: float) -> None:
         """Let time pass."""

@@ -10,7 +10,8 @@ initial value on each servo's own page.
 Armature and friction are identified where somebody published a fit: XM430-W350 from the OP3 of
 mujoco_menagerie (Apache-2.0; its damping of 1.084 N m s/rad already holds the back-EMF, so nothing
 is left for the joint), XL330 from bam's model M1, the XC and 2X servos and XM430-W210 from
-ToddlerBot (MIT). The others borrow from the nearest motor, and their line says so.
+ToddlerBot (MIT). The others borrow from the nearest motor, and their line says so: armature goes
+with the square of the gear ratio, friction with the ratio.
 """
 
 from math import pi
@@ -38,6 +39,18 @@ XL330_M288 = (
     Row.of(5.0, 0.52, 103, 1.47),
     Row.of(6.0, 0.6, 123, 1.74),
 )
+XC430_W150 = (Row.of(9.0, 1.2, 80, 1.1), Row.of(11.1, 1.4, 99, 1.3), Row.of(12.0, 1.6, 106, 1.4))
+XL330_M077 = (
+    Row.of(3.7, 0.18, 278, 1.11),
+    Row.of(5.0, 0.215, 383, 1.47),
+    Row.of(6.0, 0.228, 456, 1.74),
+)
+XM540_W150 = (Row.of(11.1, 6.9, 50, 4.2), Row.of(12.0, 7.3, 53, 4.4), Row.of(14.8, 8.9, 66, 5.5))
+XM540_W270 = (
+    Row.of(11.1, 10.0, 28, 4.2),
+    Row.of(12.0, 10.6, 30, 4.4),
+    Row.of(14.8, 12.9, 37, 5.5),
+)
 XH540_W270 = (Row.of(11.1, 9.2, 36, 4.5), Row.of(12.0, 9.9, 39, 4.9), Row.of(14.8, 11.7, 46, 5.9))
 
 XM, XC430 = OwnLimits(80.0, 9.5, 16.0), OwnLimits(80.0, 6.0, 16.0)
@@ -60,6 +73,14 @@ X_SERIES = (
     # armature and friction as XC330-T288
     ServoModel("XC330-M288", 1240, XC330_M288, GAIN, 900, 0.0035, 0.014, limits=X330_M),
     ServoModel("XL330-M288", 1200, XL330_M288, GAIN / 2, 400, 0.0018, 0.0128, limits=X330_M),
+    # gears of 159.6 to XC430-W240's 245.2
+    ServoModel("XC430-W150", 1070, XC430_W150, GAIN, 460, 0.0017, 0.045, limits=XC430),
+    # gears of 77.5 to XL330-M288's 288.4
+    ServoModel("XL330-M077", 1190, XL330_M077, GAIN / 2, 400, 0.00013, 0.0034, limits=X330_M),
+    # no fit: as XM430-W350
+    ServoModel("XM540-W270", 1120, XM540_W270, GAIN, 800, 0.045, 0.03, limits=XM),
+    # gears of 152.3 to XM540-W270's 272.5
+    ServoModel("XM540-W150", 1130, XM540_W150, GAIN, 800, 0.0141, 0.0168, limits=XM),
     # no fit: as XM430-W350
     ServoModel("XH540-W270", 1100, XH540_W270, GAIN, 800, 0.045, 0.03, limits=XM),
 )

@@ -12,6 +12,7 @@ from hal.errors import UsageError, suggest
 from hal.ranges import Range, check_numbers
 from sim_twin.wire.fault_rule import LAST_ID
 from sim_twin.wire.fault_text import parse_rules
+from sim_twin.wire.hand import parse_hands
 
 SCHEME = "twin"
 BENCH = "bench"
@@ -34,7 +35,9 @@ class Address:
         turnaround: Of the servos, on top of their return delay, us.
         missing: Behind a missing servo in a sync read, the others "skip" its slot or "wait".
         power: Whether a board that switches the servo power has it "on" or "off" at the start.
-        hold: Whether the robot is held until its servos are driven, "yes" or "no".
+        hold: Whether the robot is held until its servos are driven, "yes" or "no"; "always": also
+            whenever none of them is driven any more.
+        hand: What hands do to limp joints, see `parse_hands`.
         servos: On the bench, models and ids: "XM430-W350:1-20,XL430:30".
         baud: On the bench, the servos' baud rate; 0: the robot's own, or 1000000.
         return_delay: Of the servos at the start, in their unit of 2 us; -1: as they leave the
@@ -57,6 +60,7 @@ class Address:
     missing: str = "skip"
     power: str = "on"
     hold: str = "yes"
+    hand: str = ""
     servos: str = "XM430-W350:1"
     baud: Annotated[int, Range(0, 10_000_000)] = 0
     return_delay: Annotated[int, Range(-1, 254)] = -1
@@ -68,7 +72,7 @@ CHOICES = {
     "clock": ("virtual", "real"),
     "missing": ("skip", "wait"),
     "power": ("on", "off"),
-    "hold": ("yes", "no"),
+    "hold": ("yes", "no", "always"),
     "physics": ("mujoco", "inertia"),
     "imu": ("auto", "rvc", "none"),
 }
@@ -97,6 +101,7 @@ def parse_address(url: str) -> Address:
     check_numbers(address, f"{url!r}: ")
     parse_servos(address.servos)
     parse_rules(address.faults)
+    parse_hands(address.hand)
     return address
 
 

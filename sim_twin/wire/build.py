@@ -13,6 +13,8 @@ from sim_twin.wire.bus import Bus, Language, Timing
 from sim_twin.wire.device import Device
 from sim_twin.wire.families import PROTOCOLS, full_name, make_language, make_servo
 from sim_twin.wire.faults import Faults
+from sim_twin.wire.grips import bench_grips, robot_grips
+from sim_twin.wire.hand import parse_hands
 from sim_twin.wire.imu import ImuSource, RestingImu
 from sim_twin.wire.imu_faults import FaultyImu
 from sim_twin.wire.opencr import OpenCr
@@ -76,8 +78,12 @@ def build_world(address: Address, around: Surroundings | None = None) -> World:
     if around is not None and (address.robot == BENCH or address.physics != "mujoco"):
         raise UsageError("only a robot with physics=mujoco has another ground or plant")
     if address.robot == BENCH:
-        return _bench(address)
-    return _robot(address, load_robot(address.robot), around or Surroundings())
+        world = _bench(address)
+    else:
+        world = _robot(address, load_robot(address.robot), around or Surroundings())
+    for swing in parse_hands(address.hand):
+        world.hand(swing)
+    return world
 
 
 def _bench(address: Address) -> World:
@@ -96,7 +102,9 @@ def _bench(address: Address) -> World:
     shop.bus(BENCH, devices, make_language(protocol), baud)
     if address.imu == "rvc":
         shop.imu(RestingImu())
-    return shop.world(Bench(shafts), address.supply or NOMINAL)
+    world = shop.world(Bench(shafts), address.supply or NOMINAL)
+    world.grips = bench_grips(devices, shafts)
+    return world
 
 
 def _robot(address: Address, robot: RobotDescription, around: Surroundings) -> World:
@@ -123,12 +131,18 @@ def _robot(address: Address, robot: RobotDescription, around: Surroundings) -> W
         shop.imu(source)
     if twin is None:
         alone = [shaft for shaft in shafts if isinstance(shaft, InertiaShaft)]
-        return shop.world(Bench(alone, robot.timestep), supply)
+        world = shop.world(Bench(alone, robot.timestep), supply)
+        world.grips = robot_grips(robot, hung, shafts, None)
+        return world
     horns = [shaft for shaft in shafts if isinstance(shaft, TwinShaft)]
-    physics = TwinPhysics(twin, held=address.hold == "yes", shafts=horns)
+    physics = TwinPhysics(
+        twin, held=address.hold != "no", again=address.hold == "always", shafts=horns
+    )
     if isinstance(source, TwinImu):
         source.held = lambda: physics.held
-    return shop.world(physics, supply, (twin,))
+    world = shop.world(physics, supply, (twin,))
+    world.grips = robot_grips(robot, hung, shafts, physics)
+    return world
 
 
 def _hang_servos(

@@ -19,6 +19,7 @@ BITS = 10  # start, eight, stop
 EPSILON = 1e-9  # s
 FORGET = 0.1  # s; a frame that has been interrupted for longer is forgotten
 BAUD_TOLERANCE = 0.03
+PIECE = 4096  # bytes of the host that are taken apart together
 
 
 class Heard(Protocol):
@@ -27,6 +28,11 @@ class Heard(Protocol):
     @property
     def end(self) -> int:
         """Bytes of the chunk up to its end."""
+        ...
+
+    @property
+    def noise(self) -> bool:
+        """Whether it is nothing that anybody could answer to."""
         ...
 
 
@@ -134,7 +140,7 @@ class Bus:
         self._by_id.clear()
         for device in self.devices:
             self._by_id.setdefault(device.identifier, []).append(device)
-            if device.shadow < 253:
+            if device.shadow < 253 and device.shadow != device.identifier:
                 self._by_id.setdefault(device.shadow, []).append(device)
 
     # The host's side
@@ -149,9 +155,19 @@ class Bus:
         self._collide(burst)
         if self.tap is not None:
             self.tap(">", self._baud, burst)
-        for item in self.language.feed(bytes(burst.data)):
-            end = start + item.end * burst.byte
-            self.schedule.at(end, partial(self._hear, item, burst, end))
+        for at in range(0, len(burst.data), PIECE):
+            for item in self.language.feed(bytes(burst.data[at : at + PIECE])):
+                if item.noise:
+                    self.language.execute(item, self)
+                    self.counts["dropped"] += 1
+                    continue
+                end = start + (at + item.end) * burst.byte
+                self.schedule.at(end, partial(self._hear, item, burst, end))
+
+    @property
+    def backlog(self) -> float:
+        """Until when the host's bytes keep the wire busy, s from now."""
+        return max(self._sent - self.schedule.now, 0.0)
 
     def available(self) -> int:
         """Return the number of bytes that the host has got and not read."""

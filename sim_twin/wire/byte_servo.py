@@ -184,6 +184,10 @@ class ByteServo(ABC):
         """Protocol 1 has no such instruction."""
         return self.errors
 
+    def backup(self, parameters: bytes, now: float) -> int:
+        """Protocol 1 has no such instruction."""
+        return self.errors
+
     # What time does to it
 
     def control(self, now: float, dt: float) -> None:

@@ -99,6 +99,10 @@ class Device(Protocol):
         """Do a Clear instruction and return the error byte."""
         ...
 
+    def backup(self, parameters: bytes, now: float) -> int:
+        """Do a Control Table Backup instruction and return the error byte."""
+        ...
+
     def overload(self, now: float) -> None:
         """Take itself for overloaded, as with a horn that is held."""
         ...

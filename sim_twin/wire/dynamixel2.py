@@ -13,23 +13,23 @@ from sim_twin.wire.frames import (
     LENGTH_MAX,
     STATUS,
     Frame,
+    FrameError,
     Parser,
     crc16,
     encode_status,
     seal,
 )
-from sim_twin.wire.register_file import BAD_INSTRUCTION, BAD_LENGTH, OK
+from sim_twin.wire.register_file import BAD_CRC, BAD_INSTRUCTION, BAD_LENGTH, EEPROM_END, OK
 from sim_twin.wire.turns import READS, Round, Turn, answering, take_turns
 
 PING, READ, WRITE, REG_WRITE, ACTION = 0x01, 0x02, 0x03, 0x04, 0x05
-FACTORY_RESET, REBOOT, CLEAR = 0x06, 0x08, 0x10
+FACTORY_RESET, REBOOT, CLEAR, BACKUP = 0x06, 0x08, 0x10, 0x20
 SYNC_READ, SYNC_WRITE, FAST_SYNC_READ = 0x82, 0x83, 0x8A
 BULK_READ, BULK_WRITE, FAST_BULK_READ = 0x92, 0x93, 0x9A
 
 WRITES = 2
 STATUS_BYTES = 11  # of a status frame around its data
 PING_GAP = 0.003  # s between the slots of a broadcast ping, which SDKs allow for each id
-EEPROM_END = 64
 
 
 class Dynamixel2:
@@ -67,6 +67,8 @@ class Dynamixel2:
         if not isinstance(frame, Frame):
             reason = getattr(frame, "reason", "unknown")
             self.errors[reason] = self.errors.get(reason, 0) + 1
+            if isinstance(frame, FrameError) and reason == "crc":
+                _complain(frame.identifier, bus)
             return False
         if frame.instruction == STATUS:
             return False
@@ -84,17 +86,39 @@ class Dynamixel2:
         return True
 
 
+def _complain(identifier: int, bus: Bus) -> None:
+    """Have the servo whose id stands in a frame with a wrong CRC say so: CRC Error, 0x03.
+
+    What the instruction was cannot be trusted, so only servos that answer everything do.
+    """
+    for device in bus.listeners(identifier):
+        if device.identifier == identifier and device.return_level >= WRITES:
+            alert = device.read(0, 1, bus.schedule.now)[0]
+            status = encode_status(identifier, alert | BAD_CRC)
+            start = bus.schedule.now + device.return_delay + bus.timing.turnaround
+            bus.schedule.at(start, partial(bus.answer, status, device.baud, identifier))
+
+
 def _one(frame: Frame, bus: Bus) -> None:
     """Execute an instruction for one id."""
     for device in bus.listeners(frame.identifier):
         delay, level, baud = device.return_delay, device.return_level, device.baud
         silent = device.identifier != frame.identifier
+        if silent and _changes_eeprom(frame):
+            continue
         needs = {PING: 0, READ: READS}.get(frame.instruction, WRITES)
         error, data = _act(device, frame, bus)
         if level >= needs and not silent:
             status = encode_status(frame.identifier, error, data)
             start = bus.schedule.now + delay + bus.timing.turnaround
             bus.schedule.at(start, partial(bus.answer, status, baud, frame.identifier))
+
+
+def _changes_eeprom(frame: Frame) -> bool:
+    """Whether an instruction is one that a Secondary(Shadow) ID(12) does not give access to."""
+    if frame.instruction in (WRITE, REG_WRITE):
+        return len(frame.parameters) > 1 and _word(frame.parameters, 0) < EEPROM_END
+    return frame.instruction in (FACTORY_RESET, BACKUP)
 
 
 def _act(device: Device, frame: Frame, bus: Bus, broadcast: bool = False) -> tuple[int, bytes]:
@@ -128,6 +152,10 @@ def _act(device: Device, frame: Frame, bus: Bus, broadcast: bool = False) -> tup
         return error, b""
     if instruction == CLEAR:
         return device.clear(parameters), b""
+    if instruction == BACKUP:
+        error = device.backup(parameters, now)
+        bus.refresh()
+        return error, b""
     return BAD_INSTRUCTION, b""
 
 
@@ -136,6 +164,13 @@ def _write(device: Device, address: int, data: bytes, bus: Bus) -> int:
     if address < EEPROM_END:
         bus.refresh()
     return error
+
+
+def _write_to(identifier: int, address: int, data: bytes, bus: Bus) -> None:
+    """Let everybody with an id, or with a shadow id as far as that goes, take a write."""
+    for device in bus.listeners(identifier):
+        if device.identifier == identifier or address >= EEPROM_END:
+            _write(device, address, data, bus)
 
 
 def _ping_all(bus: Bus) -> None:
@@ -151,16 +186,15 @@ def _ping_all(bus: Bus) -> None:
 def _sync_write(parameters: bytes, bus: Bus) -> None:
     address, count = _word(parameters, 0), _word(parameters, 2)
     for at in range(4, len(parameters) - count, count + 1):
-        for device in bus.listeners(parameters[at]):
-            _write(device, address, parameters[at + 1 : at + 1 + count], bus)
+        _write_to(parameters[at], address, parameters[at + 1 : at + 1 + count], bus)
 
 
 def _bulk_write(parameters: bytes, bus: Bus) -> None:
     at = 0
     while at + 5 <= len(parameters):
         count = _word(parameters, at + 3)
-        for device in bus.listeners(parameters[at]):
-            _write(device, _word(parameters, at + 1), parameters[at + 5 : at + 5 + count], bus)
+        data = parameters[at + 5 : at + 5 + count]
+        _write_to(parameters[at], _word(parameters, at + 1), data, bus)
         at += 5 + count
 
 

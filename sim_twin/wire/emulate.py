@@ -12,7 +12,6 @@ import os
 import select
 import time as wall
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
@@ -20,17 +19,16 @@ from queue import SimpleQueue
 from hal.errors import UsageError
 from sim_twin.wire.address import Address
 from sim_twin.wire.build import build_world
-from sim_twin.wire.bus import Bus
 from sim_twin.wire.fault_rule import Rule
 from sim_twin.wire.fault_text import parse_rules
 from sim_twin.wire.journal import Event, Journal, Watcher
 from sim_twin.wire.link import Link, Pty, Tcp, free_port
+from sim_twin.wire.outlet import Outlet
 from sim_twin.wire.world import World
 
 CHUNK = 4096
 AHEAD = 0.002  # s by which replies may be worked out before their time
 MARGIN = 0.0005  # s before its time that the next reply has to be worked out at the latest
-CHUNK_TIME = 0.0006  # s of bytes that go out together in the middle of an answer
 QUIET = 0.00015  # s without anything due, that a step of the physics may take
 SPIN = 0.00008  # s before the ends of an answer that are not slept through
 HOP = 0.000025  # s that a pseudo-terminal takes each way, which the wire does not have
@@ -38,64 +36,6 @@ SLIP = 0.1  # s behind the wall, from which time stands still instead
 IDLE = 0.002  # s; the longest sleep
 PR_SET_TIMERSLACK = 29
 PRIORITY = 10  # among real-time processes; servos do not wait for other programs
-
-
-@dataclass
-class Outlet:
-    """A bus, its plug, and when bytes go out next.
-
-    Attributes:
-        bus: The bus.
-        make: Makes its plug, at the start and each time that the adapter is plugged in again.
-        link: The plug; None while the adapter is unplugged.
-        name: What a program has to open.
-        sent: When bytes went out last, s.
-    """
-
-    bus: Bus
-    make: Callable[[], Link]
-    link: Link | None = None
-    name: str = ""
-    sent: float = -math.inf
-
-    def settle(self) -> None:
-        """Pull the plug, or put it in, as the bus has it."""
-        if self.bus.plugged and self.link is None:
-            self.link = self.make()
-            self.name = self.link.name
-        elif not self.bus.plugged and self.link is not None:
-            self.link.close()
-            self.link = None
-
-    def due(self, more: bool) -> float:
-        """Return when bytes should go out next, s.
-
-        The first and the last of an answer go out as they arrive, those between in pieces. `more`
-        says that the end of the answer has still to be worked out.
-        """
-        bus = self.bus
-        if not bus.queued:
-            return math.inf
-        piece = max(bus.arrival(1), self.sent + CHUNK_TIME)
-        return piece if more else min(bus.arrival(bus.queued), piece)
-
-    def send(self, now: float) -> None:
-        """Send what has arrived."""
-        if (data := self.bus.read(self.bus.available())) and self.link is not None:
-            self.link.send(data)
-            self.sent = now
-
-    def receive(self) -> None:
-        """Take in what the program has sent: not before it had what it answers to.
-
-        A fast program is back sooner than the two hops, and would talk into the answer's end.
-        """
-        schedule, link = self.bus.schedule, self.link
-        schedule.now = max(schedule.now, self.sent)
-        if link is not None and (data := link.receive()):
-            if baud := link.baud():
-                self.bus.baud = baud
-            self.bus.write(data)
 
 
 class Emulator:
@@ -222,9 +162,7 @@ class Emulator:
 
     def _wait(self, seconds: float, start: float) -> None:
         """Sleep until something comes, or for some time."""
-        places = {
-            place: out for out in self.outlets if out.link for place in out.link.descriptors()
-        }
+        places = {place: outlet for outlet in self.outlets for place in outlet.descriptors()}
         ready, _, _ = select.select([*places, self._wake_read], [], [], seconds)
         self.world.schedule.now = wall.perf_counter() - start - HOP
         for place in ready:
@@ -232,6 +170,8 @@ class Emulator:
                 places[place].receive()
             else:
                 self._take_orders()
+        for outlet in self.outlets:
+            outlet.feed()
 
     def _take_orders(self) -> None:
         """Let begin what was injected."""

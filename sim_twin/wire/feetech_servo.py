@@ -1,8 +1,10 @@
 """The firmware of Feetech servos: what writes, time and faults do to them.
 
-With the lock on, the EEPROM's registers can be written all the same, but power-up brings back what
-was there before: so the manual has it. A goal switches the torque on. Writing 128 to the torque
-register makes the present position the middle, 2048, by way of the offset.
+With the lock on, the EEPROM's registers, the id too, can be written all the same, but power-up
+brings back what was there before: so the memory table has it. A goal switches the torque on.
+Writing 128 to the torque register makes the present position the middle, 2048, by way of the
+offset. Register 44 is the PWM of PWM mode; on an STS it does nothing in the others, as a "time" it
+acts on an SCS whose speed is 0 (memory tables of SMS, STS and SCS; zeroth-bot pull request 89).
 """
 
 import math
@@ -92,7 +94,8 @@ class FeetechServo(ByteServo):
 
     @property
     def _offset(self) -> int:
-        return self.table.get("offset") if self.magnetic else 0
+        """The offset as it counts now: in position mode only (STS_servos issue 9)."""
+        return self.table.get("offset") if self.magnetic and self.mode == POSITION else 0
 
     @property
     def _many_turns(self) -> bool:
@@ -115,6 +118,12 @@ class FeetechServo(ByteServo):
         """Save a field, unless the lock is on."""
         if not self.table.get("lock"):
             self.table.save(name)
+
+    def factory_reset(self, option: int, broadcast: bool, now: float) -> int:
+        """Save the factory's values of all but the id, and start again (FT-SCS protocol, 0x06)."""
+        self.table.factory(keep=("id",))
+        self.reboot(now)
+        return 0
 
     def act(self, names: set[str], now: float) -> None:
         """Act on fields that have been written together."""
@@ -242,7 +251,7 @@ class FeetechServo(ByteServo):
             loop.run(now, max(-fastest, min(fastest, speed)), rise)
         elif mode in (POSITION, STEP):
             goal = self._goal_counts(now)
-            seconds = 0 if self.magnetic else get("goal_time")
+            seconds = 0 if self.magnetic or speed else get("goal_time")
             if seconds:
                 loop.move_in(now, goal, seconds * 1e-3)
             elif speed or get("phase") & ZERO_IS_FASTEST or not self.magnetic:

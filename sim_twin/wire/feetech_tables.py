@@ -68,7 +68,7 @@ _STS = (
     Field(44, 2, "goal_time", "RW", 0, -1000, 1000, 10),
     Field(46, 2, "goal_speed", "RW", 0, -32767, 32767, 15),
     Field(48, 2, "torque_limit", "RW", 1000, 0, 1000),
-    Field(55, 1, "lock", "RW", 1, 0, 1),  # after power-up: assumed
+    Field(55, 1, "lock", "RW", 1, 0, 1),
     Field(56, 2, "present_position", sign=15),
     Field(58, 2, "present_speed", sign=15),
     Field(69, 2, "present_current", sign=15),

@@ -1,6 +1,7 @@
 """The firmware of an X-series servo: what writes, time and faults do to it."""
 
 from hal.servo_model import ServoModel
+from sim_twin.wire.backup import Backup
 from sim_twin.wire.control_loop import POSITION_MODES, ControlLoop
 from sim_twin.wire.health import Health
 from sim_twin.wire.present import Present
@@ -11,7 +12,7 @@ from sim_twin.wire.x_series import CURRENT, POSITION, PWM, VELOCITY, WATCHDOG_UN
 ALERT = 0x80  # in the error byte of a status: look at Hardware Error Status
 TORQUE_BY_GOAL = 0x08  # bit of the drive mode
 TRIPPED = 0xFF  # bus watchdog: -1
-STARTUP_TORQUE = 0x01  # bit of the startup configuration
+STARTUP_TORQUE, STARTUP_RESTORE = 0x01, 0x02  # bits of the startup configuration
 GOAL_LIMITS = {
     "goal_pwm": "pwm_limit",
     "goal_current": "current_limit",
@@ -32,6 +33,7 @@ class Firmware:
         loop: The control loop.
         present: The sample of the shaft that reads report.
         health: Hardware errors.
+        backup: What Control Table Backup has stored.
         powered: Whether there is a supply voltage.
         stopped: The bus watchdog has taken the output away, in current or PWM mode; a new goal
             ends that, once the watchdog register has been cleared.
@@ -43,6 +45,7 @@ class Firmware:
         self.loop = ControlLoop(model, servo, self.registers, shaft, supply)
         self.present = Present(self.loop)
         self.health = Health(self.loop)
+        self.backup = Backup(self.registers)
         self.powered = True
         self.stopped = False
         self._on = False  # torque, as last acted upon
@@ -67,23 +70,30 @@ class Firmware:
         return bool(self.health.errors & self.registers.get("shutdown"))
 
     def restart(self, now: float) -> None:
-        """Start: RAM as the factory left it, no errors, torque off."""
+        """Start: RAM as the factory left it, no errors, torque off, no turns counted."""
         self.registers.reset(self.registers.ram())
         self.health.reset()
         self.stopped = self._on = False
         self.present.booted = now
         self.loop.release()
         self._change_mode()
-        startup = "startup_configuration"
-        if startup in self.registers.items and self.registers.get(startup) & STARTUP_TORQUE:
+        startup = 0
+        if "startup_configuration" in self.registers.items:
+            startup = self.registers.get("startup_configuration")
+        self.backup.boot(restore=bool(startup & STARTUP_RESTORE))
+        if startup & STARTUP_TORQUE:
             self._switch(True, now)
 
-    def hold_here(self) -> None:
-        """Make the present position the goal; a mode that knows one turn forgets the others."""
+    def hold_here(self, forget: bool = False) -> None:
+        """Make the present position the goal, and `forget` the turns on the way.
+
+        The e-Manual, Present Position(132): the turns are forgotten at power-up, when the mode
+        changes, and in position mode when torque comes on; never while a shaft just moves.
+        """
         loop = self.loop
         loop.encoder.load(self.registers)
         self.present.sample()
-        if loop.mode == POSITION:
+        if forget:
             loop.encoder.forget_turns(self.present.position)
         if loop.mode == VELOCITY:
             self.registers.set("goal_velocity", 0)
@@ -119,6 +129,8 @@ class Firmware:
         crane_x7_ros pull request 11 and DynamixelSDK issue 584.
         """
         self.registers.set("bus_watchdog", -1)
+        for name in ("profile_acceleration", "profile_velocity"):
+            self.registers.set(name, 0)
         freed = OPEN_LOOP.get(self.loop.mode)
         if freed is None:
             self.hold_here()
@@ -181,10 +193,10 @@ class Firmware:
             self._new_goal(name, value, now)
         elif name == "torque_enable":
             self._switch(bool(value), now)
-        elif name == "operating_mode":
+        elif name == "operating_mode" and value != self.loop.mode:
             self._change_mode()
         elif name in ("drive_mode", "homing_offset"):
-            self.hold_here()
+            self.hold_here(forget=name == "drive_mode" and self.loop.mode == POSITION)
         elif name in RETUNE and self.driving:
             self.loop.update(now)
 
@@ -210,14 +222,19 @@ class Firmware:
         if same:
             return
         self.stopped = False
-        self.hold_here()
+        self.hold_here(forget=on and self.loop.mode == POSITION)
         if on:
             self.loop.update(now)
         else:
             self.loop.release()
 
     def _change_mode(self) -> None:
-        """Reset gains and goals to what suits the mode."""
+        """Reset gains and goals to what suits the mode, and forget the turns.
+
+        The e-Manual, Operating Mode(11), makes no exception of the modes in which Goal PWM or Goal
+        Current are the goal: there a motor runs as soon as torque comes on, unless its host has
+        written a goal before.
+        """
         registers, mode = self.registers, self.registers.get("operating_mode")
         registers.reset(
             item
@@ -225,8 +242,7 @@ class Firmware:
             if item.address in MODE_DEFAULTS and item.name not in KEPT
         )
         self.loop.mode = mode
-        registers.set("goal_pwm", 0 if mode == PWM else registers.get("pwm_limit"))
+        registers.set("goal_pwm", registers.get("pwm_limit"))
         if self.model.current_unit is not None:
-            limit = registers.get("current_limit")
-            registers.set("goal_current", 0 if mode == CURRENT else limit)
-        self.hold_here()
+            registers.set("goal_current", registers.get("current_limit"))
+        self.hold_here(forget=True)

@@ -101,6 +101,11 @@ class Frame(NamedTuple):
     parameters: bytes
     end: int
 
+    @property
+    def noise(self) -> bool:
+        """It is not."""
+        return False
+
 
 class FrameError(NamedTuple):
     """Something that was dropped.
@@ -108,10 +113,17 @@ class FrameError(NamedTuple):
     Attributes:
         reason: "crc", "stuffing" or "length".
         end: As in `Frame`.
+        identifier: Whom it would have been for, where only the CRC is wrong.
     """
 
     reason: str
     end: int
+    identifier: int = BROADCAST
+
+    @property
+    def noise(self) -> bool:
+        """Whether it is not even a frame with a wrong CRC."""
+        return self.reason != "crc"
 
 
 class Parser:
@@ -162,7 +174,7 @@ class Parser:
         if len(data) < end:
             return None, start
         if crc16(data[start : end - 2]) != data[end - 2] | data[end - 1] << 8:
-            return FrameError("crc", offset + end), start + 4
+            return FrameError("crc", offset + end, data[start + 4]), start + 4
         plain = body.replace(_STUFFED, _PATTERN)
         return Frame(data[start + 4], plain[0], plain[1:], offset + end), end
 

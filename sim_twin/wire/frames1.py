@@ -61,6 +61,11 @@ class Frame1(NamedTuple):
     parameters: bytes
     end: int
 
+    @property
+    def noise(self) -> bool:
+        """It is not."""
+        return False
+
 
 class Frame1Error(NamedTuple):
     """Something that was dropped.
@@ -74,6 +79,11 @@ class Frame1Error(NamedTuple):
     reason: str
     identifier: int
     end: int
+
+    @property
+    def noise(self) -> bool:
+        """Whether it is not even a frame with a wrong checksum."""
+        return self.reason != "checksum"
 
 
 class Parser1:

@@ -3,6 +3,7 @@
 import contextlib
 import fcntl
 import os
+import re
 import socket
 import struct
 import termios
@@ -15,6 +16,9 @@ from hal.errors import UsageError
 TCGETS2 = 0x802C542A
 TERMIOS2 = struct.Struct("4I20B2I")  # the last two: input and output speed, baud
 CHUNK = 4096
+OURS = re.compile(r"/dev/pts/\d+")  # where the links of emulators lead
+VISITORS = 64  # programs that are taken in or refused at once
+SOCKET_BUFFER = 16_384  # bytes; a program's, as an adapter has it, not megabytes
 
 
 class Link(Protocol):
@@ -29,8 +33,8 @@ class Link(Protocol):
         """Return what to wait for."""
         ...
 
-    def receive(self) -> bytes:
-        """Return what the program has sent; nothing is fine."""
+    def receive(self, most: int) -> bytes:
+        """Return what the program has sent, up to about `most` bytes; nothing is fine."""
         ...
 
     def send(self, data: bytes) -> None:
@@ -50,20 +54,22 @@ class Pty:
     """A pseudo-terminal, under a path of your choice.
 
     Raises:
-        UsageError: Something that is not a link is at that path already.
+        UsageError: Something other than what a dead emulator has left is at that path already, or
+            nothing can be put there.
     """
 
     def __init__(self, path: Path) -> None:
         self._path = path
+        _make_room(path)
         self._master, self._slave = os.openpty()
         tty.setraw(self._slave)
         os.set_blocking(self._master, False)
-        target = os.ttyname(self._slave)
-        if path.is_symlink():
-            path.unlink()
-        elif path.exists():
-            raise UsageError(f"{path} exists and is not a link; choose another path")
-        path.symlink_to(target)
+        self._target = os.ttyname(self._slave)
+        try:
+            path.symlink_to(self._target)
+        except OSError as error:
+            self._hang_up()
+            raise UsageError(f"cannot make {path}: {error.strerror}") from None
 
     @property
     def name(self) -> str:
@@ -74,12 +80,17 @@ class Pty:
         """Return what to wait for."""
         return [self._master]
 
-    def receive(self) -> bytes:
-        """Return what the program has sent."""
-        try:
-            return os.read(self._master, CHUNK)
-        except OSError:
-            return b""
+    def receive(self, most: int) -> bytes:
+        """Return all that the program has sent.
+
+        Not only the first piece: while the kernel's buffer is full, it throws away what a program
+        has written and then flushes.
+        """
+        data = bytearray()
+        with contextlib.suppress(OSError):
+            while len(data) < most and (chunk := os.read(self._master, CHUNK)):
+                data += chunk
+        return bytes(data)
 
     def send(self, data: bytes) -> None:
         """Give bytes to the program; what it never reads is lost in the end."""
@@ -93,12 +104,36 @@ class Pty:
         return int(speed) or None
 
     def close(self) -> None:
-        """Remove the path and the terminal."""
+        """Remove the terminal, and the path if that still leads there."""
         with contextlib.suppress(OSError):
-            self._path.unlink()
+            if os.readlink(self._path) == self._target:
+                self._path.unlink()
+        self._hang_up()
+
+    def _hang_up(self) -> None:
         termios.tcflush(self._slave, termios.TCIOFLUSH)
         os.close(self._master)
         os.close(self._slave)
+
+
+def _make_room(path: Path) -> None:
+    """Remove what a dead emulator has left at `path`; anything else is not ours to remove.
+
+    Raises:
+        UsageError: There is something else.
+    """
+    other = "choose another path"
+    if not path.is_symlink():
+        if path.exists():
+            raise UsageError(f"{path} exists and is not the link of an emulator; {other}")
+        return
+    target = os.readlink(path)
+    if OURS.fullmatch(target) is None:
+        raise UsageError(f"{path} is a link to {target}, not to an emulated port; {other}")
+    if os.path.exists(target):
+        used = f"{path} is a link to {target}, which is in use, perhaps by an emulator"
+        raise UsageError(f"{used}; end that, or {other}")
+    path.unlink()
 
 
 def free_port(host: str = "127.0.0.1") -> int:
@@ -117,6 +152,7 @@ class Tcp:
     def __init__(self, port: int, host: str = "127.0.0.1") -> None:
         self._server = socket.create_server((host, port))
         self._server.setblocking(False)
+        self._server.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, SOCKET_BUFFER)
         self._client: socket.socket | None = None
 
     @property
@@ -130,23 +166,28 @@ class Tcp:
         client = [] if self._client is None else [self._client.fileno()]
         return [self._server.fileno(), *client]
 
-    def receive(self) -> bytes:
-        """Return what the program has sent; take a new program in, or refuse it."""
-        data = self._read()
-        with contextlib.suppress(BlockingIOError):
-            client, _ = self._server.accept()
-            if self._client is not None:
-                client.close()
-                return data
-            client.setblocking(False)
-            client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            self._client = client
+    def receive(self, most: int) -> bytes:
+        """Return what the program has sent; take new programs in, or refuse them."""
+        data = self._read(most)
+        with contextlib.suppress(OSError):  # nobody is there, or somebody is gone already
+            for _ in range(VISITORS):
+                client, _ = self._server.accept()
+                self._welcome(client)
         return data
 
-    def _read(self) -> bytes:
-        """Return all that the program has sent; drop it if it is gone."""
-        data = b""
-        while self._client is not None:
+    def _welcome(self, client: socket.socket) -> None:
+        """Take a program in, unless there is one."""
+        if self._client is not None:
+            client.close()
+            return
+        client.setblocking(False)
+        client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._client = client
+
+    def _read(self, most: int) -> bytes:
+        """Return what the program has sent; drop it if it is gone."""
+        data = bytearray()
+        while self._client is not None and len(data) < most:
             try:
                 chunk = self._client.recv(CHUNK)
             except BlockingIOError:
@@ -156,7 +197,7 @@ class Tcp:
             data += chunk
             if not chunk:
                 self._drop()
-        return data
+        return bytes(data)
 
     def send(self, data: bytes) -> None:
         """Give bytes to the program, or lose them."""

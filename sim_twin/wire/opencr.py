@@ -196,6 +196,10 @@ class OpenCr:
         """It has nothing to clear."""
         return BAD_RANGE
 
+    def backup(self, parameters: bytes, now: float) -> int:
+        """It has no backup."""
+        return BAD_INSTRUCTION
+
     def overload(self, now: float) -> None:
         """It drives nothing that could be too heavy."""
 

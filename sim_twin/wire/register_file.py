@@ -6,6 +6,7 @@ from typing import Final, NamedTuple
 OK: Final = 0x00
 FAILED: Final = 0x01
 BAD_INSTRUCTION: Final = 0x02
+BAD_CRC: Final = 0x03
 BAD_RANGE: Final = 0x04
 BAD_LENGTH: Final = 0x05
 BAD_LIMIT: Final = 0x06

@@ -1,6 +1,7 @@
 """An X-series servo on a bus: who it is, and what the instructions of the protocol do to it."""
 
 from hal.servo_model import ServoModel
+from sim_twin.wire.backup import RESTORE, STORE
 from sim_twin.wire.firmware import Firmware
 from sim_twin.wire.health import OVERLOAD
 from sim_twin.wire.present import MOTION
@@ -172,9 +173,27 @@ class Servo:
         self.sample()
         if self.firmware.present.moving:
             return self.firmware.alert | FAILED
-        self.firmware.loop.encoder.forget_turns(self.firmware.present.position)
-        self.firmware.hold_here()
+        self.firmware.hold_here(forget=True)
         return self.firmware.alert
+
+    def backup(self, parameters: bytes, now: float) -> int:
+        """Store the control table, or restore its EEPROM and reboot; return the error byte.
+
+        What a restore without a backup answers stands in no manual: Result Fail, assumed.
+        """
+        firmware, backup = self.firmware, self.firmware.backup
+        if not backup.known:
+            return firmware.alert | BAD_INSTRUCTION
+        if parameters not in (STORE, RESTORE):
+            return firmware.alert | BAD_RANGE
+        if firmware.torque_on or (parameters == RESTORE and not backup.ready):
+            return firmware.alert | FAILED
+        if parameters == STORE:
+            backup.store()
+        else:
+            backup.restore()
+            self.reboot(now)
+        return firmware.alert
 
     def overload(self, now: float) -> None:
         """Take itself for overloaded."""

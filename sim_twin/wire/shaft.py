@@ -89,6 +89,10 @@ class InertiaShaft:
         """See `Shaft`."""
         self._mode = "off"
 
+    def turn(self, angle: float, rate: float) -> None:
+        """Be turned to `angle` rad by hand, at `rate` rad/s."""
+        self.position, self.velocity = angle, rate
+
     def step(self, dt: float) -> None:
         """Advance by `dt` s."""
         if self._mode == "off":

@@ -19,7 +19,7 @@ from weakref import WeakMethod
 
 import numpy as np
 
-from hal.joints import Array
+from hal.joints import Array, Mask
 from hal.servo_model import ServoMount
 from sim_twin.imu_errors import OPENCR, LowPass
 from sim_twin.servo_motor import KD, KP, VMAX
@@ -179,13 +179,15 @@ class TwinPhysics:
 
     A robot without torque would fall before its host has said a word. So hands hold it: the base,
     and every joint whose servo has not been driven yet, stay where they are until all servos have
-    been driven once. From then on nobody holds it.
+    been driven once. From then on nobody holds it, unless hands are told to take it again whenever
+    it is limp: where it is, or, if it has fallen, where it began.
 
     Attributes:
         twin: The twin.
         driven: (n,) bool: has the servo of this joint been driven?
         held: Whether the hands still hold.
         hangs: The base hangs in the air for ever, whatever the servos do.
+        again: Hands take the robot again when none of its servos is driven any more.
         jammed: (n,) bool: joints that do not move.
         shafts: The horns of the servos.
     """
@@ -193,6 +195,7 @@ class TwinPhysics:
     twin: Twin
     held: bool = True
     hangs: bool = False
+    again: bool = False
     shafts: Sequence[TwinShaft] = ()
 
     def __post_init__(self) -> None:
@@ -200,6 +203,7 @@ class TwinPhysics:
         self.driven = np.zeros(len(self.twin.robot.joints), dtype=bool)
         self.jammed = np.zeros_like(self.driven)
         self._qpos, self._qvel = self.twin.data.qpos.copy(), np.zeros(self.twin.model.nv)
+        self._start = self._qpos.copy()
 
     def grasp(self) -> None:
         """Hold the robot as it is now, limp."""
@@ -208,16 +212,33 @@ class TwinPhysics:
 
     def step(self) -> None:
         """Advance by one step."""
-        if self.held:
+        if self.held or self.again:
             prm = self.twin.model.actuator_gainprm
-            self.driven |= (prm[:, KP] != 0.0) | (prm[:, KD] != 0.0)
-            if self.driven.all() and not self.hangs:
-                self.held = False
+            driven = (prm[:, KP] != 0.0) | (prm[:, KD] != 0.0)
+            self._take_or_let_go(driven)
         self.twin.step(1)
         if self.held:
             self._hold()
         if self.jammed.any():
             self._jam()
+
+    def turn(self, joint: int, angle: float, rate: float) -> None:
+        """Turn a joint to `angle` rad by hand, at `rate` rad/s."""
+        data = self.twin.data
+        data.qpos[7 + joint] = self._qpos[7 + joint] = angle
+        data.qvel[6 + joint] = rate
+
+    def _take_or_let_go(self, driven: Mask) -> None:
+        """Let go when all servos have been driven, and take again what is limp if told to."""
+        if self.held:
+            self.driven |= driven
+            if self.driven.all() and not self.hangs:
+                self.held = False
+        elif not driven.any():
+            self.grasp()
+            if self.twin.fallen:
+                self._qpos[:] = self._start
+            self.held = True
 
     def _hold(self) -> None:
         """Put back what the hands hold."""

@@ -4,8 +4,10 @@ import time as wall
 from collections.abc import Sequence
 from typing import Protocol
 
+from hal.errors import UnknownNameError
 from sim_twin.wire.bus import Bus
 from sim_twin.wire.device import Device
+from sim_twin.wire.hand import Grip, Hand, Swing
 from sim_twin.wire.opencr import OpenCr
 from sim_twin.wire.schedule import Schedule
 from sim_twin.wire.shaft import InertiaShaft
@@ -56,6 +58,8 @@ class World:
         schedule: What will happen.
         supply: Voltage of the servos, V. Set it with `set_supply`.
         dead: What will never work again.
+        grips: Where hands can take hold: by joint, on a bench by id.
+        hands: The hands that turn limp joints.
     """
 
     def __init__(
@@ -71,6 +75,8 @@ class World:
         self._full: list[float] = []  # supplies before the brown-outs that go on now
         self._sags: list[float] = []  # to what they let everything sink, V
         self.dead: list[Device] = []
+        self.grips: dict[str, Grip] = {}
+        self.hands: list[Hand] = []
         self._steps = 0
         self._watched = 0.0
         self._devices = [(bus, device) for bus in buses.values() for device in bus.devices]
@@ -126,7 +132,19 @@ class World:
             if device.busy:
                 device.control(now, step)
         self.physics.step()
+        for hand in self.hands:
+            hand.move(step)
         self._steps += 1
+
+    def hand(self, swing: Swing) -> None:
+        """Have a hand turn a joint to and fro from now on, while that is limp.
+
+        Raises:
+            UnknownNameError: There is no such joint.
+        """
+        if swing.joint not in self.grips:
+            raise UnknownNameError("joint", swing.joint, self.grips)
+        self.hands.append(Hand(self.grips[swing.joint], swing))
 
     def set_supply(self, volts: float) -> None:
         """Change the supply voltage of everything."""

@@ -38,7 +38,7 @@ REGISTERS: Final = (
     Item(10, 1, "drive_mode", "RW", 0, 0, 13),
     Item(11, 1, "operating_mode", "RW", 3, 0, 16),
     Item(12, 1, "secondary_id", "RW", 255, 0, 255),
-    Item(13, 1, "protocol_type", "RW", 2, 2, 2),
+    Item(13, 1, "protocol_type", "RW", 2, 2, 2),  # 1 is answered with Data Range Error
     Item(20, 4, "homing_offset", "RW", 0, -OFFSET, OFFSET),
     Item(24, 4, "moving_threshold", "RW", 10, 0, 1023),
     Item(31, 1, "temperature_limit", "RW", 80, 0, 100),
@@ -196,6 +196,8 @@ MODELS: Final = {
         _load(1060, "XL430-W250", {**_gains(640, 1000, 100, 4000), **_volts(60, 140), **_heat(72),
                                    **_speed(265)}),
         _load(1080, "XC430-W240", {**_gains(700, 1920), **_volts(60, 160), **_speed(306)}),
+        _load(1070, "XC430-W150", {**_gains(460, 1920), **_volts(60, 160), **_speed(460),
+                                   "moving_threshold": (20, 0, 1023)}),
         _load(1090, "2XL430-W250", {**_gains(640, 1800, 100, 2000), **_volts(60, 140), **_heat(72),
                                     **_speed(250)}, twin=True),
         _load(1160, "2XC430-W250", {**_gains(700, 1920), **_volts(60, 160), **_speed(275)},
@@ -206,7 +208,11 @@ MODELS: Final = {
                                          **_speed(425, 2047)}),
         _x330(1200, "XL330-M288", 1750, {**_gains(400, 1600, 180), **_volts(31, 70, 35),
                                          **_speed(445, 2047), "shutdown": (53, 0, 63)}),
+        _x330(1190, "XL330-M077", 1750, {**_gains(400, 400, 40), **_volts(31, 70, 35),
+                                         **_speed(1620, 2047), "shutdown": (53, 0, 63),
+                                         "position_i_gain": (400, 0, 16383)}),
         Model("XM540-W270", 1120, lacks=("pwm_slope",), changed={**_X540, **_speed(128)}),
+        Model("XM540-W150", 1130, lacks=("pwm_slope",), changed={**_X540, **_speed(230)}),
         Model("XH540-W270", 1100, lacks=("pwm_slope",), changed={**_X540, **_speed(167)}),
     )
 }  # fmt: skip

@@ -9,7 +9,10 @@ from hal.servo_model import ServoMount
 from hal.servos import servo_model, servo_names
 from robots import load_robot, robot_names
 
-SUPPLIES = {"XC330-M288": 5.0, "XL330-M288": 5.0, "STS3215-7.4V": 7.4, "SCS0009": 6.0}
+SUPPLIES = {
+    **dict.fromkeys(("XC330-M288", "XL330-M288", "XL330-M077"), 5.0),
+    **{"STS3215-7.4V": 7.4, "SCS0009": 6.0},
+}
 
 
 @pytest.mark.parametrize("name", servo_names())

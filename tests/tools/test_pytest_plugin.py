@@ -20,7 +20,7 @@ def test_the_package_installs_the_plugin() -> None:
 
 def test_the_example_in_docs_passes(pytester: pytest.Pytester) -> None:
     pytester.makepyfile((ROOT / "docs/test_servo_bus_example.py").read_text())
-    run(pytester).assert_outcomes(passed=5)
+    run(pytester).assert_outcomes(passed=6)
 
 
 def test_two_runs_bring_the_same_bytes(pytester: pytest.Pytester) -> None:

@@ -112,9 +112,10 @@ def _trials(seeds: Iterator[int], robots: tuple[str, ...]) -> Iterator[Trial]:
                 return
             first = min(runner.deadline for runner in busy.values())
             ready = wait(list(busy), max(first - wall.monotonic(), 0.0))
-            late = [link for link, runner in busy.items() if runner.deadline < wall.monotonic()]
-            for link in {*ready, *late}:
-                runner = busy.pop(link)  # type: ignore[arg-type]
+            now = wall.monotonic()
+            over = [link for link, runner in busy.items() if link in ready or runner.deadline < now]
+            for link in over:
+                runner = busy.pop(link)
                 yield runner.end()
                 if runner.left <= 0:
                     runner.close()

@@ -173,13 +173,6 @@ def test_id_and_baud_change_behind_the_answer() -> None:
         assert len(host.ask(9, 1)) == 1
 
 
-def test_a_shadow_id_acts_without_an_answer() -> None:
-    with open_host("twin://bench?servos=XM430-W350:1-2") as host:
-        host.write(2, "secondary_id", 50)
-        assert host.ask(50, 0x03, bytes((65, 0, 1))) == []
-        assert (host.read(1, "led"), host.read(2, "led")) == (0, 1)
-
-
 def test_a_frame_in_pieces_is_heard_unless_the_pause_is_long() -> None:
     with open_host() as host:
         frame = encode(1, 1)

@@ -263,12 +263,14 @@ def test_id_and_baud_change_behind_the_answer(host: Host1) -> None:
     assert len(host.ask(7, PING)) == 1
 
 
-def test_a_reset_brings_back_the_factory(host: Host1) -> None:
+def test_a_reset_brings_back_the_factory_but_for_the_id(host: Host1) -> None:
     host.write(1, "lock", 0)
     host.write(1, "p_gain", 5)
-    host.ask(1, RESET)
+    host.write(1, "offset", 100)
+    host.ask(1, WRITE, bytes((5, 7)))
+    host.ask(7, RESET)
     host.wait(0.5)
-    assert host.read(1, "p_gain") == 32
+    assert (host.read(7, "p_gain"), host.read(7, "offset")) == (32, 0)
 
 
 def test_reg_write_and_action_move_together(host: Host1) -> None:

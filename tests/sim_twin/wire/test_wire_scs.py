@@ -32,6 +32,15 @@ def test_an_scs_takes_the_time_it_is_told(scs: Host1) -> None:
     assert scs.read(SCS, "present_position") == pytest.approx(562, abs=6)
 
 
+def test_an_scs_with_a_speed_ignores_the_time(scs: Host1) -> None:
+    goal = b"".join(k.to_bytes(2, "big") for k in (712, 4000, 200))
+    scs.ask(SCS, WRITE, bytes((42,)) + goal)
+    scs.wait(0.5)
+    assert scs.read(SCS, "present_position") == pytest.approx(612, abs=8)
+    scs.wait(1.0)
+    assert scs.read(SCS, "present_position") == pytest.approx(712, abs=4)
+
+
 def test_an_scs_lock_is_at_48(scs: Host1) -> None:
     scs.ask(SCS, WRITE, bytes((48, 0)))
     scs.write(SCS, "p_gain", 9)

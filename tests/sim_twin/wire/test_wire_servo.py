@@ -96,35 +96,43 @@ def test_a_change_of_mode_resets_gains_and_goals(host: Host) -> None:
     host.write(XM, "position_p_gain", 123)
     host.write(XM, "operating_mode", EXTENDED)
     assert host.read(XM, "position_p_gain") == 800
-    assert host.write(XM, "operating_mode", PWM) == OK
-    assert host.read(XM, "goal_pwm") == 0
+    host.write(XM, "pwm_limit", 600)
+    host.write(XM, "current_limit", 500)
+    host.write(XM, "profile_velocity", 50)
+    for mode in (PWM, CURRENT, POSITION):
+        assert host.write(XM, "operating_mode", mode) == OK
+        assert host.read(XM, "goal_pwm") == 600
+        assert host.read(XM, "goal_current") == 500
+        assert host.read(XM, "profile_velocity") == 0
 
 
-def test_extended_mode_counts_turns_and_position_mode_forgets_them(host: Host) -> None:
-    turn_on(host, EXTENDED)
-    assert host.write(XM, "goal_position", 9000) == OK
-    host.wait(4.0)
-    there = host.read(XM, "present_position")
-    assert there == pytest.approx(9000, abs=3)
-    host.write(XM, "torque_enable", 0)
+def test_a_mode_that_is_written_again_resets_nothing(host: Host) -> None:
+    host.write(XM, "position_p_gain", 123)
     host.write(XM, "operating_mode", POSITION)
-    assert host.read(XM, "present_position") == there - 2 * 4096
+    assert host.read(XM, "position_p_gain") == 123
 
 
-def test_reverse_mode_and_homing_offset_change_what_is_reported(host: Host) -> None:
-    host.shaft(XM).position = 0.5
-    straight = host.read(XM, "present_position")
-    host.write(XM, "drive_mode", 1)
-    assert host.read(XM, "present_position") == 2 * 2048 - straight
-    host.write(XM, "homing_offset", 100)
-    assert host.read(XM, "present_position") == 2 * 2048 - straight + 100
-    host.write(XM, "torque_enable", 1)
-    host.write(XM, "goal_position", 1000)
-    host.wait(2.0)
-    assert host.read(XM, "present_position") == pytest.approx(1000, abs=2)
-    assert host.shaft(XM).position == pytest.approx(
-        (2048 + 100 - 1000) * 6.2831853 / 4096, abs=5e-3
-    )
+def test_power_up_sets_goal_pwm_and_goal_current_to_their_limits(host: Host) -> None:
+    host.write(XM, "pwm_limit", 600)
+    host.write(XM, "goal_pwm", 100)
+    host.write(XM, "goal_current", 100)
+    host.ask(XM, 0x08)
+    host.wait(0.5)
+    assert host.read(XM, "goal_pwm") == 600
+    assert host.read(XM, "goal_current") == 1193
+
+
+def test_without_torque_a_shaft_coasts_by_the_friction_of_its_gears(host: Host) -> None:
+    turn_on(host, PWM)
+    host.wait(1.0)
+    shaft = host.shaft(XM)
+    fast = shaft.velocity
+    host.write(XM, "torque_enable", 0)
+    began = host.now
+    host.wait(0.5)
+    assert host.read(XM, "present_current") == host.read(XM, "present_pwm") == 0
+    slowed = fast - shaft.friction / shaft.inertia * (host.now - began)
+    assert 0.0 < shaft.velocity == pytest.approx(slowed, rel=0.01)
 
 
 def test_velocity_mode_holds_its_velocity_and_ramps_with_the_profile(host: Host) -> None:

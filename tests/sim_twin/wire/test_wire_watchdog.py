@@ -52,6 +52,7 @@ def test_position_modes_hold_where_it_tripped(host: Host, mode: int) -> None:
     host.shaft(XM).load = 0.3
     host.wait(1.0)
     assert host.servo(XM).driving and host.read(XM, "torque_enable") == 1
+    assert host.read(XM, "profile_velocity") == 0
     assert host.read(XM, "present_position") == pytest.approx(held, abs=20)
     assert host.shaft(XM).torque == pytest.approx(-0.3, abs=0.05)
 

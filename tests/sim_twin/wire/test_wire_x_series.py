@@ -42,7 +42,7 @@ def test_addresses_and_sizes_are_those_of_the_maker(name: str) -> None:
 
 def test_servos_without_a_current_sensor_report_load_and_have_no_current_modes() -> None:
     without = {name for name, table in MODELS.items() if table.current_unit is None}
-    assert without == {"XL430-W250", "XC430-W240", "2XL430-W250", "2XC430-W250"}
+    assert without == {"XL430-W250", "XC430-W240", "XC430-W150", "2XL430-W250", "2XC430-W250"}
     for name, table in MODELS.items():
         assert table.modes == (FOUR_MODES if name in without else SIX_MODES)
         assert ("current_limit" in table.registers().items) == (name not in without)
