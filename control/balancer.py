@@ -265,6 +265,6 @@ class Balancer:
 
     def _wanted(self, start: StepStart) -> Array:
         """Return the targets (r,) of the step that begins."""
-        left = self.contacts.foot_names[1 - start.stance].startswith("l")
+        left = self.contacts.is_left(1 - start.stance)
         wanted = self.steering.targets(self.targets, swing_is_left=left) | self.fixed_targets
         return np.array([wanted.get(variable.name, 0.0) for variable in self.regulation])

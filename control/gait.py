@@ -1,5 +1,6 @@
 """A gait ready to run: its pose graph and perturbations as arrays over a robot's joints."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +13,10 @@ from hal.config import load_toml
 from hal.contacts import ContactSensors
 from hal.errors import ConfigError, UnknownNameError
 from hal.joints import Array, Joints, Mask
-from hal.mirror import Mirror, other_side
+from hal.mirror import other_side
+
+Mirroring = Callable[[Array], Array]
+"""Returns the mirror image of joint positions (n,), such as a `hal.mirror.Mirror`."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +55,14 @@ class Gait:
         return RelativeGraph(self.pose_change[row], self.hold_change[row])
 
 
-def load_gait(path: Path, joints: Joints, contacts: ContactSensors, mirror: Mirror) -> Gait:
+def load_gait(path: Path, joints: Joints, contacts: ContactSensors, mirror: Mirroring) -> Gait:
     """Return the gait in the file at `path` for a robot with these joints and contacts.
+
+    Args:
+        path: The file.
+        joints: The joints.
+        contacts: The contact sensors.
+        mirror: Its left and right; called only where the file asks for them.
 
     Raises:
         ConfigError: The file does not fit its format, the robot, or the joint limits.
@@ -73,7 +83,7 @@ class _Reader:
     file: GaitFile
     joints: Joints
     contacts: ContactSensors
-    mirror: Mirror
+    mirror: Mirroring
 
     def graph(self) -> PoseGraph:
         if not self.file.state:

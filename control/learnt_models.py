@@ -34,11 +34,12 @@ class LearntModel(Record, frozen=True):
 
 
 class ModelFile(Record, frozen=True):
-    """A file of models, and what they are models of."""
+    """A file of models, and what they are models of: `gait` is the `gait_hash` of their gait."""
 
     regulation: list[str]
     perturbations: list[str]
     models: list[LearntModel]
+    gait: str = ""
 
 
 @dataclass
@@ -81,11 +82,12 @@ class LearntModels:
                 return
         entries.append((start, jacobian, steps))
 
-    def read(self, path: Path, regulation: list[str], perturbations: list[str]) -> None:
+    def read(self, path: Path, regulation: list[str], perturbations: list[str], gait: str) -> None:
         """Add the models in a file.
 
         Raises:
-            ConfigError: It is no such file, or its models are of other variables.
+            ConfigError: It is no such file, or its models are of other variables, or of another
+                gait, or of this one before it was changed.
         """
         try:
             text = read_small(path)
@@ -100,11 +102,16 @@ class LearntModels:
                 f"{path}: models of {', '.join(file.regulation)} by {', '.join(file.perturbations)}"
                 "; the walk has others. Learn them anew: `windup walk ... --learn FILE`"
             )
+        if file.gait != gait:
+            raise ConfigError(
+                f"{path}: learnt for another version of the gait: delete it, and learn its models "
+                "anew with `windup walk ... --learn FILE`"
+            )
         for number, model in enumerate(file.models):
             _check_shape(path, number, model, file)
             self.add(model.phase, np.array(model.start), np.array(model.jacobian), model.steps)
 
-    def write(self, path: Path, regulation: list[str], perturbations: list[str]) -> None:
+    def write(self, path: Path, regulation: list[str], perturbations: list[str], gait: str) -> None:
         """Write all models into a file."""
         models = [
             LearntModel(
@@ -116,7 +123,9 @@ class LearntModels:
             for phase, entries in sorted(self._known.items())
             for start, jacobian, steps in entries
         ]
-        file = ModelFile(regulation=regulation, perturbations=perturbations, models=models)
+        file = ModelFile(
+            regulation=regulation, perturbations=perturbations, models=models, gait=gait
+        )
         path.write_bytes(msgspec.json.format(msgspec.json.encode(file), indent=1) + b"\n")
 
     @staticmethod

@@ -78,7 +78,7 @@ class StepStart:
             swing=swing,
             start_com=self.body.com[0],
             start_heading=self.heading,
-            swing_is_left=contacts.foot_names[swing].startswith("l"),
+            swing_is_left=contacts.is_left(swing),
         )
         columns = [variable.evaluate(end) for variable in variables]
         return np.stack(columns, axis=-1) if columns else np.zeros((len(outcomes.fell), 0))

@@ -40,7 +40,7 @@ def load_toml(path: Path, record: type[T]) -> T:
         ConfigError: The file is missing, is not TOML, or does not fit the record.
     """
     try:
-        text = read_small(path).decode()
+        text = read_small(path).decode("utf-8-sig")
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:

@@ -2,11 +2,13 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
 from hal.errors import UnknownNameError
 from hal.joints import Array, Mask
+from hal.mirror import Side, side_of
 
 
 @dataclass(frozen=True)
@@ -18,12 +20,14 @@ class ContactSensors:
     Attributes:
         names: The k sensor names, in the order of `Observation.contacts`.
         feet: Foot name to its sensors' names; left before right by custom.
+        sides: The side of each foot, where it is known; else its name says so.
         threshold: Normal force above which a sensor counts as pressed, N.
     """
 
     names: tuple[str, ...]
     feet: dict[str, tuple[str, ...]]
     threshold: float = 1.0
+    sides: tuple[Side | Literal[""], ...] = ()
     members: Mask = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -35,6 +39,11 @@ class ContactSensors:
     def foot_names(self) -> tuple[str, ...]:
         """Names of the feet."""
         return tuple(self.feet)
+
+    def is_left(self, foot: int) -> bool:
+        """Return whether the foot of this index is the left one."""
+        side = self.sides[foot] if self.sides else side_of(self.foot_names[foot])
+        return side == "left"
 
     def mask(self, name: str) -> Mask:
         """Return (k,) bool: the sensors that a foot or a sensor `name` stands for.

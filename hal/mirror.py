@@ -1,12 +1,15 @@
 """Left and right: how names and poses of one side become the same of the other."""
 
+import re
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from hal.joints import Array
 
+Side = Literal["left", "right"]
 SIDES = (("l_", "r_"), ("left_", "right_"))
 
 
@@ -39,3 +42,16 @@ def other_side(name: str) -> str:
         if name.startswith(right):
             return left + name.removeprefix(right)
     return name
+
+
+def side_of(name: str) -> Side | Literal[""]:
+    """Return the side that a name states, or "" where it states none, or both.
+
+    >>> side_of("left_foot"), side_of("foot.R"), side_of("leg"), side_of("link_1")
+    ('left', 'right', '', '')
+    """
+    words = set(re.split(r"[^a-z]+", name.lower()))
+    left, right = bool(words & {"l", "left"}), bool(words & {"r", "right"})
+    if left == right:
+        return ""
+    return "left" if left else "right"

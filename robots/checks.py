@@ -12,7 +12,8 @@ import mujoco
 from hal.errors import ConfigError, suggest
 from hal.servos import servo_names
 from robots import mjcf
-from robots.records import JointEntry, RobotFile
+from robots.records import Foot, JointEntry, RobotFile
+from robots.structure import mistakes
 
 SLACK = 1e-6
 """Rounding that a limit may carry, rad."""
@@ -57,8 +58,8 @@ class Checks:
             ConfigError: The first thing that cannot be.
         """
         self._rate()
-        self._structure()
         self._joint_names()
+        self._structure()
         for joint in self.robot.joint:
             self._limits(joint)
             self._servo(joint)
@@ -70,6 +71,10 @@ class Checks:
         for key, mistake in self.robot.safety.mistakes(self.robot.drive.supply):
             self._fail(f"safety.{key}", mistake)
 
+    @property
+    def _feet_named(self) -> list[Foot]:
+        return [entry.foot() for entry in self.robot.foot]
+
     def _rate(self) -> None:
         rate, timestep = self.robot.rate_hz, self.model.opt.timestep
         if whole_steps(rate, timestep) is None:
@@ -79,11 +84,8 @@ class Checks:
         bodies = mjcf.names(self.model, "body")
         self._known("base", "body", self.robot.base, bodies)
         self._known("torso", "body", self.robot.torso, bodies)
-        base = self.model.body(self.robot.base)
-        if base.jntnum[0] != 1 or self.model.jnt_type[base.jntadr[0]] != mjcf.FREE:
-            self._fail("base", f"body {self.robot.base!r} has no free joint in the MJCF")
-        if self.model.nu:
-            self._fail("model", "the MJCF has actuators; the drive table says what moves a joint")
+        for key, mistake in mistakes(self.robot, self.model):
+            self._fail(key, mistake)
 
     def _joint_names(self) -> None:
         entries = [joint.name for joint in self.robot.joint]
@@ -91,9 +93,8 @@ class Checks:
         hinges = mjcf.hinge_names(self.model)
         for name in entries:
             self._known("joint", "MJCF hinge", name, hinges)
-        for name in hinges:
-            if name not in entries:
-                self._fail("joint", f"the MJCF hinge {name!r} has no [[joint]]")
+        for name in self.robot.passive:
+            self._known("passive", "MJCF joint", name, mjcf.names(self.model, "joint"))
 
     def _limits(self, joint: JointEntry) -> None:
         key = f"joint {joint.name!r}"
@@ -104,7 +105,7 @@ class Checks:
             self._fail(key, f"lower {joint.lower:g} is not below upper {joint.upper:g}")
         hinge = self.model.joint(joint.name)
         if not self.model.jnt_limited[hinge.id]:
-            self._fail(key, "the MJCF gives this hinge no range")
+            return  # it could turn for ever; the file's limits are the only ones
         low, high = hinge.range
         if joint.lower < low - SLACK or joint.upper > high + SLACK:
             given = f"{joint.lower:g} to {joint.upper:g} rad"
@@ -134,8 +135,12 @@ class Checks:
 
     def _feet(self) -> None:
         self._unique("foot", "foot", [foot.name for foot in self.robot.foot])
-        self._unique("foot", "sensor", [s for foot in self.robot.foot for s in foot.sensors])
-        for foot in self.robot.foot:
+        self._unique("foot", "sensor", [s for foot in self._feet_named for s in foot.sensors])
+        feet = self._feet_named
+        if len(feet) == 2 and feet[0].side and feet[0].side == feet[1].side:
+            one, other = (foot.name for foot in feet)
+            self._fail("foot", f"{one!r} and {other!r} are both {feet[0].side}: give them a side")
+        for foot in self._feet_named:
             key = f"foot {foot.name!r}"
             self._known(f"{key}: body", "body", foot.body, mjcf.names(self.model, "body"))
             self._known(f"{key}: site", "site", foot.site, mjcf.names(self.model, "site"))
@@ -170,9 +175,14 @@ class Checks:
             self._known("crouch", "pose", self.robot.crouch, self.robot.poses)
         elif self.robot.stop == "crouch":
             self._fail("stop", '"crouch" needs the key crouch: the name of a pose')
-        if self.robot.fall.way and self.robot.fall.reach is None:
+        fall = self.robot.fall
+        if fall is None:
+            return
+        if fall.way and fall.reach is None:
             self._fail("fall.way", "needs fall.reach: how far outside its soles it can step, m")
-        for way in self.robot.fall.way:
+        if fall.way and not self.robot.foot:
+            self._fail("fall.way", "needs a [[foot]]: where the soles are tells when it falls")
+        for way in fall.way:
             self._known("fall.way.pose", "pose", way.pose, self.robot.poses)
 
     def _sensor(self, key: str, name: str, kind: mujoco.mjtSensor) -> None:

@@ -1,7 +1,7 @@
 """A robot as the rest of the stack sees it: robot.toml and model.xml, read and cross-checked."""
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 
 import mujoco
@@ -15,13 +15,16 @@ from hal.joints import Array, Joint, Joints
 from hal.mirror import Mirror
 from hal.servo_model import ServoMount
 from hal.servos import servo_model
-from robots import mjcf
+from robots import mjcf, structure
 from robots.checks import Checks, whole_steps
+from robots.completion import complete, complete_for
 from robots.mirror import mirror_map
 from robots.records import Bus, Drive, Fall, Foot, Imu, JointEntry, RobotFile, Safety, with_defaults
 
 FOLDER = Path(__file__).parent
 FILE = "robot.toml"
+NEVER = Fall(height=1e-9, tilt=4.0)
+"""How a robot falls that is fixed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +41,9 @@ class RobotDescription:
         rate_hz: Rate of the control loop, Hz.
         wire_rate_hz: Rate of the control loop on a servo bus, Hz.
         model_latency: From the start of a step to its plan acting, where time is the wall's, s.
-        base: Body with the free joint.
+        base: Body with the free joint; where the robot is `fixed`, one that never moves.
+        fixed: The base is fixed to the world, as an arm's.
+        passive: Joints of the MJCF that no servo moves.
         torso: Body whose z axis is the robot's "up".
         joints: The joints.
         axes: (n, 3) joint axes in the base frame, zero pose.
@@ -66,6 +71,8 @@ class RobotDescription:
     wire_rate_hz: float
     model_latency: float
     base: str
+    fixed: bool
+    passive: tuple[str, ...]
     torso: str
     joints: Joints
     axes: Array
@@ -97,8 +104,10 @@ class RobotDescription:
         return HealthLevels.of(self.servos, self.drive.supply, self.safety.given())
 
     def spec(self) -> mujoco.MjSpec:
-        """Return the MJCF, parsed afresh and without actuators: change it as you like."""
-        return mjcf.parse_mjcf(self.model_path)
+        """Return the MJCF, parsed afresh, with its sensors: change it as you like."""
+        spec = mjcf.parse_mjcf(self.model_path)
+        complete(spec, self.base, self.imu, self.feet)
+        return spec
 
     def gaits(self) -> dict[str, Path]:
         """Return the robot's gaits: name to file."""
@@ -140,7 +149,7 @@ def load_robot(name_or_path: str | Path) -> RobotDescription:
     path = folder / FILE
     robot = load_toml(path, RobotFile)
     robot = replace(robot, joint=tuple(with_defaults(joint, robot.drive) for joint in robot.joint))
-    model = mjcf.compile_mjcf(folder / robot.model)
+    model = mjcf.compile_mjcf(folder / robot.model, partial(complete_for, robot))
     Checks(path, robot, model).run()
     return _describe(folder, robot, model)
 
@@ -156,7 +165,7 @@ def _folder(name_or_path: str | Path) -> Path:
 
 def _describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDescription:
     entries = {entry.name: entry for entry in robot.joint}
-    ordered = [entries[name] for name in mjcf.hinge_names(model)]
+    ordered = [entries[name] for name in mjcf.hinge_names(model) if name in entries]
     servos = tuple(_mount(entry) for entry in ordered)
     pairs = zip(ordered, servos, strict=True)
     joints = Joints(tuple(_joint(entry, servo, robot.drive) for entry, servo in pairs))
@@ -172,13 +181,15 @@ def _describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDes
         wire_rate_hz=robot.wire_rate_hz or robot.rate_hz,
         model_latency=robot.model_latency,
         base=robot.base,
+        fixed=structure.is_fixed(model),
+        passive=robot.passive,
         torso=robot.torso,
         joints=joints,
-        axes=_frozen(mjcf.hinge_axes(model)),
+        axes=_frozen(mjcf.hinge_axes(model, joints.names)),
         servos=servos,
         drive=robot.drive,
         buses=robot.bus,
-        feet=robot.foot,
+        feet=tuple(entry.foot() for entry in robot.foot),
         contacts=_contacts(robot),
         imu=robot.imu,
         poses=poses,
@@ -186,7 +197,7 @@ def _describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDes
         crouch=poses[robot.crouch] if robot.crouch else None,
         stop=robot.stop,
         safety=robot.safety,
-        fall=robot.fall,
+        fall=robot.fall or NEVER,
     )
 
 
@@ -220,9 +231,10 @@ def _joint(entry: JointEntry, servo: ServoMount | None, drive: Drive) -> Joint:
 
 
 def _contacts(robot: RobotFile) -> ContactSensors:
-    feet = {foot.name: foot.sensors for foot in robot.foot}
-    names = tuple(name for sensors in feet.values() for name in sensors)
-    return ContactSensors(names, feet, robot.contact_threshold)
+    feet = [entry.foot() for entry in robot.foot]
+    names = tuple(name for foot in feet for name in foot.sensors)
+    sensors, sides = {foot.name: foot.sensors for foot in feet}, tuple(foot.side for foot in feet)
+    return ContactSensors(names, sensors, robot.contact_threshold, sides)
 
 
 def _frozen(values: Array) -> Array:

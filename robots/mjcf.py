@@ -1,5 +1,7 @@
 """The MJCF side of a robot: parsed and compiled, with errors of one line, and asked for names."""
 
+from codecs import BOM_UTF8
+from collections.abc import Callable
 from pathlib import Path
 
 import mujoco
@@ -21,7 +23,7 @@ FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
 
 def parse_mjcf(path: Path) -> mujoco.MjSpec:
-    """Return the MJCF at `path`, parsed afresh.
+    """Return the MJCF, or URDF, at `path`, parsed afresh, whatever its name ends in.
 
     Raises:
         ConfigError: The file is missing or not MJCF.
@@ -31,19 +33,31 @@ def parse_mjcf(path: Path) -> mujoco.MjSpec:
     if path.stat().st_size > MOST:
         raise ConfigError(f"{path}: cannot be read: longer than {MOST >> 20} MB")
     try:
-        return mujoco.MjSpec.from_file(str(path))
+        if path.suffix == ".xml" and not path.read_bytes().startswith(BOM_UTF8):
+            return mujoco.MjSpec.from_file(str(path))
+        # MuJoCo reads by the name's ending, and takes a byte-order mark for a letter.
+        spec = mujoco.MjSpec.from_string(path.read_text("utf-8-sig"))
+        spec.modelfiledir = str(path.parent)
+        return spec
+    except OSError as error:
+        raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError as error:
         raise ConfigError(f"{path}: {_one_line(error)}") from None
 
 
-def compile_mjcf(path: Path) -> mujoco.MjModel:
-    """Return the MJCF at `path` as a model.
+def compile_mjcf(
+    path: Path, complete: Callable[[mujoco.MjSpec], None] | None = None
+) -> mujoco.MjModel:
+    """Return the MJCF at `path` as a model, after `complete` has added to it.
 
     Raises:
         ConfigError: The file is missing, MuJoCo refuses it, or a number in it cannot be.
     """
     try:
-        model = parse_mjcf(path).compile()
+        spec = parse_mjcf(path)
+        if complete is not None:
+            complete(spec)
+        model = spec.compile()
     except ValueError as error:
         raise ConfigError(f"{path}: {_one_line(error)}") from None
     if wrong := wrong_number(model):
@@ -68,11 +82,11 @@ def hinge_names(model: mujoco.MjModel) -> tuple[str, ...]:
     return tuple(model.joint(j).name for j in np.flatnonzero(model.jnt_type == HINGE))
 
 
-def hinge_axes(model: mujoco.MjModel) -> Array:
-    """Return the hinges' unit axes (n, 3) in the world, in the zero pose."""
+def hinge_axes(model: mujoco.MjModel, names: tuple[str, ...]) -> Array:
+    """Return the unit axes (n, 3) of hinges in the world, in the zero pose."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    return data.xaxis[model.jnt_type == HINGE].copy()
+    return data.xaxis[[model.joint(name).id for name in names]].copy()
 
 
 def _one_line(error: Exception) -> str:

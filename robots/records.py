@@ -7,7 +7,11 @@ from msgspec.structs import replace
 
 from hal.config import Delay, Length, NotNegative, Positive, Record, Tilt
 from hal.guard import StopPolicy
+from hal.mirror import Side, side_of
 from robots.levels import JointLevels
+
+GYRO, ACCELEROMETER = "gyro", "accelerometer"
+"""Names of the sensors of an IMU that names none."""
 
 Share = Annotated[float, Meta(ge=0.05, le=1.0)]
 
@@ -77,20 +81,48 @@ class JointEntry(Record, frozen=True):
 
 
 class Foot(Record, frozen=True):
-    """One foot: its body, the site at the centre of its sole, its touch sensors in the MJCF."""
+    """One foot.
+
+    Attributes:
+        name: Its name.
+        body: Its body.
+        site: The site at the centre of its sole.
+        sensors: Its touch sensors in the MJCF.
+        side: The side that it is on; "" where nothing says so.
+    """
 
     name: str
     body: str
     site: str
     sensors: tuple[str, ...]
+    side: Side | Literal[""] = ""
+
+
+class FootEntry(Record, frozen=True):
+    """A foot as the file has it: without `sensors` it gets one, without `side` its name tells."""
+
+    name: str
+    body: str
+    site: str
+    sensors: tuple[str, ...] | None = None
+    side: Side | None = None
+
+    def foot(self) -> Foot:
+        """Return the foot."""
+        sensors = (f"{self.name}_touch",) if self.sensors is None else self.sensors
+        side = self.side or side_of(self.name)
+        return Foot(name=self.name, body=self.body, site=self.site, sensors=sensors, side=side)
 
 
 class Imu(Record, frozen=True):
-    """The IMU: the site it sits at and the names of its sensors in the MJCF."""
+    """The IMU: the site it sits at and the names of its sensors in the MJCF.
+
+    A gyroscope and an accelerometer that the MJCF lacks are added, where the file names none.
+    """
 
     site: str
-    gyro: str
-    accelerometer: str
+    gyro: str = GYRO
+    accelerometer: str = ACCELEROMETER
     orientation: str | None = None
 
 
@@ -175,13 +207,15 @@ class RobotFile(Record, frozen=True):
         model: The MJCF beside this file.
         rate_hz: Rate of the control loop, Hz.
         wire_rate_hz: Rate of the control loop on a servo bus, Hz; by default the same.
-        base: Body with the free joint.
+        base: Body with the free joint; of a robot that is fixed, such as an arm, the body that is.
         torso: Body whose z axis is the robot's "up".
         stop: What "stop" means: hold, crouch, or limp.
         stance: Name of the pose to stand in.
         crouch: Name of the pose to crouch in.
         model_latency: From the start of a step to its plan acting, where time is the wall's, s.
         contact_threshold: Force above which a contact sensor counts as pressed, N.
+        passive: Joints of the MJCF that no servo moves: springs, couplings, casters.
+        fall: When it counts as fallen; a robot that is fixed has none.
         poses: Pose name to joint name to rad; joints not named are at 0.
     """
 
@@ -193,7 +227,6 @@ class RobotFile(Record, frozen=True):
     stance: str
     drive: Drive
     joint: tuple[JointEntry, ...]
-    fall: Fall
     poses: dict[str, dict[str, float]]
     wire_rate_hz: Positive | None = None
     stop: StopPolicy = "limp"
@@ -201,7 +234,9 @@ class RobotFile(Record, frozen=True):
     crouch: str | None = None
     sources: tuple[str, ...] = ()
     bus: tuple[Bus, ...] = ()
-    foot: tuple[Foot, ...] = ()
+    foot: tuple[FootEntry, ...] = ()
+    passive: tuple[str, ...] = ()
+    fall: Fall | None = None
     model_latency: Delay = 0.06
     contact_threshold: Positive = 1.0
     imu: Imu | None = None

@@ -56,6 +56,7 @@ class Plant:
         for body in spec.bodies:
             body.mass *= self.mass
             body.inertia *= self.mass
+            body.fullinertia *= self.mass
         for joint in spec.joints:
             if joint.type == mujoco.mjtJoint.mjJNT_HINGE and self.friction_loss is not None:
                 joint.frictionloss = self.friction_loss

@@ -16,6 +16,7 @@ from mujoco.batch import Batch
 
 from hal.controller import BatchPolicy, Outcomes, Plane, PolicyInput, RolloutStart, Stopwatch
 from hal.joints import Array, Mask
+from robots.completion import COM_VELOCITY
 from robots.description import RobotDescription
 from sim_twin.foot_level import FootLevel
 from sim_twin.terrain import Ground
@@ -124,7 +125,7 @@ class _Worlds:
         planes = np.flatnonzero(model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE)
         self.floor, self.slope = planes, (0.0, 0.0)
         self.touch = np.array([model.sensor(name).adr[0] for name in robot.contacts.names])
-        velocity = model.sensor("com_velocity").adr[0]
+        velocity = model.sensor(COM_VELOCITY).adr[0]
         self.com_velocity = slice(velocity, velocity + 3)
         self.width = model.nu // len(robot.joints)
         self.flight = _Flight(model)

@@ -9,6 +9,7 @@ import numpy as np
 from hal.joints import Array
 from hal.observation import BaseState, ImuState, JointState, Observation
 from sim_twin.imu_errors import ImuErrors
+from sim_twin.places import places
 from sim_twin.twin import Twin
 
 AMBIENT = 25.0
@@ -47,10 +48,16 @@ class Sensors:
         robot, model = twin.robot, twin.model
         n = len(robot.joints)
         self._counts = np.array(
-            [servo.model.counts_per_rev / (2.0 * pi) if servo else 0.0 for servo in robot.servos]
+            [
+                servo.model.counts_per_rev / (2.0 * pi) * servo.ratio if servo else 0.0
+                for servo in robot.servos
+            ]
         )
         self._encoders = bool(self._counts.any())
-        self._contacts = _adjacent([model.sensor(name).adr[0] for name in robot.contacts.names])
+        touch = [model.sensor(name).adr[0] for name in robot.contacts.names]
+        self._contacts = places(np.array(touch, dtype=np.intp))
+        self._position, self._velocity = twin.places.position, twin.places.velocity
+        self._fixed = twin.fixed_base() if robot.fixed else None
         self._imu = robot.imu
         if robot.imu is not None:
             self._gyro = _place(model.sensor(robot.imu.gyro).adr[0], 3)
@@ -74,13 +81,15 @@ class Sensors:
         """Return the observation that is available now."""
         snapshot = self._line[0] if self._line else self._snapshot()
         qpos, qvel, sensors = snapshot.qpos, snapshot.qvel, snapshot.sensors
-        position = qpos[7:]
+        position = qpos[self._position]
         if self._encoders:
             position = np.rint(position * self._counts)
             position /= self._counts
         health = self._voltage, self._temperature, self._age, self._age
-        joints = JointState(position, qvel[6:], snapshot.force, *health)
-        base = BaseState(qpos[:3], qpos[3:7], qvel[:3], qvel[3:6]) if self.true_base else None
+        joints = JointState(position, qvel[self._velocity], snapshot.force, *health)
+        base = None
+        if self.true_base:
+            base = self._fixed or BaseState(qpos[:3], qpos[3:7], qvel[:3], qvel[3:6])
         return Observation(
             snapshot.time, joints, self._read_imu(sensors), sensors[self._contacts], base
         )
@@ -108,14 +117,6 @@ class Sensors:
 
 def _place(start: int, size: int) -> slice:
     return slice(int(start), int(start) + size)
-
-
-def _adjacent(addresses: list[int]) -> slice | Array:
-    """Return a slice where the addresses follow each other (a view), else an index array."""
-    first = int(addresses[0]) if addresses else 0
-    if [int(a) for a in addresses] == list(range(first, first + len(addresses))):
-        return slice(first, first + len(addresses))
-    return np.array(addresses, dtype=np.intp)
 
 
 def _constant(n: int, value: float) -> Array:

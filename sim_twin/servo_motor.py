@@ -12,7 +12,6 @@ import mujoco
 import numpy as np
 
 from hal.command import JointCommand, shifted_goal
-from hal.errors import ConfigError
 from hal.joints import Array
 from hal.servo_model import ServoModel
 from robots.description import RobotDescription
@@ -47,26 +46,41 @@ def add_actuators(
                 actuator.forcelimited = mujoco.mjtLimited.mjLIMITED_TRUE
                 actuator.forcerange = [-joint.torque, joint.torque]
         else:
-            if servo.ratio != 1.0:
-                raise ConfigError(f"joint {name!r}: a linkage ratio is not modelled by the twin")
-            stiffness = robot.joints.joints[index].stiffness
+            stiffness = robot.joints.joints[index].stiffness / servo.ratio**2
             register = round(servo.model.p_register(stiffness, robot.drive.supply))
-            set_servo(actuator, servo.model, supply, servo.model.stiffness(register, supply))
+            stiffness = servo.model.stiffness(register, supply)
+            set_servo(actuator, servo.model, supply, stiffness, servo.ratio)
         if delay > 0.0:
             actuator.delay = delay
             actuator.nsample = max(1, round(delay / spec.option.timestep))
 
 
 def set_servo(
-    actuator: mujoco.MjsActuator, model: ServoModel, supply: float, stiffness: float
+    actuator: mujoco.MjsActuator,
+    model: ServoModel,
+    supply: float,
+    stiffness: float,
+    ratio: float = 1.0,
 ) -> None:
-    """Make `actuator` a servo of type `model` at `supply` V and `stiffness` N m/rad."""
-    motor = model.motor(supply)
+    """Make `actuator` a servo of type `model` at `supply` V and `stiffness` N m/rad.
+
+    Behind a linkage that turns the servo `ratio` times for one turn of the joint, it is at the
+    joint a motor of `ratio` times the torque and the ratio'th part of the speed, and its gains
+    carry the square.
+    """
+    motor, gains = model.motor(supply), ratio**2
     actuator.set_to_dcmotor(
         motorconst=[0.0, 0.0],
         resistance=0.0,
-        nominal=[supply, motor.stall_torque, motor.no_load_speed],
-        controller=[stiffness, 0.0, model.damping(supply), 0.0, 0.0, supply * model.pwm_limit],
+        nominal=[supply, motor.stall_torque * ratio, motor.no_load_speed / ratio],
+        controller=[
+            gains * stiffness,
+            0.0,
+            gains * model.damping(supply),
+            0.0,
+            0.0,
+            supply * model.pwm_limit,
+        ],
         ctrlspec=POSITION,
     )
 
@@ -92,10 +106,13 @@ class ServoDrive:
 
     def __post_init__(self) -> None:
         servos = [servo for servo in self.robot.servos if servo is not None]
-        self.counts = np.array([servo.model.counts_per_rev / (2.0 * pi) for servo in servos])
-        self._unit = np.array([servo.model.stiffness(1.0, self.supply) for servo in servos])
+        ratio = np.array([servo.ratio for servo in servos])
+        per_rad = np.array([servo.model.counts_per_rev / (2.0 * pi) for servo in servos])
+        self.counts, gains = per_rad * ratio, ratio**2
+        self._unit = gains * [servo.model.stiffness(1.0, self.supply) for servo in servos]
         self._realised = np.empty((2, len(servos)))
-        self._realised[1] = [servo.model.damping(self.supply) for servo in servos]
+        self._realised[1] = gains * [servo.model.damping(self.supply) for servo in servos]
+        self._nominal = gains * [s.model.stiffness(1.0, self.robot.drive.supply) for s in servos]
         self._gains: bytes = b""
         self._nothing = bytes(2 * 8 * len(servos))
         self.sent_gains = 0
@@ -124,9 +141,7 @@ class ServoDrive:
         The register is computed for the nominal supply, as a driver that does not measure it
         would; the stiffness that comes out scales with the real one.
         """
-        servos = [servo for servo in self.robot.servos if servo is not None]
-        nominal = np.array([s.model.stiffness(1.0, self.robot.drive.supply) for s in servos])
-        self._realised[0] = self.factor * np.rint(stiffness / nominal) * self._unit
+        self._realised[0] = self.factor * np.rint(stiffness / self._nominal) * self._unit
         self.model.actuator_gainprm[:, KP] = self._realised[0]
         self.sent_gains += 1
 

@@ -7,15 +7,17 @@ from math import radians
 import mujoco
 import numpy as np
 
-from hal.errors import DivergedError, UnknownNameError
+from hal.errors import DivergedError, UnknownNameError, UsageError
 from hal.joints import Array
 from hal.observation import BaseState
 from robots.description import RobotDescription
+from sim_twin.lowest import lowest_point
+from sim_twin.places import JointPlaces
 from sim_twin.push import Push
+from sim_twin.runaway import WILD, fastest_dof
 from sim_twin.world import World, build_model
 
 STATE = mujoco.mjtState.mjSTATE_INTEGRATION
-WILD = 1e5  # squared speeds of all joints and the base above which something is going wrong
 LOST = 1e6  # sum of positions that no robot has
 
 
@@ -45,6 +47,7 @@ class Twin:
         world: See above.
         model: MuJoCo's model, with actuators.
         data: MuJoCo's state.
+        places: Where the joints stand in MuJoCo's state.
         up: (3,) unit vector along the torso, a live view.
         on_step: Called after every physics step, where something has to look that closely.
         on_jump: Called after a reset or a restore, for whoever remembers the past.
@@ -73,6 +76,7 @@ class Twin:
         self._suspect: int | None = None
         self._pushes: list[Push] = []
         self._torso = self.model.body(robot.torso).id
+        self.places = JointPlaces(self.model, robot.joints.names)
         self.up = self.data.xmat[self._torso, 2::3]
         self._qpos, self._qvel = self.data.qpos, self.data.qvel
         self._before = np.empty(self.model.nq + self.model.nv)
@@ -90,7 +94,7 @@ class Twin:
         jitter = np.random.default_rng(seed).normal(0.0, 1.0, len(pose)) * radians(noise)
         mujoco.mj_resetData(self.model, self.data)
         self._pushes.clear()
-        self.data.qpos[7:] = pose + jitter
+        self.data.qpos[self.places.position] = pose + jitter
         self._drop_to_floor()
         self.set_goals(pose)
         self._jumped()
@@ -103,7 +107,12 @@ class Twin:
             pose: (n,) rad.
             noise: Standard deviation of noise on every joint position, degrees.
             seed: Seed of that noise and of the direction.
+
+        Raises:
+            UsageError: The robot is fixed.
         """
+        if self.robot.fixed:
+            raise UsageError(f"{self.robot.name} is fixed to the ground and cannot lie")
         self.reset(pose, noise=noise, seed=seed)
         turn = np.random.default_rng([1, seed]).uniform(-np.pi, np.pi)
         level, around = np.empty(4), np.empty(4)
@@ -139,11 +148,20 @@ class Twin:
     def base(self) -> BaseState:
         """The true state of the floating base."""
         qpos, qvel = self.data.qpos, self.data.qvel
+        if self.robot.fixed:
+            return self.fixed_base()
         return BaseState(qpos[:3].copy(), qpos[3:7].copy(), qvel[:3].copy(), qvel[3:6].copy())
+
+    def fixed_base(self) -> BaseState:
+        """Return the state of a base that is fixed to the world."""
+        base = self.data.body(self.robot.base)
+        return BaseState(base.xpos.copy(), base.xquat.copy(), np.zeros(3), np.zeros(3))
 
     @property
     def fallen(self) -> bool:
         """True when the base is low or the torso is tilted, as the robot's file says."""
+        if self.robot.fixed:
+            return False
         fall = self.robot.fall
         height = self._qpos[2]
         if not self.world.ground.flat:
@@ -218,12 +236,14 @@ class Twin:
             self.on_jump()
 
     def _drop_to_floor(self) -> None:
-        """Set the base height so that the lowest foot geom touches the floor."""
+        """Set the base height so that the lowest sole is on the floor; without feet, anything."""
+        if self.robot.fixed:
+            return
         self.data.qpos[3:7] = [1.0, 0.0, 0.0, 0.0]
         self.data.qpos[2] = 1.0
         mujoco.mj_kinematics(self.model, self.data)
         soles = [self.data.site(foot.site).xpos[2] for foot in self.robot.feet]
-        self.data.qpos[2] -= min(soles)
+        self.data.qpos[2] -= min(soles) if soles else lowest_point(self.model, self.data)
 
     def _apply_pushes(self) -> None:
         self.data.xfrc_applied[:] = 0.0
@@ -252,30 +272,14 @@ class Twin:
             DivergedError: They are.
         """
         if self._suspect is None:
-            self._suspect = self._fastest(steps)
+            self._suspect = fastest_dof(self.model, self.data, self._before, steps)
         if abs(self._qpos.sum()) < LOST:
             return
         joint = "the base"
-        if self._suspect >= 6:
-            joint = f"joint {self.robot.joints.names[self._suspect - 6]!r}"
+        index = int(self.model.dof_jntid[self._suspect])
+        if self.model.jnt_type[index] != mujoco.mjtJoint.mjJNT_FREE:
+            joint = f"joint {self.model.joint(index).name!r}"
         raise DivergedError(
             f"the twin diverged at {self.time:.3f} s, first at {joint}; "
             "lower its stiffness or the physics time step"
         )
-
-    def _fastest(self, steps: int) -> int:
-        """Return the degree of freedom that first got too fast in the last `steps`, replayed."""
-        replay = mujoco.MjData(self.model)
-        replay.qpos[:] = self._before[: self.model.nq]
-        replay.qvel[:] = self._before[self.model.nq :]
-        replay.ctrl[:] = self.data.ctrl
-        replay.history[:] = self.data.history
-        fastest = 0
-        for _ in range(steps):
-            mujoco.mj_step(self.model, replay)
-            if not np.isfinite(replay.qvel).all():
-                break
-            fastest = int(np.argmax(np.abs(replay.qvel)))
-            if replay.qvel.dot(replay.qvel) > WILD:
-                break
-        return fastest

@@ -5,7 +5,9 @@ from itertools import product
 
 import mujoco
 
+from robots.completion import COM_VELOCITY
 from robots.description import RobotDescription
+from sim_twin.masses import keep_masses
 from sim_twin.plant import Plant
 from sim_twin.servo_motor import add_actuators
 from sim_twin.terrain import Ground
@@ -45,6 +47,7 @@ def build_model(
     """
     world = world or World()
     spec = robot.spec()
+    keep_masses(spec)
     world.plant.change(spec)
     world.ground.build(spec)
     if world.self_collision:
@@ -72,7 +75,7 @@ def _strip(spec: mujoco.MjSpec, robot: RobotDescription) -> None:
         collides = geom.contype or geom.conaffinity
         if not collides or geom.parent.name not in {*feet, "world"}:
             spec.delete(geom)
-    kept = {*robot.contacts.names, "com_velocity"}
+    kept = {*robot.contacts.names, COM_VELOCITY}
     for sensor in list(spec.sensors):
         if sensor.name not in kept:
             spec.delete(sensor)

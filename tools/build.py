@@ -26,6 +26,7 @@ from hal.ranges import Range, read_number
 from robots import RobotDescription
 from sim_twin.imu_errors import OPENCR
 from tools.gaits import find_gait
+from tools.shape import can_estimate, check_walks
 from tools.spells import blended
 from tools.steer import steering_of
 from tools.step_models import memory_for
@@ -51,13 +52,13 @@ def build_estimator(
         attitude: Its IMU tells its attitude and has no gyroscope.
 
     Raises:
-        StateMissingError: The robot has no IMU or no feet.
+        StateMissingError: The robot has no IMU or no feet, is fixed, or has passive joints.
     """
-    if robot.imu is None or not robot.feet:
-        raise StateMissingError(
-            f"the base of {robot.name} cannot be estimated; "
-            "give it an [imu] and a [[foot]] in robot.toml"
-        )
+    if robot.imu is None or not can_estimate(robot):
+        how = "give it an [imu] and a [[foot]] in robot.toml"
+        if robot.fixed or robot.passive:
+            how = "it is fixed" if robot.fixed else f"{robot.passive[0]!r} is passive"
+        raise StateMissingError(f"the base of {robot.name} cannot be estimated; {how}")
     model = robot.spec().compile()
     soles = Soles(model, [foot.body for foot in robot.feet], robot.contacts)
     weight = float(model.body_subtreemass[model.body(robot.base).id]) * GRAVITY
@@ -89,8 +90,9 @@ def build_walk(
         latency: From the start of a step to its scalings acting, where the predictor plays, s.
 
     Raises:
-        UsageError: The options do not fit the gait.
+        UsageError: The options do not fit the gait, or the robot cannot walk.
     """
+    check_walks(robot)
     gait = blended(robot, find_gait(robot, options.gait), options)
     if not gait.graph.ends_step.any() or gait.file.balance is None:
         raise UsageError(

@@ -17,13 +17,14 @@ from control.limb_ik import LimbIk
 from control.soles import Soles
 from control.torque_directed import TorqueDirected
 from hal.controller import Controller
-from hal.errors import UnknownNameError, UsageError
+from hal.errors import UnknownNameError
 from hal.joints import Array
 from hal.observation import Observation
 from robots import RobotDescription
 from tools.build import body_of
 from tools.robot import Robot
 from tools.robot_file import load_beside
+from tools.shape import check_walks
 from tools.stepping import FOOTPRINTS, find_stepping, whole_body_of
 
 
@@ -76,8 +77,7 @@ def feet_of(robot: RobotDescription) -> tuple[str, ...]:
     Raises:
         UsageError: It has not.
     """
-    if len(robot.feet) != 2:
-        raise UsageError(f"{robot.name} has {len(robot.feet)} feet; footprints take two")
+    check_walks(robot, "walk footprints")
     return tuple(foot.name for foot in robot.feet)
 
 

@@ -24,7 +24,8 @@ from tools.faults import with_faults
 from tools.output import console, write_json
 from tools.quantities import Count, Delay, Impulse, Rate, Seed, Some
 from tools.robot import Robot
-from tools.stack import TWIN, Truth, check_port
+from tools.stack import TWIN, check_port
+from tools.truth import Truth
 from tools.walk_options import WalkOptions
 
 ATTITUDE_LIMIT = 1.0  # degrees rms

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from control.gait import Gait, load_gait
 from hal.errors import UnknownNameError
+from hal.joints import Array
 from robots import RobotDescription
 
 
@@ -14,7 +15,11 @@ def find_gait(robot: RobotDescription, name: str) -> Gait:
         UnknownNameError: The robot has no such gait, and there is no such file.
         ConfigError: The file says something that cannot be.
     """
-    return load_gait(gait_path(robot, name), robot.joints, robot.contacts, robot.mirror)
+
+    def mirrored(values: Array) -> Array:
+        return robot.mirror(values)  # which not every robot has
+
+    return load_gait(gait_path(robot, name), robot.joints, robot.contacts, mirrored)
 
 
 def gait_path(robot: RobotDescription, name: str) -> Path:

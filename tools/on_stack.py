@@ -38,7 +38,7 @@ class OnStack:
         """True when the robot has fallen."""
         if self.stack.twin is not None:
             return self.stack.twin.fallen
-        if self.base is None:
+        if self.base is None or self.description.fixed:
             return False
         fall = self.description.fall
         _, x, y, _ = self.base.orientation

@@ -22,6 +22,7 @@ from tools.push_trial import PushPlan, push_robot
 from tools.push_walk import push_walking, walking_said
 from tools.quantities import Degrees, Delay, Duration, Height, Jobs, Seconds, Some, Speed
 from tools.robot import Robot
+from tools.shape import check_walks
 from tools.stepping import WAYS, check_way, find_stepping, stepping_stance
 from tools.twin_options import WorldOptions
 from tools.walk_options import WalkOptions
@@ -149,6 +150,7 @@ class Push(WorldOptions, Common):
     def check(self) -> None:
         """Raise what cannot be; see `Command.check`."""
         super().check()
+        check_walks(load_robot(self.robot), "bear pushes")
         if self.envelope == (self.impulse is not None):
             raise UsageError("give --impulse N_S, or --envelope to find the largest ones")
         self._check_walk()

@@ -95,7 +95,7 @@ class WalkReport:
             "flights": gauges.flights,
             "flight_time_s": gauges.flight_time,
             "touches": "".join(
-                self.robot.description.feet[foot].name[0] for foot in gauges.touches
+                self.robot.description.feet[foot].side[:1] for foot in gauges.touches
             ),
             "skips": gauges.skips,
             "work_j": gauges.work,

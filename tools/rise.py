@@ -39,6 +39,8 @@ class Rise(TwinOptions, Common):
         """Raise what cannot be; see `Command.check`."""
         super().check()
         robot = load_robot(self.robot)
+        if robot.fixed:
+            raise UsageError(f"{self.robot} cannot get up: its base is fixed")
         motions = [f"get_up_{side}" for side in get_args(Side)]
         if missing := set(motions) - set(robot.gaits()):
             raise UsageError(

@@ -119,7 +119,7 @@ class Robot(Session):
             stack = wire_stack(
                 description,
                 port,
-                state=state or "estimated",
+                state=state,
                 arm=arm,
                 noise=noise,
                 seed=seed,

@@ -1,7 +1,9 @@
 """The lower half of a robot: a guarded backend, on a twin or on a port of servos."""
 
-from dataclasses import dataclass, replace
+import logging
+from dataclasses import dataclass
 from itertools import count
+from pathlib import Path
 from typing import Literal
 
 import sim_twin.wire as wire
@@ -10,7 +12,6 @@ from hal.errors import UsageError
 from hal.guard import GuardedBackend, HealthWatch, SafetyLimits
 from hal.imu.bno08x_rvc import Bno08xRvc
 from hal.imu.opencr import OpenCr
-from hal.observation import Observation
 from hal.servo_backend import BusPort, ServoBackend
 from hal.torque_state import TorqueState
 from robots import RobotDescription
@@ -20,6 +21,8 @@ from sim_twin.sensors import Sensors
 from sim_twin.twin import Twin
 from sim_twin.world import World
 from tools.build import build_estimator
+from tools.shape import can_estimate
+from tools.truth import Truth
 
 State = Literal["true", "estimated"]
 TWIN = "twin://"
@@ -63,22 +66,6 @@ class Stack:
             wire.drop_world(self.world)
 
 
-@dataclass
-class Truth:
-    """An estimator that cheats: it looks at the twin behind an emulated bus.
-
-    Attributes:
-        sensors: What the twin's own sensors would say.
-    """
-
-    sensors: Sensors
-
-    def update(self, observation: Observation, dt: float) -> Observation:
-        """Return `observation` with the true base and contacts."""
-        true = self.sensors.read()
-        return replace(observation, base=true.base, contacts=true.contacts)
-
-
 def twin_stack(
     robot: RobotDescription,
     *,
@@ -109,7 +96,7 @@ def wire_stack(
     robot: RobotDescription,
     port: str,
     *,
-    state: State,
+    state: State | None,
     arm: bool,
     noise: float,
     seed: int,
@@ -120,7 +107,8 @@ def wire_stack(
     Args:
         robot: The robot.
         port: URL of its bus, or "BUS=URL,BUS=URL" for several.
-        state: Where the base state comes from; the truth is there behind twin:// only.
+        state: Where the base state comes from; the truth is there behind twin:// only. By default
+            it is estimated, where the robot has the sensors.
         arm: Torque may be switched on. It always may on a twin:// port.
         noise: Noise of the pose that an emulated robot begins in, degrees.
         seed: Seed of that noise.
@@ -152,9 +140,15 @@ def wire_stack(
     return Stack(backend, twin, estimator, delay, True, arm or emulated, world, given)
 
 
-def _estimator(robot: RobotDescription, twin: Twin | None, state: State) -> Estimator:
+def _estimator(robot: RobotDescription, twin: Twin | None, state: State | None) -> Estimator | None:
     """Return what fills in the base state behind a port; no servo bus carries foot switches."""
-    if state == "estimated":
+    if state is None and not can_estimate(robot):
+        if not robot.fixed:
+            logging.getLogger(__name__).warning(
+                "nothing tells whether %s falls: that takes an [imu] and a [[foot]]", robot.name
+            )
+        return None
+    if state != "true":
         return build_estimator(robot, switches=False, attitude=not _imu_on_the_bus(robot))
     if twin is None:
         raise UsageError("--state true needs a twin; a robot has `--state estimated`")
@@ -248,7 +242,7 @@ def _in_a_world(robot: RobotDescription, port: str, around: World | None = None)
         UsageError: It names another robot, or a world that has its ground and plant already.
     """
     address = wire.parse_address(port)
-    if address.robot != robot.name and address.robot != str(robot.folder):
+    if address.robot != robot.name and Path(address.robot).resolve() != robot.folder.resolve():
         raise UsageError(f"the port is a twin of {address.robot!r}, the robot is {robot.name!r}")
     if address.world and around is not None:
         raise UsageError(f"world {address.world!r} may be others' too; leave world= away")

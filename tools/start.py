@@ -48,13 +48,16 @@ class Start:
         model, safety = robot.spec().compile(), robot.safety
         share = spread(safety.first_stiffness, leg_joints(robot, model))
         feet = [foot.body for foot in robot.feet]
-        legs = legs_of(model, robot.base, feet, robot.joints, robot.stance)
+        known = not (robot.fixed or robot.passive)
+        legs = None
+        if known:
+            legs = legs_of(model, robot.base, feet, robot.joints, robot.stance)
         planted = None if legs is None else Planted(robot.joints, legs)
         self.motion = FirstMotion(
             robot.joints, share, safety.first_speed, safety.first_lag, planted
         )
         self._sense = None
-        if robot.imu is not None and robot.feet:
+        if robot.imu is not None and robot.feet and known:
             self._sense = PostureSense(model, feet)
         self.unseen = True
         if isinstance(self.backend.backend, ServoBackend):

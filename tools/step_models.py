@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from control.gait_hash import gait_hash
 from control.learnt_models import LearntModels
 from control.planner import StepPlanner
 from control.regulation import RegulationVariable
@@ -26,19 +27,19 @@ def memory_for(
     A library is the gait's own file of models, where it has one and they fit.
 
     Raises:
-        ConfigError: A file of models is broken, or of other variables.
+        ConfigError: A file of models is broken, or of other variables or another gait.
     """
-    names = [variable.name for variable in regulation]
+    names, path = [variable.name for variable in regulation], gait_path(robot, options.gait)
     if options.learn is not None:
         learning = LearntModels()
         if options.learn.exists():
-            learning.read(options.learn, names, perturbations)
+            learning.read(options.learn, names, perturbations, gait_hash(path))
         return learning
-    own = gait_path(robot, options.gait).with_suffix(SUFFIX)
+    own = path.with_suffix(SUFFIX)
     plain = options.rv is None and not options.blend
     if options.model == "library" and plain and own.exists():
         known = LearntModels(complete=True)
-        known.read(own, names, perturbations)
+        known.read(own, names, perturbations, gait_hash(path))
         return known
     return memory_of(options.model)
 
@@ -64,4 +65,5 @@ def keep_learnt(path: Path, report: WalkReport) -> None:
     if report.done and isinstance(planner, StepPlanner):
         assert isinstance(planner.model.memory, LearntModels), "see `memory_for`"
         names = [variable.name for variable in walker.regulation]
-        planner.model.memory.write(path, names, walker.perturbations)
+        gait = gait_path(report.robot.description, report.options.gait)
+        planner.model.memory.write(path, names, walker.perturbations, gait_hash(gait))

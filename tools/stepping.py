@@ -21,11 +21,12 @@ from control.torque_comfort import ComfortWalk, TorqueComfort
 from control.torque_stepper import TorqueStepper
 from control.whole_body import WholeBody
 from hal.controller import Controller
-from hal.errors import UnknownNameError, UsageError
+from hal.errors import UnknownNameError
 from hal.joints import Array
 from robots import RobotDescription
 from tools.build import body_of
 from tools.robot_file import load_beside
+from tools.shape import check_walks
 
 STEPPING: Final = "stepping.toml"
 FOOTPRINTS: Final = "footprints.toml"
@@ -99,8 +100,7 @@ def build_stepper(
     check_way(way)
     if way == HOLD:
         return PoseHolder(robot.joints, stance, ramp=0.0)
-    if len(robot.feet) != 2:
-        raise UsageError(f"{robot.name} has {len(robot.feet)} feet; stepping takes two")
+    check_walks(robot, "step")
     stepping = find_stepping(robot)
     rule = None if way == FEET else stepping.find_rule(way)
     if support is not None:

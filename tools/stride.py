@@ -9,6 +9,7 @@ from robots import load_robot
 from tools.options import Common
 from tools.output import console, write_json
 from tools.quantities import Degrees, Duration, Speed
+from tools.shape import check_walks
 from tools.striding import Leg, build_strider, check_legs, find_stride, read_leg, stride
 from tools.twin_options import TwinOptions
 
@@ -36,6 +37,7 @@ class Stride(TwinOptions, Common):
         """Raise what cannot be; see `Command.check`."""
         super().check()
         robot, legs = load_robot(self.robot), self.legs()
+        check_walks(robot, "stride")
         check_legs(legs, self.seconds, find_stride(robot))
         build_strider(robot, legs, self.seconds)
 

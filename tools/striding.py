@@ -22,6 +22,7 @@ from tools.build import body_of
 from tools.directed import limbs_of
 from tools.robot import Robot
 from tools.robot_file import load_beside
+from tools.shape import check_walks
 
 FILE: Final = "stride.toml"
 RAMP = 2.0
@@ -102,9 +103,8 @@ def build_strider(robot: RobotDescription, legs: Sequence[Leg], seconds: float) 
     Raises:
         UsageError: The robot has no stride.toml, or not two feet.
     """
+    check_walks(robot, "stride")
     how, body = find_stride(robot), body_of(robot)
-    if len(robot.feet) != 2:
-        raise UsageError(f"{robot.name} has {len(robot.feet)} feet; striding takes two")
     begins = [leg.begin for leg in legs]
 
     def orders(time: float) -> Order:

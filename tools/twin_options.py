@@ -56,7 +56,13 @@ class WorldOptions(Command):
         return World(ground, plant, self.self_collision)
 
     def _ground(self, robot: RobotDescription, seed: int) -> Ground:
-        """Return the ground, in the robot's own measure: half its height at a time."""
+        """Return the ground, in the robot's own measure: half its height at a time.
+
+        Raises:
+            UsageError: The robot is fixed, and the ground is not flat.
+        """
+        if robot.fixed and any((self.slope, self.strips, self.stairs, self.rough)):
+            raise UsageError(f"{robot.name} is fixed: leave the ground away")
         tall = robot.spec().body(robot.base).pos[2]
         return Ground(
             slope=self.slope,

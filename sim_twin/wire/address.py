@@ -90,7 +90,7 @@ def parse_address(url: str) -> Address:
         UsageError: It is not a twin:// URL, or says something unknown.
     """
     parts = urlsplit(url)
-    if parts.scheme != SCHEME or not parts.netloc:
+    if parts.scheme != SCHEME or not parts.netloc + parts.path.rstrip("/"):
         raise UsageError(f"{url!r} is not a twin:// address; 'twin://op3' is")
     values: dict[str, Any] = {"robot": parts.netloc + parts.path.rstrip("/")}
     for name, text in parse_qsl(parts.query, keep_blank_values=True):

@@ -53,5 +53,5 @@ def _on_shaft(device: Device, shaft: InertiaShaft, ratio: float) -> Grip:
 
 def _on_twin(device: Device, physics: TwinPhysics, joint: int) -> Grip:
     """Return a grip on a joint of a twin."""
-    place = physics.twin.data.qpos[7 + joint : 8 + joint]
-    return Grip(device, lambda: float(place[0]), partial(physics.turn, joint))
+    positions, at = physics.twin.data.qpos, int(physics.twin.places.qpos[joint])
+    return Grip(device, lambda: float(positions[at]), partial(physics.turn, joint))

@@ -54,18 +54,19 @@ class TwinShaft:
         self.miswired = False
         self._factor = twin.world.plant.stiffness
         self._damping = mount.model.damping(twin.supply) * mount.ratio**2
-        self._q, self._dq = twin.data.qpos[7:], twin.data.qvel[6:]
+        self._q, self._at = twin.data.qpos, int(twin.places.qpos[joint])
+        self._dq, self._dof = twin.data.qvel, int(twin.places.dofs[joint])
         self._ctrl, self._force = twin.data.ctrl, twin.data.actuator_force
 
     @property
     def position(self) -> float:
         """See `Shaft`."""
-        return self._turn * float(self._q[self.joint]) + self._zero
+        return self._turn * float(self._q[self._at]) + self._zero
 
     @property
     def velocity(self) -> float:
         """See `Shaft`."""
-        return self._turn * float(self._dq[self.joint])
+        return self._turn * float(self._dq[self._dof])
 
     @property
     def torque(self) -> float:
@@ -141,7 +142,9 @@ class TwinImu:
         self._gravity = -twin.model.opt.gravity
         self._places = np.r_[gyro : gyro + 3, acceleration : acceleration + 3]
         self._filter = LowPass(OPENCR.lag, twin.timestep)
-        self._base = twin.data.qpos
+        self._base = (
+            twin.data.body(twin.robot.base).xquat if twin.robot.fixed else twin.data.qpos[3:7]
+        )
         self._noise = np.random.default_rng(0).normal(0.0, NOISE, (1009, 3))
         self._steps = 0
         twin.on_step = _while_alive(self._feel)
@@ -160,7 +163,7 @@ class TwinImu:
     @property
     def orientation(self) -> Array:
         """(4,) wxyz."""
-        return np.asarray(self._base[3:7])
+        return np.asarray(self._base)
 
     def _feel(self) -> None:
         self._steps += 1
@@ -224,9 +227,9 @@ class TwinPhysics:
 
     def turn(self, joint: int, angle: float, rate: float) -> None:
         """Turn a joint to `angle` rad by hand, at `rate` rad/s."""
-        data = self.twin.data
-        data.qpos[7 + joint] = self._qpos[7 + joint] = angle
-        data.qvel[6 + joint] = rate
+        data, at = self.twin.data, self.twin.places.qpos[joint]
+        data.qpos[at] = self._qpos[at] = angle
+        data.qvel[self.twin.places.dofs[joint]] = rate
 
     def _take_or_let_go(self, driven: Mask) -> None:
         """Let go when all servos have been driven, and take again what is limp if told to."""
@@ -244,15 +247,17 @@ class TwinPhysics:
         """Put back what the hands hold."""
         data = self.twin.data
         free = np.flatnonzero(self.driven)
-        kept_q, kept_v = data.qpos[7 + free].copy(), data.qvel[6 + free].copy()
+        at, dofs = self.twin.places.qpos[free], self.twin.places.dofs[free]
+        kept_q, kept_v = data.qpos[at].copy(), data.qvel[dofs].copy()
         data.qpos[:], data.qvel[:] = self._qpos, self._qvel
-        data.qpos[7 + free], data.qvel[6 + free] = kept_q, kept_v
+        data.qpos[at], data.qvel[dofs] = kept_q, kept_v
 
     def _jam(self) -> None:
         """Put back the joints that do not move."""
         stuck = np.flatnonzero(self.jammed)
-        self.twin.data.qpos[7 + stuck] = self._qpos[7 + stuck]
-        self.twin.data.qvel[6 + stuck] = 0.0
+        at, dofs = self.twin.places.qpos[stuck], self.twin.places.dofs[stuck]
+        self.twin.data.qpos[at] = self._qpos[at]
+        self.twin.data.qvel[dofs] = 0.0
 
 
 def _while_alive(method: Callable[[], None]) -> Callable[[], None]:

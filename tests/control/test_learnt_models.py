@@ -8,7 +8,7 @@ from control.learnt_models import LearntModels
 from hal.errors import ConfigError
 from tests.control.test_step_memory import HERE, TARGET, J, Steps, model
 
-NAMES = ["up.forward", "up.lateral"], ["a", "b"]
+NAMES = ["up.forward", "up.lateral"], ["a", "b"], "0123456789abcdef"
 
 
 def learnt(*places: float, complete: bool = True) -> LearntModels:
@@ -20,7 +20,7 @@ def learnt(*places: float, complete: bool = True) -> LearntModels:
 
 def with_model(**changed: object) -> str:
     model = {"phase": 0, "start": [0.0], "jacobian": [[1.0, 0.0], [0.0, 1.0]], **changed}
-    file = {"regulation": NAMES[0], "perturbations": NAMES[1], "models": [model]}
+    file = {"regulation": NAMES[0], "perturbations": NAMES[1], "models": [model], "gait": NAMES[2]}
     return json.dumps(file)
 
 

@@ -174,11 +174,6 @@ TOE = """
 """
 
 
-def test_a_hinge_without_a_range_is_named(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match="joint 'hip': the MJCF gives this hinge no range"):
-        load_robot(folder(tmp_path, mjcf=MJCF.replace(' range="-1 1"', "")))
-
-
 def test_actuators_belong_to_the_twin(tmp_path: Path) -> None:
     actuator = '<actuator><motor joint="hip"/></actuator></mujoco>'
     with pytest.raises(ConfigError, match="model: the MJCF has actuators"):

@@ -3,10 +3,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.gait import load_gait
 from hal.errors import ImuError
 from robots import load_robot, robot_names
 from tests.tools.conftest import Windup
+from tools.gaits import find_gait
 from tools.robot import Robot
 
 AT = 3.0
@@ -103,5 +103,4 @@ def test_graphs_that_ask_for_the_attitude_need_the_imu() -> None:
 
 
 def attitude(name: str, path: Path) -> bool:
-    robot = load_robot(name)
-    return load_gait(path, robot.joints, robot.contacts, robot.mirror).file.attitude
+    return find_gait(load_robot(name), path.stem).file.attitude

@@ -19,6 +19,7 @@ from tools.gaits import gait_path
 from tools.output import check_writable, console, write_json
 from tools.parallel import Workers
 from tools.quantities import Count, Jobs, Noise, Seed, Some, Speed
+from tools.shape import check_walks
 from tools.synthesis.gait_toml import write_gait
 from tools.synthesis.genes import Genome
 from tools.synthesis.log import Entry, SearchLog
@@ -80,6 +81,7 @@ class Synthesise(Command):
     def run(self) -> int:
         """Search; returns 0 if the gait written walks from all starts, else 1."""
         robot = load_robot(self.robot)
+        check_walks(robot)
         start = load_toml(gait_path(robot, self.gait), GaitFile)
         build_walk(robot, WalkOptions(gait=self.gait, speed=self.speed), None)
         genome = Genome(start, robot.joints, robot.mirror)

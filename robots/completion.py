@@ -1,0 +1,58 @@
+"""The sensors that an MJCF needs not have: an IMU's, the feet's, the centre of mass' velocity."""
+
+from collections.abc import Iterable
+
+import mujoco
+import numpy as np
+
+from robots.records import ACCELEROMETER, GYRO, Foot, Imu, RobotFile
+
+COM_VELOCITY = "com_velocity"
+SITE = mujoco.mjtObj.mjOBJ_SITE
+IMU_KINDS = {
+    GYRO: mujoco.mjtSensor.mjSENS_GYRO,
+    ACCELEROMETER: mujoco.mjtSensor.mjSENS_ACCELEROMETER,
+}
+REACH = 0.01
+"""So far the zone of a touch sensor goes beyond the geoms of its foot, m."""
+
+
+def complete_for(robot: RobotFile, spec: mujoco.MjSpec) -> None:
+    """Add what the MJCF lacks of the sensors that a `robot.toml` asks for."""
+    complete(spec, robot.base, robot.imu, [entry.foot() for entry in robot.foot])
+
+
+def complete(spec: mujoco.MjSpec, base: str, imu: Imu | None, feet: Iterable[Foot]) -> None:
+    """Add sensors that nobody names otherwise; wrong names are left to the checks.
+
+    Args:
+        spec: The robot's MJCF.
+        base: Name of its base.
+        imu: Its IMU: a gyroscope and an accelerometer of the names that are the default.
+        feet: Its feet: a touch sensor of all the foot where it names none.
+    """
+    there = {sensor.name for sensor in spec.sensors}
+    if imu is not None and spec.site(imu.site) is not None:
+        for name, kind in IMU_KINDS.items():
+            if name in (imu.gyro, imu.accelerometer) and name not in there:
+                spec.add_sensor(name=name, type=kind, objtype=SITE, objname=imu.site)
+    if COM_VELOCITY not in there and spec.body(base) is not None:
+        kind, body = mujoco.mjtSensor.mjSENS_SUBTREELINVEL, mujoco.mjtObj.mjOBJ_BODY
+        spec.add_sensor(name=COM_VELOCITY, type=kind, objtype=body, objname=base)
+    for foot in feet:
+        if foot.sensors == (name := f"{foot.name}_touch",) and name not in there:
+            _add_touch(spec, foot, name)
+
+
+def _add_touch(spec: mujoco.MjSpec, foot: Foot, name: str) -> None:
+    """Add a sensor of all that touches a foot; its zone is a ball around the sole's middle."""
+    body, sole = spec.body(foot.body), spec.site(foot.site)
+    if body is None or sole is None or sole.parent.name != foot.body:
+        return
+    model = spec.compile()
+    geoms = model.geom_bodyid == model.body(foot.body).id
+    away = np.linalg.norm(model.geom_pos[geoms] - model.site(foot.site).pos, axis=1)
+    radius = REACH + float((away + model.geom_rbound[geoms]).max(initial=0.0))
+    body.add_site(name=name, pos=sole.pos, type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[radius] * 3)
+    kind = mujoco.mjtSensor.mjSENS_TOUCH
+    spec.add_sensor(name=name, type=kind, objtype=SITE, objname=name)

@@ -1,0 +1,71 @@
+"""What an MJCF may say, and is seldom meant: a robot with it runs, but not as its owner thinks."""
+
+from collections.abc import Iterator
+
+import mujoco
+import numpy as np
+
+from robots.description import RobotDescription
+
+POINTS = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
+DEEP = 1e-3
+"""Bodies that are no deeper than this in each other only touch, m."""
+
+
+def doubts(robot: RobotDescription) -> list[str]:
+    """Return what is doubtful about a robot's MJCF, a line each, with what would be better."""
+    model = robot.spec().compile()
+    data = mujoco.MjData(model)
+    for name, angle in zip(robot.joints.names, robot.stance, strict=True):
+        data.joint(name).qpos[0] = angle
+    mujoco.mj_kinematics(model, data)
+    return [
+        *_points(robot, model, data),
+        *_armature(robot, model),
+        *_neighbours(model, data),
+    ]
+
+
+def _points(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[str]:
+    """Yield the feet whose lowest geoms are round, and too few to bear a moment."""
+    solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
+    for foot in robot.feet:
+        geoms = np.flatnonzero(solid & (model.geom_bodyid == model.body(foot.body).id))
+        if not geoms.size:
+            yield f"foot {foot.name!r} touches nothing: no geom of body {foot.body!r} collides"
+            continue
+        kinds = model.geom_type[geoms]
+        lowest = int(kinds[data.geom_xpos[geoms, 2].argmin()])
+        if lowest in POINTS and np.isin(kinds, POINTS).sum() < 3:
+            bears = "a box for its sole does"
+            yield f"foot {foot.name!r} stands on points, which bear no moment; {bears}"
+
+
+def _armature(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
+    bare = [
+        (name, servo)
+        for name, servo in zip(robot.joints.names, robot.servos, strict=True)
+        if servo is not None and model.dof_armature[model.joint(name).dofadr[0]] == 0.0
+    ]
+    if bare:
+        names, servo = ", ".join(name for name, _ in bare), bare[0][1]
+        rotor = servo.model.armature * servo.ratio**2
+        yield (
+            f"armature 0 at {names}: a servo's rotor turns with its joint; an {servo.model.name} "
+            f"has armature={rotor:.2g}"
+        )
+
+
+def _neighbours(model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[str]:
+    """Yield the pairs of bodies that are in each other where the robot stands."""
+    mujoco.mj_collision(model, data)
+    pairs = set()
+    for contact in data.contact:
+        one, other = sorted(model.geom_bodyid[contact.geom].tolist())
+        if model.body_weldid[one] and model.body_weldid[other] and contact.dist < -DEEP:
+            pairs.add((model.body(one).name, model.body(other).name))
+    for first, second in sorted(pairs):
+        yield (
+            f"bodies {first!r} and {second!r} collide in the stance: they push each other apart; "
+            "let robots' geoms have contype 0, or <exclude> the pair"
+        )

@@ -1,0 +1,69 @@
+"""What an MJCF is made of: its base, which stands, floats or is fixed, and the joints in it."""
+
+from collections.abc import Iterator
+
+import mujoco
+import numpy as np
+
+from robots import mjcf
+from robots.records import RobotFile
+
+Mistake = tuple[str, str]
+SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
+
+
+def is_fixed(model: mujoco.MjModel) -> bool:
+    """Return whether nothing in the MJCF floats: the base stands where it stands, as an arm's."""
+    return mjcf.FREE not in model.jnt_type
+
+
+def mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
+    """Yield key and mistake of what robot and MJCF do not agree on about base and joints."""
+    yield from _of_the_base(robot, model)
+    if model.nu:
+        yield "model", _actuators(model)
+    yield from _of_the_joints(robot, model)
+
+
+def _of_the_base(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
+    base, free = model.body(robot.base), np.flatnonzero(model.jnt_type == mjcf.FREE)
+    if len(free) > 1:
+        yield "model", f"the MJCF has {len(free)} free joints; only the base may have one"
+    if len(free) and (base.jntnum[0] != 1 or base.jntadr[0] != free[0]):
+        floats = model.body(int(model.jnt_bodyid[free[0]])).name
+        yield "base", f"body {robot.base!r} has no free joint in the MJCF; body {floats!r} has it"
+    if len(free) and free[0] != 0:
+        yield "base", "its free joint has to be the first joint of the MJCF"
+    if not len(free) and model.body_weldid[base.id] != 0:
+        yield "base", f"body {robot.base!r} moves with a joint; name one that is fixed to the world"
+    if len(free) and robot.fall is None:
+        yield "fall", "is missing: when does it count as fallen? [fall] has height and tilt"
+    if not len(free) and robot.foot:
+        yield "foot", "feet are for a robot whose base has a free joint; this one is fixed"
+
+
+def _actuators(model: mujoco.MjModel) -> str:
+    """Return what to delete, by name."""
+    listed = [model.actuator(i).name or f"number {i + 1}" for i in range(model.nu)]
+    shown = ", ".join(listed[:4]) + (", ..." if len(listed) > 4 else "")
+    return (
+        f"the MJCF has actuators ({shown}): delete its <actuator> section; the [drive] of "
+        "robot.toml says what moves a joint"
+    )
+
+
+def _of_the_joints(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
+    entries = [joint.name for joint in robot.joint]
+    if not entries:
+        yield "joint", "is missing: a robot has at least one [[joint]], with name, lower and upper"
+    for index, kind in enumerate(model.jnt_type):
+        name = model.joint(index).name
+        passive = name in robot.passive
+        if kind == mjcf.HINGE and passive and name in entries:
+            yield "passive", f"{name!r} is a [[joint]] as well; it has a servo or it has none"
+        if kind == mjcf.HINGE and not passive and name not in entries:
+            how = "or passive names it, where no servo moves it"
+            yield "joint", f"the MJCF hinge {name!r} has no [[joint]]; give it one, {how}"
+        if kind not in (mjcf.HINGE, mjcf.FREE) and not (kind == SLIDE and passive):
+            what = "slide" if kind == SLIDE else "ball joint"
+            yield "model", f"joint {name!r} is a {what}: servos turn hinges; passive slides can be"
