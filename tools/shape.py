@@ -28,7 +28,7 @@ def _unable(robot: RobotDescription) -> str:
     if robot.fixed:
         return "its base is fixed, for the MJCF has no free joint"
     if len(robot.feet) != 2:
-        return f"it has {len(robot.feet)} feet, which takes two ([[foot]] in robot.toml)"
+        return f"that takes two feet, and robot.toml has {len(robot.feet)} ([[foot]])"
     if robot.passive:
         names = ", ".join(robot.passive)
         return f"the control of legs knows nothing of passive joints ({names})"

@@ -18,7 +18,6 @@ TERMIOS2 = struct.Struct("4I20B2I")  # the last two: input and output speed, bau
 CHUNK = 4096
 OURS = re.compile(r"/dev/pts/\d+")  # where the links of emulators lead
 VISITORS = 64  # programs that are taken in or refused at once
-SOCKET_BUFFER = 16_384  # bytes; a program's, as an adapter has it, not megabytes
 
 
 class Link(Protocol):
@@ -152,7 +151,6 @@ class Tcp:
     def __init__(self, port: int, host: str = "127.0.0.1") -> None:
         self._server = socket.create_server((host, port))
         self._server.setblocking(False)
-        self._server.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, SOCKET_BUFFER)
         self._client: socket.socket | None = None
 
     @property

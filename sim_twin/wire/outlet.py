@@ -9,7 +9,8 @@ from sim_twin.wire.bus import BITS, Bus
 from sim_twin.wire.link import Link
 
 CHUNK_TIME = 0.0006  # s of bytes that go out together in the middle of an answer
-WAITING: Final = 65_536  # bytes of a program; behind so many it is held up, as by an adapter
+WAITING: Final = 65_536  # bytes of a program that wait for the wire; more are lost
+AT_ONCE: Final = 262_144  # bytes that are taken off a link together
 ON_THE_WIRE: Final = 0.010  # s of a program's bytes that the bus knows of ahead of their time
 
 
@@ -18,9 +19,9 @@ class Outlet:
     """A bus, its plug, and when bytes go out next.
 
     What a program sends is taken off its link at once, so that a program that flushes its output
-    loses as little as the kernel lets it, and put on the wire as fast as the wire is: whoever sends
-    megabytes waits, and neither fills the memory nor delays the answers to those who come later
-    by more than what fits into `WAITING`.
+    loses as little as the kernel lets it, and put on the wire as fast as the wire is. What does not
+    fit into `WAITING` is lost, as in an adapter without flow control: whoever sends megabytes and
+    goes neither fills the memory nor has those who come later wait for seconds.
 
     Attributes:
         bus: The bus.
@@ -49,10 +50,8 @@ class Outlet:
             self.waiting.clear()
 
     def descriptors(self) -> list[int]:
-        """Return what to wait for: nothing while the program is held up."""
-        if self.link is None or len(self.waiting) >= WAITING:
-            return []
-        return self.link.descriptors()
+        """Return what to wait for."""
+        return [] if self.link is None else self.link.descriptors()
 
     def due(self, more: bool) -> float:
         """Return when bytes should go out next, s.
@@ -79,10 +78,10 @@ class Outlet:
         """
         schedule, link = self.bus.schedule, self.link
         schedule.now = max(schedule.now, self.sent)
-        if link is not None and (data := link.receive(WAITING - len(self.waiting))):
+        if link is not None and (data := link.receive(AT_ONCE)):
             if baud := link.baud():
                 self.bus.baud = baud
-            self.waiting += data
+            self.waiting += data[: WAITING - len(self.waiting)]
             self.feed()
 
     def feed(self) -> None:
