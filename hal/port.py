@@ -59,7 +59,10 @@ class Port:
         latency: How long the adapter may hold back bytes that have arrived, s.
         sent: Bytes written so far.
         received: Bytes read so far.
+        has_baud: Does its baud rate reach the wire? A plain TCP bridge has one of its own.
     """
+
+    has_baud = True
 
     def __init__(self, serial: SerialLike, url: str, latency: float | None = None) -> None:
         self._serial, self.url, self.place = serial, url, url

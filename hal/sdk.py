@@ -154,7 +154,7 @@ class Link(ABC):
         self, id: int, call: Callable[[], tuple[Any, int, int]], attempts: int = ATTEMPTS
     ) -> tuple[Any, int]:
         """Return value and error byte of a call that ends in (value, result, error)."""
-        result = COMM_SUCCESS
+        result, before = COMM_SUCCESS, self._port.port.received
         for _ in range(attempts):
             self.heartbeat()
             with self._released():
@@ -163,6 +163,10 @@ class Link(ABC):
                 self._check(id, error)
                 return value, error
         where = f"id {id} on {self._port.port.url} at {self._port.port.baud} baud"
+        if result == self.timed_out and (came := self._port.port.received - before):
+            raise NoAnswerError(
+                f"no answer from {where}, but {came} bytes that are none; run `windup scan`"
+            )
         if result == self.timed_out:
             raise NoAnswerError(f"no answer from {where}; is it powered? run `windup scan`")
         raise CorruptAnswerError(

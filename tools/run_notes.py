@@ -4,10 +4,12 @@ A session leaves its warnings here when it is closed, and they are merged: the s
 runs is one warning. A command begins with none.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from copy import deepcopy
 from typing import Any
 
+from hal.errors import OutputError, UsageError
 from hal.guard.finding import Finding
 from tools.slowness import Slowness
 
@@ -19,6 +21,7 @@ class RunNotes:
 
     Attributes:
         ran: Has there been a robot at all?
+        lost: Results that could not be written, and why; "" where nobody was there to read one.
     """
 
     def __init__(self) -> None:
@@ -27,6 +30,7 @@ class RunNotes:
     def begin(self) -> None:
         """Forget everything: a command begins."""
         self.ran = False
+        self.lost: list[str] = []
         self._findings: dict[str, Finding] = {}
         self._slowness: Slowness | None = None
         self._rows: list[Row] = []
@@ -49,6 +53,16 @@ class RunNotes:
         """Take in the result of a run in another process, with its `warnings`."""
         self.ran = True
         self._rows.append(row)
+
+    @contextmanager
+    def losing(self) -> Iterator[None]:
+        """Note a result that cannot be written, and go on: there may be others."""
+        try:
+            yield
+        except (OutputError, UsageError) as error:
+            self.lost.append(str(error))
+        except BrokenPipeError:
+            self.lost.append("")
 
     def records(self) -> list[Row]:
         """Return all warnings for programs."""

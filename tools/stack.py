@@ -198,6 +198,8 @@ def check_port(robot: RobotDescription, port: str) -> None:
     Raises:
         UsageError: It does not fit the robot, or a number in a twin:// URL cannot be.
     """
+    if any(servo is None for servo in robot.servos):
+        raise UsageError(f"{robot.name} has no servos on a wire; leave --port away")
     for url in _urls(robot, port).values():
         if url.startswith(TWIN):
             wire.parse_address(url)
