@@ -95,7 +95,7 @@ class LearntModels:
             check_finite(path, msgspec.json.decode(text))
         except OSError as error:
             raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
-        except msgspec.DecodeError as error:
+        except (msgspec.DecodeError, RecursionError) as error:
             raise ConfigError(f"{path}: no file of step models: {error}") from None
         if (file.regulation, file.perturbations) != (regulation, perturbations):
             raise ConfigError(

@@ -48,6 +48,7 @@ class LoopReport:
         ticks: Ticks run.
         missed: Ticks that came too late and were skipped.
         sim_time: Time on the backend's clock, s.
+        first_motion: Part of it that the first motion after torque came on has taken, s.
         wall_time: Time on the wall, s.
         tick: Wall time of each tick (read, estimate, step, write; without rollouts), s.
     """
@@ -56,6 +57,7 @@ class LoopReport:
     ticks: int = 0
     missed: int = 0
     sim_time: float = 0.0
+    first_motion: float = 0.0
     wall_time: float = 0.0
     tick: list[float] = field(default_factory=list, repr=False)
 

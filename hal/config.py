@@ -11,11 +11,14 @@ import msgspec
 from msgspec import Meta
 
 from hal.errors import ConfigError, suggest
+from hal.missing_keys import missing_keys
 from hal.small_file import read_small
 
 T = TypeVar("T")
 LARGEST: Final = 1e12
 """No number of a file is beyond this, in any unit."""
+MOST_NAMED: Final = 12
+"""So many missing keys are named."""
 
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
@@ -40,20 +43,20 @@ def load_toml(path: Path, record: type[T]) -> T:
         ConfigError: The file is missing, is not TOML, or does not fit the record.
     """
     try:
-        text = read_small(path).decode("utf-8-sig")
+        text = read_small(path).decode("utf-8-sig")  # editors of Windows write a mark before it
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise ConfigError(f"{path}: not TOML: this is no UTF-8 text") from None
     try:
         data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # numbers of 5000 digits, brackets 500 deep
         raise ConfigError(f"{path}: not TOML: {error}") from None
     check_finite(path, data)
     try:
         return msgspec.convert(data, record)
     except msgspec.ValidationError as error:
-        raise ConfigError(f"{path}: {_explain(str(error), record)}") from None
+        raise ConfigError(f"{path}: {_explain(str(error), record, data)}") from None
 
 
 def check_finite(path: Path, data: Any) -> None:
@@ -81,8 +84,12 @@ def _numbers(data: Any, key: str) -> Iterator[tuple[str, float]]:
         yield key, data
 
 
-def _explain(message: str, record: type) -> str:
+def _explain(message: str, record: type, data: Any) -> str:
     """Turn msgspec's message into ours: the key first, then the likely word."""
+    if "missing required field" in message:
+        missing = list(missing_keys(data, record))
+        more = f" and {len(missing) - MOST_NAMED} more" if len(missing) > MOST_NAMED else ""
+        return f"missing: {', '.join(missing[:MOST_NAMED])}{more}"
     message = message.replace("Object ", "")
     place = ""
     if found := re.search(r" - at `\$?\.?(.*)`$", message):

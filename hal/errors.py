@@ -66,6 +66,10 @@ class PlannerError(WindupError):
     """The process that plans steps could not start, failed, or has died."""
 
 
+class OutputError(WindupError):
+    """A result cannot be written; what was to be done is done."""
+
+
 class TelemetryError(WindupError):
     """A telemetry ring that cannot be made, is not there, or is of another version."""
 

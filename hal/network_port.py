@@ -8,6 +8,8 @@ from hal.port import Port
 
 NETWORK = ("socket://", "rfc2217://")
 """How the URLs of such ports begin."""
+RAW = "socket://"
+"""The same, of those that pass on bytes and no baud rate."""
 
 
 class NetworkPort(Port):
@@ -20,6 +22,7 @@ class NetworkPort(Port):
     def __init__(self, serial: Any, url: str, latency: float | None = None) -> None:
         super().__init__(serial, url, latency)
         self._serial: Any = serial
+        self.has_baud = not url.startswith(RAW)
         connection = getattr(serial, "_socket", None)
         self._connection = connection if isinstance(connection, socket.socket) else None
         if self._connection is not None:

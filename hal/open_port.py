@@ -2,7 +2,6 @@
 
 import contextlib
 import errno
-import grp
 import importlib
 import os
 from pathlib import Path
@@ -15,6 +14,7 @@ from serial.tools import list_ports
 from hal.errors import PortError, UsageError
 from hal.network_port import NETWORK, NetworkPort
 from hal.port import GONE, DevicePort, Port
+from hal.port_access import access_remedy
 
 BAUD = 1_000_000
 
@@ -112,15 +112,10 @@ def _explain(device: str, url: str, error: Exception) -> str:
         ports = ", ".join(sorted(p.device for p in list_ports.comports())) or "none"
         return f"no port {url}; ports there are: {ports}"
     if code == errno.EACCES or "ermission denied" in str(error):
-        return f"no permission for {url}; {_remedy(device)}"
+        return f"no permission for {url}; {access_remedy(device)}"
     if code in (errno.EAGAIN, errno.EBUSY, errno.EWOULDBLOCK) or "lock port" in str(error):
         return _busy(url, holders(device))
     return f"port {url} cannot be opened: {error}"
-
-
-def _remedy(device: str) -> str:
-    group = grp.getgrgid(os.stat(device).st_gid).gr_name
-    return f"join its group: sudo usermod -aG {group} $USER, then log in again"
 
 
 def _busy(url: str, held_by: dict[int, str]) -> str:

@@ -65,7 +65,10 @@ class Port:
         known: Have latency and echo been measured? See `hal.adapter`.
         sent: Bytes written so far.
         received: Bytes read so far.
+        has_baud: Does its baud rate reach the wire? A plain TCP bridge has one of its own.
     """
+
+    has_baud = True
 
     def __init__(self, serial: SerialLike, url: str, latency: float | None = None) -> None:
         self._serial, self.url, self.place = serial, url, url

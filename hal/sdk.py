@@ -194,7 +194,7 @@ class Link(ABC):
         After a call that failed its answer may still come, so the line is let fall quiet before
         the next request; an answer with another number of parameters than `size` is never taken.
         """
-        result = COMM_SUCCESS
+        result, before = COMM_SUCCESS, self._port.port.received
         for _ in range(attempts):
             self.heartbeat()
             if self._unsettled:
@@ -208,6 +208,10 @@ class Link(ABC):
                 result = COMM_RX_CORRUPT
             self._unsettled = True
         where = f"id {id} on {self._port.port.url} at {self._port.port.baud} baud"
+        if result == self.timed_out and (came := self._port.port.received - before):
+            raise NoAnswerError(
+                f"no answer from {where}, but {came} bytes that are none; run `windup scan`"
+            )
         if result == self.timed_out:
             raise NoAnswerError(f"no answer from {where}; is it powered? run `windup scan`")
         raise CorruptAnswerError(

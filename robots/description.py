@@ -1,5 +1,6 @@
 """A robot as the rest of the stack sees it: robot.toml and model.xml, read and cross-checked."""
 
+import os
 from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
@@ -157,9 +158,8 @@ def load_robot(name_or_path: str | Path) -> RobotDescription:
 def _folder(name_or_path: str | Path) -> Path:
     if str(name_or_path) in robot_names():
         return FOLDER / name_or_path
-    folder = Path(name_or_path)
-    if folder.is_dir():
-        return folder
+    if os.path.isdir(name_or_path):  # False, and no error, for a name that no file can have
+        return Path(name_or_path)
     raise UnknownNameError("robot", str(name_or_path), robot_names())
 
 

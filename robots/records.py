@@ -13,6 +13,7 @@ from robots.levels import JointLevels
 GYRO, ACCELEROMETER = "gyro", "accelerometer"
 """Names of the sensors of an IMU that names none."""
 
+Wait = Annotated[float, Meta(gt=0.0, le=86_400.0)]
 Share = Annotated[float, Meta(ge=0.05, le=1.0)]
 
 
@@ -48,7 +49,7 @@ class Bus(Record, frozen=True):
 
     name: str
     protocol: Literal["dynamixel1", "dynamixel2", "feetech"]
-    baud: Annotated[int, Meta(gt=0)]
+    baud: Annotated[int, Meta(gt=0, le=10_000_000)]
 
 
 class JointEntry(Record, frozen=True):
@@ -75,7 +76,7 @@ class JointEntry(Record, frozen=True):
     bus: str | None = None
     id: Annotated[int, Meta(ge=0, le=253)] | None = None
     sign: Literal[1, -1] = 1
-    zero: int | None = None
+    zero: Annotated[int, Meta(ge=-1_048_575, le=1_048_575)] | None = None
     ratio: Annotated[float, Meta(gt=0.0, le=1_000.0)] = 1.0
     offset: Annotated[int, Meta(ge=-1_044_479, le=1_044_479)] = 0
 
@@ -181,11 +182,11 @@ class Safety(JointLevels, frozen=True):
         first_lag: How far a joint may be behind its goal in it, rad.
     """
 
-    idle: Positive = 10.0
-    hold: Positive = 60.0
-    first_speed: Positive = 0.6
+    idle: Wait = 10.0
+    hold: Wait = 60.0
+    first_speed: Annotated[float, Meta(ge=0.01, le=50.0)] = 0.6
     first_stiffness: Shares = Shares(legs=0.6, others=0.3)
-    first_lag: Positive = 0.25
+    first_lag: Tilt = 0.25
 
 
 INHERITED = ("servo", "bus", "stiffness", "damping")
@@ -219,7 +220,7 @@ class RobotFile(Record, frozen=True):
         poses: Pose name to joint name to rad; joints not named are at 0.
     """
 
-    name: str
+    name: Annotated[str, Meta(min_length=1, max_length=64)]
     title: str
     rate_hz: Positive
     base: str

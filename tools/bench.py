@@ -20,6 +20,7 @@ from tools.bench_starts import measure_starts
 from tools.bench_unplug import measure_unplugs
 from tools.bench_wire import Maker, measure_bus
 from tools.command import Command
+from tools.fuzz.bench import measure_fuzz
 from tools.output import console, write_json
 from tools.quantities import Count, Seed
 from tools.safety.bench import ROBOTS, measure_safety
@@ -38,6 +39,7 @@ What = Literal[
     "unplug",
     "leaks",
     "starts",
+    "fuzz",
 ]
 
 
@@ -55,6 +57,7 @@ class Bench(Command):
     faults: what becomes of readings under each kind of fault on the bus (half an hour).
     unplug: what becomes of a robot whose adapter is pulled out and put in again (4 minutes).
     starts: does a robot start from wherever it is put, and notice what is wrong with it (5 min).
+    fuzz: odd command lines on broken robots; none may end in a traceback (give --times 10000).
     leaks: what opening and closing a robot leaves behind; 1000 times (10 minutes), status 1 if that
     is more than 5 MB, or any file, thread or process."""
     robot: str | None = None
@@ -68,9 +71,9 @@ class Bench(Command):
     reads: Annotated[int, Range(1, 10**9)] = 10_000_000
     """faults: how often servos are read, in all."""
     times: Count | None = None
-    """unplug, leaks and starts: how often; 100, 1000, and 100."""
+    """unplug, leaks, starts and fuzz: how often; 100, 1000, 100, and 1000."""
     seed: Seed = 0
-    """safety, faults, unplug: seed of the moments; starts: of the first."""
+    """safety, faults, unplug, fuzz: what is drawn with; starts: of the first."""
     minutes: Annotated[float, Range(0.0, 10_000.0, "minutes", above=True)] = 10.0
     """loop, guardian: how long."""
     json: Path | None = None
@@ -89,6 +92,7 @@ class Bench(Command):
             "unplug": partial(measure_unplugs, times=self.times or 100, seed=self.seed),
             "leaks": partial(measure_leaks, times=self.times or 1_000),
             "starts": partial(measure_starts, starts=self.times or 100, seed=self.seed),
+            "fuzz": partial(measure_fuzz, times=self.times or 1_000, seed=self.seed),
         }
         if self.what == "safety":
             return self._safety()

@@ -2,11 +2,10 @@
 
 import io
 import logging
-import os
 import sys
-from contextlib import redirect_stderr, redirect_stdout, suppress
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 import mujoco
 import tyro
@@ -18,8 +17,9 @@ from tools.estimate import Estimate
 from tools.footprints import Footprints
 from tools.health import Health
 from tools.interrupts import end_on_signals, ignore_signals
-from tools.output import check_writable, console, error_record, write_json
-from tools.parse_errors import wrong_number
+from tools.output import console, error_record, print_result, write_json
+from tools.overview import overview
+from tools.parse_errors import mistake
 from tools.play import Play
 from tools.push import Push
 from tools.reproduce import Reproduce
@@ -30,10 +30,12 @@ from tools.scan import Scan
 from tools.stand import Stand
 from tools.step import Step
 from tools.stop import Stop
+from tools.streams import drop_unwritten, fill_closed_streams
 from tools.stride import Stride
 from tools.sweep import Sweep, separate
 from tools.synthesis import Synthesise
 from tools.walk import Walk
+from tools.writing import STANDARD_OUTPUT, check_writable, writing
 
 Command = (
     Annotated[Walk, tyro.conf.subcommand("walk")]
@@ -56,11 +58,18 @@ Command = (
     | Annotated[Synthesise, tyro.conf.subcommand("synthesise")]
 )
 
+COMMANDS: dict[str, type] = {
+    get_args(command)[1].name: get_args(command)[0] for command in get_args(Command)
+}
+
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line; does not return."""
+    fill_closed_streams()
     status = run(arguments)
     ignore_signals()
+    drop_unwritten(sys.stdout)
+    drop_unwritten(sys.stderr)
     sys.exit(status)
 
 
@@ -77,10 +86,10 @@ def run(arguments: list[str] | None = None) -> int:
     try:
         command = parse(separate(words))
         command.check()
-        check_writable(getattr(command, "json", None), getattr(command, "plot", None))
+        check_writable(getattr(command, "json", None))
         status = int(command.run())
         _say_warnings()
-        return status
+        return _say_lost(status)
     except WindupError as error:
         _say_warnings(error.kind if isinstance(error, UnwellError) else "")
         console.print(f"windup: {error}", markup=False, soft_wrap=True)
@@ -94,15 +103,9 @@ def run(arguments: list[str] | None = None) -> int:
         console.print("windup: interrupted")
         return 130
     except BrokenPipeError:
-        # Whoever read our words, such as `head`, has gone: what is left of them goes nowhere.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
+        return 1  # whoever read our words, such as `head`, has gone
     except SystemExit as parsed:
-        status = parsed.code if isinstance(parsed.code, int) else 2
-        if status != 0:
-            said = f"the command line cannot be understood: {' '.join(words)}"
-            _write_unparsed(words, UsageError(said))
-        return status
+        return parsed.code if isinstance(parsed.code, int) else 2
 
 
 def _say_warnings(ended_by: str = "") -> None:
@@ -111,35 +114,51 @@ def _say_warnings(ended_by: str = "") -> None:
         console.print(f"warning: {said}", markup=False, soft_wrap=True)
 
 
+def _say_lost(status: int) -> int:
+    """Print which results could not be written; return the exit status, 1 if it was 0."""
+    for why in filter(None, NOTES.lost):
+        console.print(f"windup: {why}", markup=False, soft_wrap=True)
+    return status or int(bool(NOTES.lost))
+
+
 def _write_unparsed(arguments: list[str], error: WindupError) -> None:
     """Tell programs that their command line could not be understood."""
     if "--json" in arguments[:-1]:
         target = Path(arguments[arguments.index("--json") + 1])
-        with suppress(OSError):
-            write_json(target, arguments[0], error_record(error))
+        write_json(target, arguments[0], error_record(error))
 
 
 def parse(arguments: list[str]) -> Any:
-    """Return the command that the arguments mean; exits with status 2 if they mean none.
+    """Return the command that the arguments mean; exits with status 0 behind a help text.
 
     Raises:
-        UsageError: An option that takes numbers has another word.
+        UsageError: They mean none, or ask for help where standard output is closed.
+        OutputError: The help cannot be written.
     """
+    if not arguments:
+        raise UsageError("give a command, such as `windup robots`; `windup --help` lists all")
+    if arguments in (["-h"], ["--help"]):
+        print_result(overview(COMMANDS))
+        raise SystemExit(0)
     said = io.StringIO()
     try:
         with redirect_stderr(said), redirect_stdout(said):
             return _parse(arguments)
-    except SystemExit:
-        if wrong := wrong_number(said.getvalue()):
-            raise UsageError(wrong) from None
-    return _parse(arguments)  # help, or an error: said again as the terminal shows it best
+    except SystemExit as ended:
+        if ended.code:
+            raise UsageError(mistake(arguments, COMMANDS, said.getvalue())) from None
+    check_writable(STANDARD_OUTPUT)
+    with writing(STANDARD_OUTPUT):
+        try:
+            return _parse(arguments)  # its help: again, as wide as the terminal is
+        finally:
+            sys.stdout.flush()
 
 
 def _parse(arguments: list[str]) -> Any:
     return tyro.cli(
         Command,
         prog="windup",
-        description="Controllers for small servo humanoids: on the robot, and on its twin.",
         args=arguments,
         config=(tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes),
     )
@@ -147,6 +166,5 @@ def _parse(arguments: list[str]) -> Any:
 
 def _write_error(command: object, error: WindupError) -> None:
     """Tell programs too, where they asked for JSON."""
-    with suppress(OSError):  # the error may be about this very file
-        target = getattr(command, "json", None)
-        write_json(target, type(command).__name__.lower(), error_record(error))
+    target = getattr(command, "json", None)
+    write_json(target, type(command).__name__.lower(), error_record(error))

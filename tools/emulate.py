@@ -1,5 +1,6 @@
 """`windup emulate`: serve a robot's emulated servo buses to other programs, in real time."""
 
+import os
 import signal
 from dataclasses import dataclass, replace
 from functools import partial
@@ -8,6 +9,7 @@ from typing import Annotated
 
 import tyro
 
+from hal.errors import PortError
 from hal.ranges import Range
 from sim_twin.wire import Address, parse_address
 from sim_twin.wire.address import BENCH, SCHEME
@@ -18,6 +20,7 @@ from sim_twin.wire.outlet import Outlet
 from tools.command import Command
 from tools.output import console
 from tools.quantities import Seed
+from tools.writing import check_writable
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,12 +52,17 @@ class Emulate(Command):
         address = self._address()
         parse_rules(address.faults)
         parse_hands(address.hand)
+        check_writable(self.pty)
 
     def run(self) -> int:
         """Serve; returns the exit status."""
         address = self._address()
         ready = partial(_on_ready, "" if address.robot == BENCH else self.robot)
-        emulate(address, self.pty, self.tcp, on_ready=ready)
+        try:
+            emulate(address, self.pty, self.tcp, on_ready=ready)
+        except OSError as error:
+            why = os.strerror(error.errno) if error.errno else str(error)
+            raise PortError(f"cannot serve: {why}; give another --pty, or --tcp 0") from None
         console.print("windup emulate: stopped")
         return 0
 

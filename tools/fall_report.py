@@ -3,6 +3,7 @@
 from typing import Any
 
 from sim_twin.impact import ImpactGauge
+from tools.load_gauge import load_said
 
 
 def fall_result(gauge: ImpactGauge) -> dict[str, Any]:
@@ -23,5 +24,5 @@ def fall_said(result: dict[str, Any]) -> str:
         f"torso hits the floor at {result['torso_impact_m_s']:.2f} m/s, "
         f"head at {result['head_impact_m_s']:.2f} m/s; "
         f"the torso's speed changes by {result['torso_knock_m_s']:.2f} m/s in 10 ms at most; "
-        f"peak load {100.0 * result['peak_load']:.0f} % of stall at {result['peak_joint']}"
+        f"{load_said(result['peak_load'], result['peak_joint'])}"
     )

@@ -1,6 +1,5 @@
 """`windup footprints`: walk a file of footprints, or random ones."""
 
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -14,6 +13,7 @@ from hal.ranges import Range
 from robots import load_robot
 from tools.directed import build_checks, feet_of
 from tools.directed_options import DirectedOptions
+from tools.output import print_result
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +46,7 @@ class Footprints(DirectedOptions):
             return self.walk("footprints")
         robot, prints = load_robot(self.robot), self.prints(self.seed)
         build_checks(robot).check(prints)
-        sys.stdout.write(write_footprints(prints, feet_of(robot)))
+        print_result(write_footprints(prints, feet_of(robot)))
         return 0
 
     def prints(self, seed: int) -> list[Footprint]:

@@ -1,5 +1,6 @@
 """Finding a gait: one of the robot's own by name, or any file by its path."""
 
+import os
 from pathlib import Path
 
 from control.gait import Gait, load_gait
@@ -31,7 +32,6 @@ def gait_path(robot: RobotDescription, name: str) -> Path:
     gaits = robot.gaits()
     if name in gaits:
         return gaits[name]
-    path = Path(name)
-    if path.suffix == ".toml" and path.is_file():
-        return path
+    if name.endswith(".toml") and os.path.isfile(name):
+        return Path(name)
     raise UnknownNameError(f"gait of {robot.name}", name, gaits)

@@ -10,6 +10,21 @@ from hal.observation import Observation
 HIGH = 0.5  # share of the stall torque that a geared servo bears for a moment only
 
 
+def load_said(share: float, joint: str) -> str:
+    """Return a greatest load, as a share of what the joint gives at stall, in words.
+
+    A servo that is turned backward bears more than it gives.
+
+    >>> load_said(0.43, "l_knee")
+    'peak load 43 % of stall at l_knee'
+    >>> load_said(1.86, "l_knee")
+    'l_knee bore 1.9 x its stall torque, more than it gives by itself'
+    """
+    if share > 1.0:
+        return f"{joint} bore {share:.1f} x its stall torque, more than it gives by itself"
+    return f"peak load {100.0 * share:.0f} % of stall at {joint}"
+
+
 @dataclass
 class LoadGauge:
     """Adds up what the torque of a run shows, as shares of what each joint can give at most.

@@ -40,9 +40,6 @@ class Common(Command):
     """Run seeds 0 .. N-1, one row each, with a summary."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
-    plot: Path | None = None
-    """Draw the run into an image file."""
-
     noise: Noise = 0.0
     """Standard deviation of noise on the start pose, degrees."""
     protect: bool = True

@@ -3,18 +3,19 @@
 import json
 import sys
 from math import isfinite
-from os import W_OK, access
 from pathlib import Path
-from typing import Any
+from typing import IO, Any, cast
 
 import numpy as np
 from rich.console import Console
 
-from hal.errors import UsageError, WindupError
+from hal.errors import WindupError
 from tools.run_notes import NOTES
+from tools.streams import StandardError, drop_unwritten
+from tools.writing import STANDARD_OUTPUT, check_writable, writing
 
 SCHEMA = 1
-console = Console(stderr=True, highlight=False)
+console = Console(file=cast(IO[str], StandardError()), highlight=False)
 
 
 def plain(value: Any) -> Any:
@@ -32,27 +33,12 @@ def plain(value: Any) -> Any:
     return value
 
 
-def check_writable(*targets: Path | None) -> None:
-    """Raise before anything runs if one of the result files could not be written.
-
-    Raises:
-        UsageError: The folder is missing or may not be written.
-    """
-    for target in targets:
-        if target is None or str(target) == "-":
-            continue
-        folder = target.resolve().parent
-        if not folder.is_dir():
-            raise UsageError(f"{target} cannot be written: there is no folder {folder}")
-        if not access(folder, W_OK) or (target.exists() and not access(target, W_OK)):
-            raise UsageError(f"{target} cannot be written: permission denied")
-
-
 def write_json(target: Path | None, command: str, result: dict[str, Any]) -> None:
     """Write one JSON object to `target`: a file, standard output for "-", or nowhere for None.
 
     Where a robot was run, what there was to warn about, and what the driver of its servos has
-    clamped, are part of it.
+    clamped, are part of it. What cannot be written is told in the command's last lines, and makes
+    its status 1.
     """
     if target is None:
         return
@@ -61,10 +47,30 @@ def write_json(target: Path | None, command: str, result: dict[str, Any]) -> Non
         whole["warnings"] = NOTES.records()
         whole["driver_clamps"] = NOTES.driver_clamps
     text = json.dumps(plain(whole), indent=2)
-    if str(target) == "-":
-        sys.stdout.write(text + "\n")
-        return
-    target.write_text(text + "\n", encoding="utf-8")
+    with NOTES.losing():
+        if target == STANDARD_OUTPUT:
+            print_result(text + "\n")
+            return
+        with writing(target):
+            target.write_text(text + "\n", encoding="utf-8")
+
+
+def print_result(text: str) -> None:
+    """Write to standard output, all of it, now.
+
+    Raises:
+        UsageError: It is closed.
+        OutputError: That is not possible.
+        BrokenPipeError: Whoever read it has gone.
+    """
+    check_writable(STANDARD_OUTPUT)
+    with writing(STANDARD_OUTPUT):
+        try:
+            sys.stdout.write(text)
+            sys.stdout.flush()
+        except OSError:
+            drop_unwritten(sys.stdout)
+            raise
 
 
 def error_record(error: WindupError) -> dict[str, Any]:

@@ -61,7 +61,9 @@ class ProcessPlanner:
 
     def ready(self) -> bool:
         """Return True when `wait_ready` would not wait."""
-        return bool(select.select([self._link], [], [], 0.0)[0])
+        poll = select.poll()  # select() takes no descriptor beyond 1023
+        poll.register(self._link, select.POLLIN)
+        return bool(poll.poll(0))
 
     def wait_ready(self, patience: float = PATIENCE) -> Self:
         """Return when the process has built everything: before the run, never in it.

@@ -9,6 +9,7 @@ import tyro
 from control.staged import StagedPlayer
 from robots import load_robot
 from tools.gaits import find_gait
+from tools.load_gauge import load_said
 from tools.options import Common
 from tools.output import console, write_json
 from tools.quantities import Duration
@@ -48,14 +49,14 @@ class Play(TwinOptions, Common):
 
     def _said(self, row: dict[str, Any]) -> str:
         """Return the line for people about one run."""
+        if row["sim_time_s"] <= 0.0:
+            return f"{self.robot} did not play {self.graph!r}: {row['reason']}"
         again = f", {row['retries']} tried again" if row["retries"] else ""
-        worked = ""
-        if row["peak_joint"]:
-            load = 100.0 * row["peak_load"]
-            worked = f"; peak load {load:.0f} % of stall at {row['peak_joint']}"
+        worked = f"; {load_said(row['peak_load'], row['peak_joint'])}" if row["peak_joint"] else ""
+        seconds = row["sim_time_s"] - row["first_motion_s"]
         return (
-            f"{self.robot} played {self.graph!r} for {row['sim_time_s']:.2f} s{again}: "
-            f"{row['reason']}{worked}"
+            f"{self.robot} played {self.graph!r} for {seconds:.2f} s"
+            f"{again}: {row['reason']}{worked}"
         )
 
     def _one(self, seed: int) -> dict[str, Any]:
@@ -80,6 +81,7 @@ class Play(TwinOptions, Common):
                 "peak_joint": "" if load is None else load.joint,
                 "high_load_s": 0.0 if load is None else load.high_time,
                 "sim_time_s": report.sim_time,
+                "first_motion_s": report.first_motion,
                 "wall_time_s": report.wall_time,
                 "tick_ms": report.tick_ms(),
                 "missed": report.missed if self.realtime else None,

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from hal.contacts import ContactSensors
-from hal.errors import UsageError
 from hal.observation import Observation
+from tools.picture import load_pyplot, save_picture
 from tools.report import WalkReport
 
 TRACE = 0.02  # s between samples of path and contacts
@@ -45,23 +45,16 @@ def plot_walk(path: Path, report: WalkReport, trace: Trace) -> None:
     """Draw a walk into the image file at `path`.
 
     Raises:
-        UsageError: There is no matplotlib, or the file cannot be written.
+        UsageError: There is no matplotlib.
+        OutputError: The file cannot be written.
     """
-    try:
-        import matplotlib
-    except ImportError:
-        raise UsageError("--plot needs matplotlib: pip install 'windup[plot]'") from None
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
+    pyplot = load_pyplot()
     figure, axes = pyplot.subplots(3, 1, figsize=(9, 10), constrained_layout=True)
     _draw_path(axes[0], report, trace)
     _draw_regulation(axes[1], report)
     _draw_contacts(axes[2], trace)
     try:
-        figure.savefig(path, dpi=110)
-    except (OSError, ValueError) as error:
-        raise UsageError(f"--plot {path}: {error}") from None
+        save_picture(path, figure, dpi=110)
     finally:
         pyplot.close(figure)
 

@@ -3,7 +3,7 @@
 from math import pi
 from pathlib import Path
 
-from hal.errors import UsageError
+from tools.picture import load_pyplot, save_picture
 
 
 def plot_envelope(
@@ -12,15 +12,10 @@ def plot_envelope(
     """Draw the largest impulses, N s, of each way over the directions, rad, into an image file.
 
     Raises:
-        UsageError: There is no matplotlib, or the file cannot be written.
+        UsageError: There is no matplotlib.
+        OutputError: The file cannot be written.
     """
-    try:
-        import matplotlib
-    except ImportError:
-        raise UsageError("--plot needs matplotlib: pip install 'windup[plot]'") from None
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
+    pyplot = load_pyplot()
     figure = pyplot.figure(figsize=(7, 7))
     axes = figure.add_subplot(projection="polar", theta_offset=0.5 * pi)  # forward is up
     for way, largest in found.items():
@@ -29,8 +24,6 @@ def plot_envelope(
     axes.set_title(f"{robot}: largest impulse survived, N s")
     axes.legend(loc="lower right", bbox_to_anchor=(1.15, -0.1))
     try:
-        figure.savefig(path, bbox_inches="tight")
-    except (OSError, ValueError) as error:
-        raise UsageError(f"--plot {path}: {error}") from None
+        save_picture(path, figure, bbox_inches="tight")
     finally:
         pyplot.close(figure)

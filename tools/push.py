@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -17,6 +18,7 @@ from tools.forbid import forbidden
 from tools.landings import landings_said
 from tools.options import Common
 from tools.output import console, write_json
+from tools.picture import check_picture
 from tools.push_envelope import Envelope
 from tools.push_trial import PushPlan, push_robot
 from tools.push_walk import push_walking, walking_said
@@ -77,6 +79,8 @@ class Push(WorldOptions, Common):
     """Ways of the envelope."""
     jobs: Jobs | None = None
     """Processes of the envelope; one a core by default."""
+    plot: Path | None = None
+    """Draw the envelope into an image file."""
 
     def run(self) -> int:
         """Push; returns the exit status."""
@@ -153,6 +157,9 @@ class Push(WorldOptions, Common):
         check_walks(load_robot(self.robot), "bear pushes")
         if self.envelope == (self.impulse is not None):
             raise UsageError("give --impulse N_S, or --envelope to find the largest ones")
+        if self.plot is not None and not self.envelope:
+            raise UsageError("--plot draws an envelope: give --envelope, or leave it away")
+        check_picture(self.plot)
         self._check_walk()
         forbidden(self.forbid)
         for way in self.ways if self.way is None else (self.way, *self.ways):

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from itertools import takewhile
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from tools.envelope_tables import largest_table, summarise, summary_table
 from tools.output import console, write_json
 from tools.parallel import side_by_side
 from tools.plot_envelope import plot_envelope
+from tools.run_notes import NOTES
 
 if TYPE_CHECKING:
     from tools.push import Push
@@ -125,6 +125,8 @@ class Envelope:
         result = {"robot": push.robot, "directions": directions.tolist(), "ways": ways}
         write_json(push.json, "push", result)
         if push.plot is not None:
-            plot_envelope(Path(push.plot), push.robot, np.radians(directions).tolist(), largest)
-            console.print(f"picture: {push.plot}")
+            around = np.radians(directions).tolist()
+            with NOTES.losing():
+                plot_envelope(push.plot, push.robot, around, largest)
+                console.print(f"picture: {push.plot}", markup=False, soft_wrap=True)
         return 0

@@ -11,6 +11,7 @@ from control.navigation import PathFollower, PointFollower
 from control.planner import StepPlanner
 from hal.joints import Array
 from tools.walk_options import WalkOptions
+from tools.walk_said import walk_said
 
 if TYPE_CHECKING:
     from tools.robot import Robot
@@ -38,6 +39,9 @@ class WalkReport:
 
     def __post_init__(self) -> None:
         self._origin = self._position()
+
+    def __str__(self) -> str:
+        return walk_said(self.result())
 
     @property
     def fell(self) -> bool:

@@ -28,7 +28,7 @@ STAND = 1.5  # s to stand in the end
 
 @dataclass(frozen=True, kw_only=True)
 class Rise(TwinOptions, Common):
-    """Get up: look on which side the robot lies, play its get_up_front or get_up_back, stand."""
+    """Get up from where it lies: look on which side, play get_up_front or get_up_back, stand."""
 
     lying: Side | None = None
     """Lay the twin on this side first; a robot lies as it does."""

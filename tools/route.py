@@ -81,7 +81,7 @@ def read_path(text: str) -> tuple[Array, bool]:
     if colon and kind in ("circle", "square"):
         return (circle if kind == "circle" else square)(_metres(text, size)), True
     try:
-        rows = list(csv.reader(read_small(Path(text)).decode().splitlines()))
+        rows = list(csv.reader(read_small(Path(text)).decode("utf-8-sig").splitlines()))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         why = getattr(error, "strerror", None) or str(error)
         raise UsageError(

@@ -5,11 +5,13 @@ runs is one warning. A command begins with none.
 """
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from copy import deepcopy
 from typing import Any
 
 from hal.backend import BusHealth
+from hal.errors import OutputError, UsageError
 from hal.guard.finding import Finding
 from tools.slowness import Slowness
 
@@ -22,6 +24,7 @@ class RunNotes:
     Attributes:
         ran: Has there been a robot at all?
         driver_clamps: Clamp of the servos' driver to the number of commands it changed.
+        lost: Results that could not be written, and why; "" where nobody was there to read one.
     """
 
     def __init__(self) -> None:
@@ -31,6 +34,7 @@ class RunNotes:
         """Forget everything: a command begins."""
         self.ran = False
         self.driver_clamps: Counter[str] = Counter()
+        self.lost: list[str] = []
         self._findings: dict[str, Finding] = {}
         self._slowness: Slowness | None = None
         self._rows: list[Row] = []
@@ -56,6 +60,16 @@ class RunNotes:
         self.ran = True
         self.driver_clamps.update(row.get("driver_clamps", {}))
         self._rows.append(row)
+
+    @contextmanager
+    def losing(self) -> Iterator[None]:
+        """Note a result that cannot be written, and go on: there may be others."""
+        try:
+            yield
+        except (OutputError, UsageError) as error:
+            self.lost.append(str(error))
+        except BrokenPipeError:
+            self.lost.append("")
 
     def records(self) -> list[Row]:
         """Return all warnings for programs."""

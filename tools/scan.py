@@ -2,14 +2,13 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import tyro
-from rich.table import Table
+from rich.progress import BarColumn, Progress, TextColumn
 
-from hal.bus import Bus, Found
-from hal.errors import HardwareError, UsageError
-from hal.families import DYNAMIXEL_X, FAMILIES
+from hal.errors import UsageError
+from hal.families import FAMILIES
 from hal.open_port import open_port
 from hal.ranges import Range
 from robots import load_robot
@@ -18,6 +17,8 @@ from sim_twin.wire.address import SCHEME
 from tools.command import Command
 from tools.faults import with_faults
 from tools.output import console, write_json
+from tools.scan_said import complaints, narrow_lines, table
+from tools.survey import Survey, places
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,45 +51,46 @@ class Scan(Command):
         return with_faults(self.url, self.faults) or self.url
 
     def run(self) -> int:
-        """Scan; returns the exit status."""
+        """Scan; returns the exit status: 3 where nobody answers, or one is missing or doubled."""
         expected = _expected(self.robot)
         port = open_port(self._url)
+        survey = Survey(port, expected)
         try:
-            rows = [row for family in FAMILIES for row in self._family(Bus(port, family), expected)]
+            with _progress() as progress:
+                bar = progress.add_task("", total=len(list(places(port, self.baud))))
+                survey.look(
+                    self.baud, lambda what: progress.update(bar, advance=1, description=what)
+                )
         finally:
             port.close()
-        missing = sorted(set(expected) - {row["id"] for row in rows})
-        self._show(rows, [f"{expected[id]} (id {id})" for id in missing])
-        result = {"url": self.url, "servos": rows, "missing_ids": missing}
-        write_json(self.json, "scan", result)
-        return 3 if missing or not rows else 0
+        missing = sorted(set(expected) - {row["id"] for row in survey.servos})
+        self._show(survey, [f"{expected[id]} (id {id})" for id in missing])
+        strange = [{"id": one.id, "baud": baud, "bytes": one.data.hex()}
+                   for baud, _, one in survey.strange]  # fmt: skip
+        result = {"url": self.url, "servos": survey.servos, "missing_ids": missing}
+        more = {"unknown": survey.unknown, "doubled_ids": survey.doubled, "not_understood": strange}
+        write_json(self.json, "scan", result | more)
+        return 3 if missing or survey.doubled or not survey.servos else 0
 
-    def _family(self, bus: Bus, expected: dict[int, str]) -> list[dict[str, Any]]:
-        """Return the servos of one family; other families that answer are left to their own."""
-        bauds = bus.family.bauds if self.baud is None else [self.baud]
-        found = bus.scan([baud for baud in bauds if baud in bus.family.bauds])
-        # Protocol 1 is spoken by three families: a model number says whose it is.
-        mine = [servo for servo in found if servo.model_number in bus.family.numbers]
-        if bus.family is DYNAMIXEL_X:
-            mine = found
-        return [_describe(bus, servo, expected) for servo in mine]
-
-    def _show(self, rows: list[dict[str, Any]], missing: list[str]) -> None:
-        if not rows:
-            console.print(
-                f"nobody answers on {self.url}: is the servo power on, and this the right port?"
-            )
-            return
-        heads = ["id", "model", "firmware", "baud", "V", "degrees C", "error", "joint"]
-        table = Table(*heads, box=None)
-        for row in rows:
-            table.add_row(*(str(row[key]) for key in ROW))
-        console.print(table)
-        if missing:
-            console.print(f"silent: {', '.join(missing)}")
+    def _show(self, survey: Survey, missing: list[str]) -> None:
+        rows, width = survey.servos, console.width
+        if rows:
+            for line in narrow_lines(rows, width):
+                console.print(line, markup=False)
+            console.print(table(rows, width))
+        for line in complaints(survey, self.url, missing):
+            console.print(line, markup=False)
 
 
-ROW = ("id", "model", "firmware", "baud", "voltage_v", "temperature_c", "error", "joint")
+def _progress() -> Progress:
+    """Return a progress bar that fits a narrow terminal."""
+    return Progress(
+        BarColumn(bar_width=10),
+        TextColumn("{task.description}", markup=False),
+        console=console,
+        transient=True,
+        disable=not console.is_terminal,
+    )
 
 
 def _expected(robot: str | None) -> dict[int, str]:
@@ -98,34 +100,3 @@ def _expected(robot: str | None) -> dict[int, str]:
     description = load_robot(robot)
     pairs = zip(description.joints.names, description.servos, strict=True)
     return {servo.id: name for name, servo in pairs if servo is not None}
-
-
-def _describe(bus: Bus, servo: Found, expected: dict[int, str]) -> dict[str, Any]:
-    """Return what a servo says of itself."""
-    before = bus.port.baud
-    bus.port.baud = servo.baud
-    try:
-        volts = _read(bus, servo.id, "present_voltage")
-        heat = _read(bus, servo.id, "present_temperature")
-        error = _read(bus, servo.id, "hardware_error")
-    finally:
-        bus.port.baud = before
-    return {
-        "id": servo.id,
-        "model": servo.model,
-        "firmware": servo.firmware,
-        "baud": servo.baud,
-        "voltage_v": None if volts is None else round(0.1 * volts, 1),
-        "temperature_c": heat,
-        "error": "" if not error else ", ".join(bus.family.explain(error)),
-        "joint": expected.get(servo.id, ""),
-    }
-
-
-def _read(bus: Bus, id: int, name: str) -> int | None:
-    """Return one register, or None where the device has none."""
-    register = bus.family.registers.get(name)
-    try:
-        return None if register is None else bus.read(id, register)
-    except HardwareError:
-        return None

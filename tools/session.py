@@ -30,7 +30,7 @@ from tools.run_notes import NOTES
 from tools.slowness import Slowness
 from tools.stack import look_with
 from tools.stop_request import stop_requests
-from tools.stopping import INTERRUPTED
+from tools.stopping import INTERRUPTED, LAY
 
 REST_SECONDS = 1.5
 # Called once a tick with the observation.
@@ -161,7 +161,7 @@ class Session(Armed):
             estimator = self._estimator(needs_imu)
             self._get_ready(down, asked)
             self.loop = LoopReport()
-            begin = self.backend.clock.now()
+            begin = opened = self.backend.clock.now()
 
             def end(observation: Observation) -> str | None:
                 nonlocal begin
@@ -177,9 +177,10 @@ class Session(Armed):
                 if protected is not None and protected.active:
                     return self._landed() if protected.finished else None
                 if self.fallen and not down:
-                    return "fell"
+                    return "fell" if self.loop.ticks else LAY
                 if approach is not None and approach.active:
                     begin = observation.time
+                    self.loop.first_motion = begin - opened
                     return None
                 if until is not None and (reason := until(observation)) is not None:
                     return reason

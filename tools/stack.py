@@ -203,6 +203,8 @@ def check_port(robot: RobotDescription, port: str) -> None:
     Raises:
         UsageError: It does not fit the robot, or a number in a twin:// URL cannot be.
     """
+    if any(servo is None for servo in robot.servos):
+        raise UsageError(f"{robot.name} has no servos on a wire; leave --port away")
     for url in _urls(robot, port).values():
         if url.startswith(TWIN):
             wire.parse_address(url)
@@ -217,9 +219,11 @@ def _urls(robot: RobotDescription, port: str) -> dict[str, str]:
     """Return the URL of each bus, and of the IMU where it has a port of its own.
 
     Raises:
-        UsageError: A bus has none, or a name is no bus of the robot.
+        UsageError: The robot has no bus, a bus has no URL, or a name is no bus of the robot.
     """
     names = [bus.name for bus in robot.buses]
+    if not names:
+        raise UsageError(f"{robot.name} has no servos on a bus; leave --port away for its twin")
     apart = robot.imu is not None and not _imu_on_the_bus(robot)
     first, equals, _ = port.partition("=")
     if equals and first in names:

@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -54,17 +55,14 @@ class Stand(TwinOptions, Common):
                 "fell": robot.fallen,
                 "reason": report.reason,
                 "sim_time_s": report.sim_time,
+                "first_motion_s": report.first_motion,
                 "wall_time_s": report.wall_time,
                 "tick_ms": report.tick_ms(),
                 "missed": report.missed if robot.paced else None,
                 "largest_error_deg": float(error.max()),
                 "largest_error_joint": robot.description.joints.names[int(error.argmax())],
             } | (fall_result(gauge) if gauge is not None else {})
-        verb = "fell" if result["fell"] else "stood"
-        console.print(
-            f"{self.robot} {verb} for {report.sim_time:.1f} s; farthest from its pose is "
-            f"{result['largest_error_joint']} by {error.max():.1f} degrees"
-        )
+        console.print(stand_said(result), markup=False, soft_wrap=True)
         if gauge is not None and result["fell"]:
             console.print(fall_said(result))
         write_json(self.json, "stand", result)
@@ -85,3 +83,16 @@ class Stand(TwinOptions, Common):
         stiff = self.disturb() is not None and not self.protect
         description = robot.description
         robot.run(PoseHolder(description.joints, description.stance), self.seconds, down=stiff)
+
+
+def stand_said(result: dict[str, Any]) -> str:
+    """Return the line for people about a stand."""
+    total, first = result["sim_time_s"], result["first_motion_s"]
+    if total <= 0.0:
+        return f"{result['robot']} did not stand: {result['reason']}"
+    verb = "fell after" if result["fell"] else "stood for"
+    before = f", after a first motion of {first:.1f} s" if first > 0.0 else ""
+    return (
+        f"{result['robot']} {verb} {total - first:.1f} s{before}; farthest from its pose is "
+        f"{result['largest_error_joint']} by {result['largest_error_deg']:.1f} degrees"
+    )

@@ -1,5 +1,6 @@
 """Where the step models of a walk come from, and where those that it learns go."""
 
+import os
 from pathlib import Path
 
 from control.gait_hash import gait_hash
@@ -12,6 +13,7 @@ from robots import RobotDescription
 from tools.gaits import gait_path
 from tools.report import WalkReport
 from tools.walk_options import WalkOptions
+from tools.writing import check_writable, writing
 
 SUFFIX = ".models.json"
 
@@ -32,7 +34,7 @@ def memory_for(
     names, path = [variable.name for variable in regulation], gait_path(robot, options.gait)
     if options.learn is not None:
         learning = LearntModels()
-        if options.learn.exists():
+        if os.path.exists(options.learn):
             learning.read(options.learn, names, perturbations, gait_hash(path))
         return learning
     own = path.with_suffix(SUFFIX)
@@ -48,7 +50,8 @@ def check_learning(options: WalkOptions, *, alone: bool) -> None:
     """Raise what cannot be.
 
     Raises:
-        UsageError: Nothing would be learnt, or several walks would at once.
+        UsageError: Nothing would be learnt, several walks would at once, or the file cannot be
+            written.
     """
     if options.learn is None:
         return
@@ -56,14 +59,20 @@ def check_learning(options: WalkOptions, *, alone: bool) -> None:
         raise UsageError("--learn samples every step; leave --model and --open-loop away")
     if not alone:
         raise UsageError("--learn is for one walk without --realtime; leave it or --seeds away")
+    check_writable(options.learn)
 
 
 def keep_learnt(path: Path, report: WalkReport) -> None:
-    """Write the step models of a walk that has gone well into a file."""
+    """Write the step models of a walk that has gone well into a file.
+
+    Raises:
+        OutputError: It cannot be written.
+    """
     walker = report.walker
     planner = walker.planner
     if report.done and isinstance(planner, StepPlanner):
         assert isinstance(planner.model.memory, LearntModels), "see `memory_for`"
         names = [variable.name for variable in walker.regulation]
         gait = gait_path(report.robot.description, report.options.gait)
-        planner.model.memory.write(path, names, walker.perturbations, gait_hash(gait))
+        with writing(path):
+            planner.model.memory.write(path, names, walker.perturbations, gait_hash(gait))

@@ -21,6 +21,8 @@ from tools.start import Start
 
 INTERRUPTED = "interrupted"
 """The reason of a run that somebody ended."""
+LAY = "it lay there before: put it on its feet"
+"""Why a run of a robot that had fallen before ends without a tick."""
 
 
 @dataclass(eq=False)

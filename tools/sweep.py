@@ -12,12 +12,13 @@ import tyro
 
 from hal.errors import UsageError
 from tools.command import Command
-from tools.output import check_writable, console
+from tools.output import console
 from tools.parallel import side_by_side
 from tools.quantities import Count, Jobs, Seed, Seeds
 from tools.sweep_grid import Axis, parse_axis, points
 from tools.sweep_run import Run, check_line, play
 from tools.sweep_table import Row, Table, open_table
+from tools.writing import check_writable, writing
 
 MOST = 1_000_000
 """Runs of one sweep."""
@@ -86,12 +87,14 @@ class Sweep(Command):
         errors = []
         try:
             for _, row in side_by_side(play, todo, label="runs", jobs=self.jobs):
-                table.append(row)
+                with writing(self.out):
+                    table.append(row)
                 if row["error"] is not None:
                     errors.append(row["error"])
         finally:
             if todo:
-                table.close()
+                with writing(self.out):
+                    table.close()
         return errors
 
 

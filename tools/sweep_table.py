@@ -2,6 +2,7 @@
 
 import csv
 import io
+import os
 from os import replace
 from pathlib import Path
 from time import monotonic
@@ -34,6 +35,8 @@ def open_table(path: Path) -> Table:
     Raises:
         UsageError: The suffix is another one, or the file is no sweep's.
     """
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise UsageError(f"--out {path}: this is no file")
     if path.suffix == ".csv":
         return CsvTable(path)
     if path.suffix == ".parquet":
@@ -66,11 +69,14 @@ class CsvTable:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        text = path.read_text(encoding="utf-8") if path.exists() else ""
-        whole = text[: text.rfind("\n") + 1]  # without a row that a kill has torn
-        reader = csv.DictReader(io.StringIO(whole))
-        self.columns = list(reader.fieldnames or [])
-        self.rows: list[Row] = [{k: typed(v or "") for k, v in row.items()} for row in reader]
+        try:
+            text = path.read_text(encoding="utf-8") if os.path.exists(path) else ""
+            whole = text[: text.rfind("\n") + 1]  # without a row that a kill has torn
+            reader = csv.DictReader(io.StringIO(whole))
+            self.columns = list(reader.fieldnames or [])
+            self.rows: list[Row] = [{k: typed(v or "") for k, v in row.items()} for row in reader]
+        except (OSError, UnicodeError, csv.Error, AttributeError) as error:
+            raise UsageError(f"--out {path}: this file is no sweep's: {error}") from None
         _check(path, self.columns, empty=not text)
         if whole != text:
             self._write_all()
@@ -120,7 +126,7 @@ class ParquetTable:
         self.path = path
         self.rows: list[Row] = []
         self._written = monotonic()
-        if path.exists():
+        if os.path.exists(path):
             try:
                 frame = polars.read_parquet(path)
             except polars.exceptions.PolarsError as error:

@@ -10,11 +10,13 @@ from typing import Any, Literal
 import numpy as np
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
+from hal.errors import UsageError
 from robots import load_robot
 from tools.build import build_walk
 from tools.interrupts import RunInterruptedError
 from tools.options import Common
 from tools.output import console, write_json
+from tools.picture import check_picture
 from tools.plot import Trace, plot_walk
 from tools.quantities import Count, Delay, Metres, Seconds, Speed, TurnRate
 from tools.report import WalkReport, summary
@@ -24,6 +26,7 @@ from tools.step_models import check_learning, keep_learnt
 from tools.stepping import find_stepping
 from tools.twin_options import TwinOptions
 from tools.walk_options import WalkOptions
+from tools.walk_said import summary_said
 
 STEPS = 80
 GOAL_STEPS = 1000
@@ -77,12 +80,17 @@ class Walk(TwinOptions, Common):
     """Play the bare pose graph, without balance."""
     delay: Delay | None = None
     """Delay of the servos, s."""
+    plot: Path | None = None
+    """Draw the walk into an image file: path, regulation variables, feet on the ground."""
 
     def check(self) -> None:
         """Raise what cannot be; see `Command.check`."""
         super().check()
         options = self._options()
         check_learning(options, alone=self.seeds is None and not self.realtime)
+        check_picture(self.plot)
+        if self.plot is not None and self.seeds is not None:
+            raise UsageError("--plot draws one walk: leave it or --seeds away")
         build_walk(load_robot(self.robot), options, None)
 
     def run(self) -> int:
@@ -95,7 +103,7 @@ class Walk(TwinOptions, Common):
             return 130 if result["reason"] == "interrupted" else 0 if ok else 1
         rows = list(self._many(seeds))
         whole = summary(rows)
-        console.print(_sentence(whole))
+        console.print(summary_said(whole))
         write_json(self.json, "walk", {"robot": self.robot, "rows": rows, "summary": whole})
         return 0 if whole["walked"] == whole["runs"] else 1
 
@@ -111,13 +119,15 @@ class Walk(TwinOptions, Common):
             robot.watch = trace.add if self.plot and show else None
             with _progress(show and not self.realtime) as progress:
                 report = self._walk(robot, progress)
-        if self.learn is not None:
-            keep_learnt(self.learn, report)
         if show:
-            console.print(_line(report))
-            if self.plot is not None:
+            console.print(str(report), markup=False, soft_wrap=True)
+        if self.learn is not None:
+            with NOTES.losing():
+                keep_learnt(self.learn, report)
+        if self.plot is not None and show:
+            with NOTES.losing():
                 plot_walk(self.plot, report, trace)
-                console.print(f"picture: {self.plot}")
+                console.print(f"picture: {self.plot}", markup=False, soft_wrap=True)
         return report.result()
 
     @property
@@ -210,58 +220,3 @@ def _update(progress: Progress, bar: Any, robot: Robot) -> Callable[[int, float]
         )
 
     return update
-
-
-def _line(report: WalkReport) -> str:
-    """Return one line for people."""
-    result = report.result()
-    speed = result["speed_m_s"]
-    pace = "" if speed is None else f" at {speed:.3f} m/s"
-    ratio = result["sim_time_s"] / max(result["wall_time_s"], 1e-9)
-    if report.fell:
-        end = f"fell in step {result['steps'] + 1} of {report.requested}"
-    elif report.done:
-        end = f"walked {result['steps']} steps"
-    else:
-        end = f"{result['reason']} after {result['steps']} of {report.requested} steps"
-    return (
-        f"{result['robot']} {end}{pace}: {result['distance_m']:.2f} m forward, "
-        f"{result['lateral_m']:+.2f} m to the left, heading {result['heading_deg']:+.1f} degrees, "
-        f"{ratio:.1f} x real time{_flying(result)}{_sliding(result)}"
-        f"{_caught(result)}{_crossing(report)}"
-    )
-
-
-def _flying(result: dict[str, Any]) -> str:
-    """Return how often the robot left the ground."""
-    flights = result.get("flights", 0)
-    share = result.get("flight_time_s", 0.0) / max(result["sim_time_s"], 1e-9)
-    return f", {flights} flights ({share:.0%} of the time)" if flights else ""
-
-
-def _sliding(result: dict[str, Any]) -> str:
-    """Return whether the ground was felt to be slippery."""
-    return ", with care since it slid" if result["slipped"] else ""
-
-
-def _caught(result: dict[str, Any]) -> str:
-    """Return how often steps caught the robot."""
-    catches = result["catches"]
-    steps = sum(catch["steps"] for catch in catches)
-    return f", {len(catches)} x caught by steps ({steps})" if catches else ""
-
-
-def _crossing(report: WalkReport) -> str:
-    """Return a warning where the feet went through each other."""
-    clear = report.clearance
-    return f", feet cross by {-clear:.0f} mm" if clear is not None and clear < 0.0 else ""
-
-
-def _sentence(whole: dict[str, Any]) -> str:
-    speed = whole["speed_mean_m_s"]
-    pace = "" if speed is None else f", mean speed {speed:.3f} m/s"
-    return (
-        f"{whole['walked']} of {whole['runs']} runs walked to the end{pace}, "
-        f"heading within {whole['heading_max_deg']:.1f} degrees"
-        f"{', feet cross in ' + str(whole['crossed']) if whole['crossed'] else ''}"
-    )

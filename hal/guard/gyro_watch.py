@@ -19,6 +19,9 @@ from hal.joints import Array
 
 JUMP = 0.7
 """Change of the rates from one sample to the next that an accelerometer feels, rad/s."""
+BUSY = 1.0
+"""By how much more that is for each rad/s that the body has been turning lately: the knock of a
+foot falls between two samples, and turns a walking body as suddenly as a gyroscope that fails."""
 PIVOT = 1.6
 """How much larger than that it is about the vertical before it is doubted: a body that begins to
 turn on one foot below its IMU shakes it little. Ducks that slip while walking reach 0.8 rad/s."""
@@ -32,6 +35,8 @@ SPUN = 0.5
 get up show it for 0.04 s at most."""
 PERSIST = 0.1
 """For how long either has to be seen, s."""
+SAMPLES = 8
+"""New samples that a jump has to last: on a busy machine few come within that time."""
 AROUND = 1.0
 """Turn about the vertical while all joints stand still, rad."""
 STANDS = 0.5
@@ -71,24 +76,24 @@ class GyroWatch:
         """Begin anew with the next sample; the vertical stays known."""
         self.doubted = False
         self._believed: Sequence[float] = NOTHING
-        self._jumped = 0.0
+        self._jumped, self._lasts, self._busy = 0.0, 0, 0.0
         self._vertical: Vector | None = None
         self._around = self._apart = 0.0
 
     def compare(self, sample: Sequence[float], last: Sequence[float], now: float) -> None:
         """Doubt a jump from the last sample, shortly before, or be satisfied that it is over."""
         if self.doubted:
-            self.doubted = self._change(self._believed, sample) > 0.5 * JUMP and distance(
-                sample, NOTHING
-            ) > distance(self._believed, NOTHING)
+            self._lasts += 1
+            changed = self._change(self._believed, sample) > 0.5 * JUMP
+            self.doubted = changed and size_of(sample) > size_of(self._believed)
             return
         jump = self._change(last, sample)
-        if jump < JUMP or distance(sample, NOTHING) < distance(last, NOTHING):
+        if jump < JUMP + BUSY * self._busy or size_of(sample) < size_of(last):
             return  # who has stopped turning does not spin
         felt = sample[3:]
-        shaken = max(abs(distance(felt, NOTHING) - GRAVITY), distance(felt, last[3:]))
+        shaken = max(abs(size_of(felt) - GRAVITY), distance(felt, last[3:]))
         if shaken < SHAKE * jump:
-            self.doubted, self._believed, self._jumped = True, last[:3], now
+            self.doubted, self._believed, self._jumped, self._lasts = True, last[:3], now, 0
 
     def _change(self, before: Sequence[float], after: Sequence[float]) -> float:
         """Return by how much the rates have changed, rad/s; less about the vertical."""
@@ -103,8 +108,10 @@ class GyroWatch:
         """Let `dt` s pass with a sample; `velocity` (n,) is that of the joints, rad/s."""
         felt = sample[3:]
         if not self.doubted:
+            kept = exp(-dt / DRAW)
+            self._busy = sqrt(kept * self._busy**2 + (1.0 - kept) * size_of(sample) ** 2)
             return self._turn(sample, felt, dt, velocity)
-        if now - self._jumped >= PERSIST:
+        if now - self._jumped >= PERSIST and self._lasts >= SAMPLES:
             return LEAP, self._change(self._believed, sample), JUMP
         return self._turn(self._believed, felt, dt, velocity)
 
@@ -112,7 +119,7 @@ class GyroWatch:
         self, rate: Sequence[float], felt: Sequence[float], dt: float, velocity: Array
     ) -> Verdict | None:
         """Carry the vertical along, and say so where gravity does not follow."""
-        size = distance(felt, NOTHING)
+        size = size_of(felt)
         alone = abs(size - GRAVITY) < NEAR * GRAVITY
         if self._vertical is None:
             if alone:
@@ -138,6 +145,11 @@ def distance(a: Sequence[float], b: Sequence[float]) -> float:
     """Return how far the first three of `a` and `b` are from each other."""
     x, y, z = a[0] - b[0], a[1] - b[1], a[2] - b[2]
     return sqrt(x * x + y * y + z * z)
+
+
+def size_of(a: Sequence[float]) -> float:
+    """Return the length of the first three of `a`."""
+    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
 def carried(

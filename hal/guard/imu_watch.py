@@ -67,7 +67,7 @@ class ImuWatch:
 
     def _restart(self, now: float) -> None:
         self._sample: Sequence[float] = ()
-        self._changed = self._heard = now
+        self._changed = self._heard = self._taken = now
         self._pose: Array = np.zeros(0)
         self.gyro.restart()
 
@@ -86,9 +86,10 @@ class ImuWatch:
             return (NO_NUMBER, nan, nan), True
         same = now - self._changed
         if sample != self._sample:
-            if self._sample and (same < NEXT or self.gyro.doubted):
+            if self._sample and (self._heard - self._taken < NEXT or self.gyro.doubted):
                 self.gyro.compare(sample, self._sample, now)
-            self._sample, self._changed, self._pose = sample, now, joints.position
+            self._sample, self._taken = sample, self._heard
+            self._changed, self._pose = now, joints.position
         elif same > FROZEN and np.abs(joints.position - self._pose).max() > MOVED:
             return (STUCK, same, FROZEN), True
         elif same > RIGID:

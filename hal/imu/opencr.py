@@ -15,6 +15,8 @@ from hal.observation import ImuState
 from hal.protocols.protocol2 import Span
 from hal.registers import Register
 
+MODEL_NUMBER = 0x7400
+"""What the board answers to a ping."""
 GYRO = 2000.0 / 32800.0 * pi / 180.0
 """rad/s of one count."""
 ACCELERATION = 2.0 / 32768.0 * 9.80665
@@ -25,6 +27,7 @@ POWER_UP_TIME = 0.5
 """From switching that power on to servos that answer, s."""
 CUTOFF = 41.0
 """Of the low-pass filter of gyroscope and accelerometer (MPU9250), as the firmware sets it, Hz."""
+VOLTAGE = Register("present_voltage", 31, 1)
 VOLTAGE_UNIT = 0.1
 BUTTONS = ("mode", "start", "user", "reset")
 """Names on the back of the robot, from the lowest bit of register 30 up (`dxl_node_op3.cpp`).

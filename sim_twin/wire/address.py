@@ -2,6 +2,7 @@
 
 ``twin://op3[?clock=virtual|real&world=NAME&bus=legs&faults=drop:0.01&seed=1&supply=12...]``: a
 robot of ours; ``twin://bench?servos=STS3215:1-20&baud=1000000``: servos of one protocol on a bench.
+``twin:///home/me/robot`` and ``twin://./robot`` are robots in folders of one's own.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -89,8 +90,11 @@ def parse_address(url: str) -> Address:
     Raises:
         UsageError: It is not a twin:// URL, or says something unknown.
     """
-    parts = urlsplit(url)
-    if parts.scheme != SCHEME or not parts.netloc + parts.path.rstrip("/"):
+    try:
+        parts = urlsplit(url)
+    except ValueError as error:  # brackets that are none of an IPv6 address
+        raise UsageError(f"{url!r} is not a twin:// address: {error}") from None
+    if parts.scheme != SCHEME or not (parts.netloc or parts.path.strip("/")):
         raise UsageError(f"{url!r} is not a twin:// address; 'twin://op3' is")
     values: dict[str, Any] = {"robot": parts.netloc + parts.path.rstrip("/")}
     for name, text in parse_qsl(parts.query, keep_blank_values=True):

@@ -49,7 +49,11 @@ def test_a_file_becomes_a_typed_record(tmp_path: Path) -> None:
             'name = "cart"\nwheels = [{ radius = 1.0, spokes = 1000000000000000000000 }]',
             "wheels[0].spokes: no number is beyond 1e+12",
         ),
-        ("", "missing required field `name`"),
+        ("", "cart.toml: missing: name"),
+        ("wheels = [{}, {}]", "cart.toml: missing: name, wheels[0].radius, wheels[1].radius"),
+        ("name = 'cart'\nwheels = [" + 20 * "{}," + "]", ", wheels[11].radius and 8 more"),
+        ("name = " + 9999 * "[", "not TOML: "),
+        ("name = " + 5000 * "9", "not TOML: "),
         ('name = "cart', "not TOML: "),
     ],
     ids=[
@@ -62,6 +66,10 @@ def test_a_file_becomes_a_typed_record(tmp_path: Path) -> None:
         "huge",
         "huge integer",
         "missing",
+        "several missing",
+        "many missing",
+        "deep",
+        "long number",
         "TOML",
     ],
 )
@@ -73,6 +81,10 @@ def test_what_does_not_fit_is_one_line_with_file_and_key(
     assert str(error.value).startswith(f"{tmp_path / 'cart.toml'}: ")
     assert message in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_a_byte_order_mark_is_no_mistake(tmp_path: Path) -> None:
+    assert load(tmp_path, "\ufeff" + GOOD) == load(tmp_path, GOOD)
 
 
 def test_a_missing_file_says_so(tmp_path: Path) -> None:

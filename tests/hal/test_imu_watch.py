@@ -128,6 +128,25 @@ def test_after_a_hole_between_samples_rates_may_be_others() -> None:
     assert not watch.gyro.doubted
 
 
+def test_a_body_that_walks_may_be_turned_more_suddenly_than_one_that_stands() -> None:
+    rates = [1.5 * np.sin(2.0 * np.pi * k / 64) for k in range(257)]
+    walking = [seen(k * DT, (rate, 0.0, 0.0), upright(k)) for k, rate in enumerate(rates)]
+    later = [len(walking) + k for k in range(20)]
+    knocked = [seen(k * DT, (1.2, 0.0, 0.0), upright(k)) for k in later]
+    spun = [seen(k * DT, (3.0, 0.0, 0.0), upright(k)) for k in later]
+    assert found(ImuWatch(), [*walking, *knocked]) is None
+    first = found(ImuWatch(), [*walking, *spun])
+    assert first is not None and first[0] < (later[0] + 16) * DT
+
+
+def test_a_jump_that_few_samples_show_may_be_one() -> None:
+    watch = ImuWatch()
+    held_up = [1.0 + k * DT for k in (0, 8, 12, 16)]
+    turning = [seen(time, (0.9, 0.0, 0.0), upright(k)) for k, time in enumerate(held_up)]
+    assert found(watch, [*still(1.0), *turning]) is None
+    assert watch.gyro.doubted
+
+
 def test_a_jump_that_ends_slower_than_it_began_was_one() -> None:
     watch = ImuWatch()
     walking = still(0.5, rate=(0.0, 0.0, 0.6))

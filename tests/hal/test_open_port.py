@@ -100,14 +100,15 @@ def test_a_port_that_is_not_there_lists_those_that_are() -> None:
         open_port("/dev/ttyNONE")
 
 
-def test_permission_denied_names_the_group(
+def test_permission_denied_says_what_would_help(
     pty: tuple[int, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*_: object, **__: object) -> None:
         raise serial.SerialException(13, "could not open port: Permission denied")
 
     monkeypatch.setattr(serial, "Serial", refuse)
-    with pytest.raises(PortError, match=r"no permission for .*; join its group: sudo usermod -aG"):
+    monkeypatch.setattr("hal.open_port.access_remedy", lambda device: f"ask for {device}")
+    with pytest.raises(PortError, match=rf"no permission for {pty[1]}; ask for {pty[1]}"):
         open_port(pty[1])
 
 

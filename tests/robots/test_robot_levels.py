@@ -40,7 +40,7 @@ def test_levels_of_the_file_are_those_of_its_joints(tmp_path: Path) -> None:
             "supply_high = { warn = 11, stop = 16 }",
             "safety.supply_high: the warning at 11 V is not above drive.supply, 12 V",
         ),
-        ("load = { warn = 0.5 }", "`stop`"),
+        ("load = { warn = 0.5 }", "missing: safety.load.stop"),
         ("load = { warn = 0.5, stop = inf }", "safety.load.stop"),
         ("temprature = { warn = 50, stop = 60 }", "did you mean 'temperature'?"),
     ],

@@ -48,10 +48,9 @@ def ranges(hint: Any) -> list[Range]:
     return [r for part in parts for r in ([part] if isinstance(part, Range) else ranges(part))]
 
 
-COMMANDS = {get_args(command)[1].name: get_args(command)[0] for command in get_args(cli.Command)}
 OPTIONS: dict[tuple[str, str], Any] = {
     (name, option.name): hint
-    for name, kind in COMMANDS.items()
+    for name, kind in cli.COMMANDS.items()
     for hints in [get_type_hints(kind, include_extras=True)]
     for option in fields(kind)
     if numeric(hint := hints[option.name])
@@ -62,7 +61,7 @@ pytestmark = pytest.mark.usefixtures("nothing_opens")
 
 
 def test_the_options_of_every_command_are_looked_at() -> None:
-    assert set(LINES) == set(COMMANDS)
+    assert set(LINES) == set(cli.COMMANDS)
     assert len(OPTIONS) > 100
 
 

@@ -8,10 +8,11 @@ import tyro
 
 from hal.errors import UnknownNameError
 from tools.command import Command
-from tools.output import check_writable, console, write_json
+from tools.output import console, write_json
 from tools.quantities import Jobs
 from tools.reproduce.report import record, reproduce
 from tools.reproduce.studies import studies
+from tools.writing import check_folder
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,7 +43,7 @@ class Reproduce(Command):
         study = known[self.paper]
         figures = study.choose(self.figures)
         folder = self.out or Path(f"reproduce-{study.name}")
-        check_writable(folder)
+        check_folder(folder)
         entries = reproduce(study, figures, folder, quick=self.quick, jobs=self.jobs)
         for entry in entries:
             console.print(

@@ -5,12 +5,13 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from hal.errors import UsageError
 from tools.output import plain
 from tools.parallel import side_by_side
+from tools.picture import load_pyplot
 from tools.reproduce.figure import Figure, Result, Results, Study, distinct
 from tools.reproduce.page import Entry, page
 from tools.reproduce.store import Store
+from tools.writing import writing
 
 
 def reproduce(
@@ -19,18 +20,17 @@ def reproduce(
     """Write the report into `folder` and return what it says.
 
     Raises:
-        UsageError: There is no matplotlib, or the folder cannot be written.
+        UsageError: There is no matplotlib, or the folder cannot be made.
+        OutputError: The report cannot be written.
     """
-    pyplot = _pyplot()
+    pyplot = load_pyplot("reproduce")
     results = collect(study, figures, Store(folder / "data", study.sources), quick, jobs)
     entries = [_entry(pyplot, figure, results, folder, quick) for figure in figures]
-    try:
-        text = page(study, entries, quick=quick)
+    text = page(study, entries, quick=quick)
+    summary = json.dumps(plain(record(study, entries, quick=quick)), indent=2)
+    with writing(folder):
         (folder / "report.html").write_text(text, encoding="utf-8")
-        summary = json.dumps(plain(record(study, entries, quick=quick)), indent=2)
         (folder / "report.json").write_text(summary + "\n", encoding="utf-8")
-    except OSError as error:
-        raise UsageError(f"--out {folder}: {error.strerror}") from None
     return entries
 
 
@@ -58,9 +58,8 @@ def _entry(pyplot: Any, figure: Figure, results: Results, folder: Path, quick: b
         figure.draw(canvas, own)
         buffer = BytesIO()
         canvas.savefig(buffer, format="png", dpi=100)
-        (folder / f"figure-{figure.name}.png").write_bytes(buffer.getvalue())
-    except OSError as error:
-        raise UsageError(f"--out {folder}: {error.strerror}") from None
+        with writing(folder):
+            (folder / f"figure-{figure.name}.png").write_bytes(buffer.getvalue())
     finally:
         pyplot.close(canvas)
     return Entry(figure, buffer.getvalue(), figure.claims(own), figure.table(own), len(own))
@@ -91,14 +90,3 @@ def record(study: Study, entries: list[Entry], *, quick: bool) -> dict[str, Any]
         ],
         "not_yet": study.missing,
     }
-
-
-def _pyplot() -> Any:
-    try:
-        import matplotlib
-    except ImportError:
-        raise UsageError("reproduce needs matplotlib: pip install 'windup[plot]'") from None
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    return pyplot

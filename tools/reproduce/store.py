@@ -10,6 +10,7 @@ from typing import Any
 from hal.errors import UsageError
 from tools.output import plain
 from tools.reproduce.figure import Job, Result
+from tools.writing import writing
 
 SUFFIXES = (".py", ".toml", ".xml")
 
@@ -46,8 +47,9 @@ class Store:
         """Keep the result of a job."""
         path = self._path(job)
         text = json.dumps({"job": self._identity(job), "result": plain(result)})
-        path.with_suffix(".new").write_text(text, encoding="utf-8")
-        replace(path.with_suffix(".new"), path)
+        with writing(path):
+            path.with_suffix(".new").write_text(text, encoding="utf-8")
+            replace(path.with_suffix(".new"), path)
 
     def _identity(self, job: Job) -> dict[str, Any]:
         return {"kind": job.kind, "options": dict(job.options), "sources": self.fingerprint}

@@ -1,6 +1,7 @@
 """What became of a trial: how soon, what the vendor's SDK reads, how the program ended."""
 
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from math import inf
 
@@ -11,6 +12,9 @@ from tools.safety.independent import torque_of
 from tools.safety.processes import alive
 from tools.safety.row import Row
 from tools.safety.trial import AFTERWARDS, LONGEST, Trial
+
+READS, BETWEEN = 4, 0.3
+"""How often an independent client tries to read, and how long it waits between, s."""
 
 
 @dataclass(frozen=True)
@@ -73,15 +77,26 @@ def _watched(trial: Trial, row: Row) -> bool:
     return alive(trial.guardian)
 
 
+def _read(trial: Trial, robot: RobotDescription) -> dict[str, int | None]:
+    """Return the torque of each joint; a guardian that still tries takes answers away."""
+    for _ in range(READS - 1):
+        with suppress(OSError, SerialException):
+            return torque_of(robot, trial.port)
+        time.sleep(BETWEEN)
+    return torque_of(robot, trial.port)
+
+
 def _found(trial: Trial, row: Row, robot: RobotDescription) -> str:
     """Return what an independent client finds, and whether a guardian is left."""
     watched = _watched(trial, row)
     if row.end in ("unknown", "unattended"):
+        if not watched and trial.journal.driven == 0:
+            return row.end  # torque was off before the adapter died: there is nothing to watch
         return "unknown" if watched else "unattended"
     if trial.program.is_alive():
         return "the program goes on"
     try:
-        torque = torque_of(robot, trial.port) if not row.network else {}
+        torque = _read(trial, robot) if not row.network else {}
     except (OSError, SerialException) as error:
         return f"the port cannot be read: {error}"
     on = [name for name, value in torque.items() if value == 1]

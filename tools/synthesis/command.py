@@ -16,7 +16,7 @@ from robots import load_robot
 from tools.build import build_walk
 from tools.command import Command
 from tools.gaits import gait_path
-from tools.output import check_writable, console, write_json
+from tools.output import console, write_json
 from tools.parallel import Workers
 from tools.quantities import Count, Jobs, Noise, Seed, Some, Speed
 from tools.shape import check_walks
@@ -27,6 +27,7 @@ from tools.synthesis.score import Objective, objective
 from tools.synthesis.search import Search, Values
 from tools.synthesis.trial import Trial, walk_trial
 from tools.walk_options import WalkOptions
+from tools.writing import check_writable
 
 FINALISTS = 5
 Positional = Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]

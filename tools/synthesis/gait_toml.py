@@ -7,13 +7,15 @@ import msgspec
 
 from control.gait_file import GaitFile
 from hal.errors import UsageError
+from tools.writing import writing
 
 
 def write_gait(path: Path, file: GaitFile) -> None:
     """Write a gait file that `windup walk ROBOT --gait PATH` takes.
 
     Raises:
-        UsageError: tomli-w is not installed, or the file cannot be written.
+        UsageError: tomli-w is not installed.
+        OutputError: The file cannot be written.
     """
     try:
         import tomli_w
@@ -21,10 +23,8 @@ def write_gait(path: Path, file: GaitFile) -> None:
         raise UsageError(
             "synthesis needs cma and tomli-w: pip install 'windup[synthesis]'"
         ) from None
-    try:
+    with writing(path):
         path.write_text(tomli_w.dumps(sparse(file)), encoding="utf-8")
-    except OSError as error:
-        raise UsageError(f"{path} cannot be written: {error.strerror}") from None
 
 
 def sparse(value: Any) -> Any:

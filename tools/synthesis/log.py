@@ -6,6 +6,7 @@ from typing import Any
 
 from hal.errors import UsageError
 from tools.output import plain
+from tools.writing import writing
 
 Entry = dict[str, Any]
 
@@ -43,7 +44,7 @@ class SearchLog:
         """Keep a trial; it is in the file when this returns."""
         entry = plain(entry)
         self.entries[number] = entry
-        with self.path.open("a", encoding="utf-8") as file:
+        with writing(self.path), self.path.open("a", encoding="utf-8") as file:
             file.write(json.dumps({"trial": number, **entry}) + "\n")
 
     def _read(self, lines: list[str], setup: dict[str, Any]) -> None:

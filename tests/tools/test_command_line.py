@@ -1,0 +1,58 @@
+import pytest
+
+from tests.tools.conftest import Windup, refusal
+from tools.cli import COMMANDS
+from tools.overview import overview
+
+LINES = {
+    "help": ("walk op3 --hlep", "walk: unknown option --hlep (did you mean --help?)"),
+    "alone": ("walk --hlep", "walk: unknown option --hlep (did you mean --help?)"),
+    "option": ("walk op3 --stepps 3", "(did you mean --steps?); `windup walk --help` lists all"),
+    "value": ("walk op3 --stepps=3", "unknown option --stepps (did you mean --steps?)"),
+    "no near one": ("walk op3 --xyzzy", "unknown option --xyzzy; `windup walk --help` lists all"),
+    "switch": ("push op3 --impulse 1 --no-cach", "(did you mean --no-catch?)"),
+    "command": ("wlak op3", "unknown command 'wlak' (did you mean walk?); `windup --help` lists"),
+    "other": ("dance", "unknown command 'dance'; `windup --help` lists all"),
+    "nothing": ("", "give a command, such as `windup robots`; `windup --help` lists all"),
+    "positional": ("walk", "see `windup walk --help`"),
+    "choice": ("walk op3 --sampling best", "see `windup walk --help`"),
+    "swept": ("sweep walk op3 --hlep --out a.csv", "unknown option --hlep (did you mean --help?)"),
+    "plot": ("stand op3 --plot a.png", "stand: unknown option --plot"),
+}
+
+
+@pytest.mark.usefixtures("nothing_opens")
+@pytest.mark.parametrize(("line", "said"), LINES.values(), ids=LINES)
+def test_a_wrong_word_is_one_line_with_the_near_one(line: str, said: str) -> None:
+    assert said in refusal(line.split())
+
+
+@pytest.mark.parametrize("word", ["-h", "--help"])
+def test_the_help_fits_one_screen(windup: Windup, word: str) -> None:
+    ran = windup(word)
+    lines = ran.out.splitlines()
+    assert (ran.status, ran.err) == (0, "")
+    assert len(lines) < 24
+    assert max(map(len, lines)) < 80
+    assert all(any(line.startswith(f"{name} ") for line in lines) for name in COMMANDS)
+
+
+@pytest.mark.parametrize("line", [["--help"], ["walk", "--help"]])
+def test_help_that_nobody_can_read_is_told(
+    windup: Windup, monkeypatch: pytest.MonkeyPatch, line: list[str]
+) -> None:
+    monkeypatch.setattr("sys.stdout", None)
+    ran = windup(*line)
+    assert (ran.status, ran.err) == (2, "windup: standard output cannot be written: it is closed\n")
+
+
+def test_every_command_says_in_a_few_words_what_it_does() -> None:
+    lines = overview(COMMANDS).splitlines()[-len(COMMANDS) :]
+    assert all(len(line.split(maxsplit=1)[1]) >= len("Push a robot") for line in lines)
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_has_its_own_help(windup: Windup, name: str) -> None:
+    ran = windup(name, "--help")
+    assert (ran.status, ran.err) == (0, "")
+    assert f"usage: windup {name} " in ran.out

@@ -1,0 +1,69 @@
+"""A walk in one line for people, out of its result."""
+
+from typing import Any
+
+Result = dict[str, Any]
+
+
+def walk_said(result: Result) -> str:
+    """Return the line; it says nothing of what was not measured."""
+    if result["sim_time_s"] <= 0.0:
+        return f"{result['robot']} did not walk: {result['reason']}"
+    ratio = result["sim_time_s"] / max(result["wall_time_s"], 1e-9)
+    return (
+        f"{result['robot']} {_end(result)}{_pace(result)}: {result['distance_m']:.2f} m forward, "
+        f"{result['lateral_m']:+.2f} m to the left, heading {result['heading_deg']:+.1f} degrees, "
+        f"{ratio:.1f} x real time{_flying(result)}{_sliding(result)}"
+        f"{_caught(result)}{_crossing(result)}"
+    )
+
+
+def summary_said(whole: Result) -> str:
+    """Return the line about several seeds."""
+    speed = whole["speed_mean_m_s"]
+    pace = "" if speed is None else f", mean speed {speed:.3f} m/s"
+    return (
+        f"{whole['walked']} of {whole['runs']} runs walked to the end{pace}, "
+        f"heading within {whole['heading_max_deg']:.1f} degrees"
+        f"{', feet cross in ' + str(whole['crossed']) if whole['crossed'] else ''}"
+    )
+
+
+def _end(result: Result) -> str:
+    """Return how it ended."""
+    if result["fell"]:
+        return f"fell in step {result['steps'] + 1} of {result['steps_requested']}"
+    if result["reason"] == "done":
+        return f"walked {result['steps']} steps"
+    return f"{result['reason']} after {result['steps']} of {result['steps_requested']} steps"
+
+
+def _pace(result: Result) -> str:
+    """Return the mean speed, which a short walk has none of."""
+    speed = result["speed_m_s"]
+    return "" if speed is None else f" at {speed:.3f} m/s"
+
+
+def _flying(result: Result) -> str:
+    """Return how often the robot left the ground."""
+    flights = result.get("flights", 0)
+    share = result.get("flight_time_s", 0.0) / result["sim_time_s"]
+    return f", {flights} flights ({share:.0%} of the time)" if flights else ""
+
+
+def _sliding(result: Result) -> str:
+    """Return whether the ground was felt to be slippery."""
+    return ", with care since it slid" if result["slipped"] else ""
+
+
+def _caught(result: Result) -> str:
+    """Return how often steps caught the robot."""
+    catches = result["catches"]
+    steps = sum(catch["steps"] for catch in catches)
+    return f", {len(catches)} x caught by steps ({steps})" if catches else ""
+
+
+def _crossing(result: Result) -> str:
+    """Return a warning where the feet went through each other."""
+    clear = result["foot_clearance_mm"]
+    return f", feet cross by {-clear:.0f} mm" if clear is not None and clear < 0.0 else ""
