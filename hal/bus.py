@@ -159,7 +159,7 @@ class Bus:
         return {id: status.params for id, status in self.statuses(spans).items()}
 
     def statuses(self, spans: Sequence[Span], rest: bool = False) -> dict[int, Status]:
-        """Return the same with the error bytes of the answers; for `rest` see `Exchange.request`."""
+        """Return the same with the error bytes of the answers; `rest` as of `Exchange.request`."""
         self.heartbeat()
         read = self.family.dialect.read(spans, self.fast([span.id for span in spans]))
         self.exchange.request(read, rest)

@@ -20,8 +20,8 @@ TOLD: Final = tuple(kind for kind in (*ANSWERS, *REQUESTS) if kind not in (*CHAN
 """Order, length or id tell these."""
 PASSES: Final = {"dynamixel2": 2.0**-16, "dynamixel2_plain": 2.0**-16}
 """Chance that a garbled frame has a checksum that fits; else 2^-8."""
-RECOVER: Final = 3
-"""Cycles after which all who can are heard again: two doubtful answers, and silence."""
+RECOVER: Final = 6
+"""Cycles after which all who can are heard again: two doubtful answers, and 30 ms of silence."""
 STRANGERS: Final = 252
 """Ids that a wrong one may be."""
 

@@ -83,7 +83,7 @@ def judged(kind: str, tally: Tally) -> bool:
 
 def test_what_can_be_told_must_not_happen_once() -> None:
     assert judged("drop", Tally(reads=100, fresh=90, waited=1))
-    for bad in (Tally(100, stale=1), Tally(100, borrowed=1), Tally(100, waited=4)):
+    for bad in (Tally(100, stale=1), Tally(100, borrowed=1), Tally(100, waited=7)):
         assert not judged("drop", bad)
     assert not judged("stale", Tally(100, outside=1))
 
