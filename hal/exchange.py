@@ -25,6 +25,8 @@ JITTER = 1e-4
 """What a servo may answer later than it should, s."""
 GRACE = 3e-3
 """Silence granted to servos that are late, before all are asked again, s."""
+LATE = 6
+"""Requests without an answer after which a servo is not late, but gone."""
 DOUBTS = 2
 """Doubtful answers, one behind the other, after which the line is let fall quiet."""
 
@@ -155,7 +157,7 @@ class Exchange:
         """Remember who was asked and has not answered, also where a reply may have been another's.
 
         Where a servo is late, so are all behind it: they are let finish before the next request,
-        once. One that is silent alone is not waited for. Where answers go on being doubtful,
+        a few times. One that is silent alone is not waited for. Where answers go on being doubtful,
         the line is let fall quiet.
         """
         now = self.port.clock.now()
@@ -172,7 +174,7 @@ class Exchange:
         silent = [span.id for span, came in zip(read.spans, read.valid, strict=True) if not came]
         self._owed = {id: self._owed.get(id, 0) + 1 for id in silent}
         late = self._owed.get(read.spans[-1].id, 0)
-        if len(silent) > 1 and late == 1:
+        if len(silent) > 1 and 0 < late <= LATE:
             self._silence = self._deadline + GRACE
 
     def _collect_chain(self, chain: ChainRead) -> Mask:
