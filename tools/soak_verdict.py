@@ -28,6 +28,8 @@ WHOLE: Final = 20
 """Readings of one answer: those that are late are so together."""
 SHORTEST: Final = 12
 """Bytes of a servo's answer, of any family."""
+FAR: Final = 2e-3
+"""Share of the readings before which a servo was silent so long that it may have got to 0."""
 EARLY: Final = 0.1
 """Share of the late answers that come when the next one would."""
 STRANGERS: Final = 252
@@ -71,7 +73,7 @@ def verdict(family: str, kind: str, rate: float, tally: Tally, position: float) 
 def expected(family: str, kind: str, rate: float, tally: Tally, position: float) -> float:
     """Return how many wrong readings, at most, nothing in order, length, id or checksum tells."""
     if kind in UNSEEN:
-        share = {"stale": 1.0, "zeros": 0.0, "jump": position}[kind]
+        share = {"stale": 1.0, "zeros": FAR, "jump": position}[kind]
         return share * tally.faults[kind]
     # A whole answer that is late to its first byte, alone where the next one is so too, or is lost.
     if kind == "late_byte":
