@@ -129,6 +129,11 @@ class BusHealth(Protocol):
         """Joint name to what its servo complains of."""
         ...
 
+    @property
+    def clamps(self) -> Mapping[str, int]:
+        """Clamp of the driver's own to the number of commands it changed; always the same names."""
+        ...
+
     def bus_errors(self) -> Mapping[str, int]:
         """Return kind of error to how often it has happened; the kinds are always the same."""
         ...

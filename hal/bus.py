@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from hal.adapter import get_to_know
 from hal.errors import HardwareError, NoAnswerError, UsageError
 from hal.exchange import Exchange
 from hal.families import DYNAMIXEL_X, Family
@@ -23,6 +24,8 @@ REBOOT_TIME = 0.6
 """How long a servo is deaf after a reboot, s."""
 BEAT = 20e-3
 """Longest time between two heartbeats while waiting, s."""
+FIRST = (1,)
+"""Whom a scan asks for the adapter's sake: the id that most servos leave the factory with."""
 EEPROM_TIME = 20e-3
 """How long a Feetech servo writes its EEPROM after it has answered, s."""
 
@@ -59,7 +62,13 @@ class Bus:
         self._fast: dict[tuple[int, ...], bool] = {}
 
     def move_to(self, port: Port) -> None:
-        """Go on over another port, as after an adapter was unplugged; statistics go on too."""
+        """Go on over another port, as after an adapter was unplugged; statistics go on too.
+
+        What was measured of the adapter is taken to be true of this one too.
+        """
+        before = self.port
+        port.echoes, port.known = before.echoes, before.known
+        port.latency = max(port.latency, before.latency)
         self.port = port
         self.exchange.move_to(port)
         heartbeat, self._link = self.heartbeat, self.family.dialect.link(port)
@@ -73,6 +82,15 @@ class Bus:
     @heartbeat.setter
     def heartbeat(self, heartbeat: Heartbeat) -> None:
         self._link.heartbeat = heartbeat
+
+    def get_to_know_adapter(self, ids: Iterable[int]) -> None:
+        """Measure how long the adapter holds answers back, and whether it gives requests back.
+
+        Args:
+            ids: Who may be there; the first that answers is asked a few times.
+        """
+        probes = (self.family.dialect.probe(id) for id in ids)
+        get_to_know(self.port, probes, self.heartbeat)
 
     def ping(self, id: int) -> int:
         """Return the model number of servo `id`.
@@ -104,7 +122,11 @@ class Bus:
             HardwareError: It reads back as something else.
         """
         self.command(id, register, counts, unlock=register.area == "eeprom")
-        if (now := self.read(id, register)) != counts:
+        now = self.read(id, register)
+        if now != counts:  # not for an answer that came late
+            self._link.settle()
+            now = self.read(id, register)
+        if now != counts:
             raise HardwareError(
                 f"id {id} on {self.port.url}: {register.name} was set to {counts} "
                 f"and reads back as {now}"
@@ -221,6 +243,7 @@ class Bus:
 
     def _scan(self, baud: int) -> list[Found]:
         self.port.baud = baud
+        self.get_to_know_adapter(FIRST)
         return [
             Found(baud, *answered, self.family.model_name(answered.model_number))
             for answered in self.family.dialect.who(self.port, self._link)

@@ -2,11 +2,12 @@
 
 from collections import Counter
 from collections.abc import Iterable
+from math import inf
 
 import numpy as np
 
 from hal.joints import Mask
-from hal.port import Port
+from hal.port import BITS, PLENTY, Port
 from hal.protocols.batched1 import ChainRead
 from hal.protocols.cyclic import CyclicRead
 
@@ -16,12 +17,18 @@ TURNAROUND = 20e-6
 """What a servo with a return delay of 0 takes to answer, s."""
 UNSET_TURNAROUND = 550e-6
 """The same as it leaves the factory, s."""
-BITS = 10.0
-"""A byte on the wire: start, eight, stop."""
+STRANGE = 256
+"""Bytes that may come before an answer: noise, or what an adapter gives back."""
+STILL_COMING = 0.03
+"""So long after a request that got no answer one may still come, s."""
+JITTER = 1e-4
+"""What a servo may answer later than it should, s."""
 GRACE = 3e-3
 """Silence granted to servos that are late, before all are asked again, s."""
 LATE = 6
 """Requests without an answer after which a servo is not late, but gone."""
+DOUBTS = 2
+"""Doubtful answers, one behind the other, after which the line is let fall quiet."""
 
 
 _NOBODY: Mask = np.zeros(0, dtype=bool)
@@ -55,14 +62,18 @@ class Exchange:
         self._deadline = 0.0
         self._pending: CyclicRead | None = None
         self._owed: dict[int, int] = {}  # who has not answered, and how often by now
+        self._parts_owed: dict[int, float] = {}  # who may still answer alone, and until when, s
+        self._whole_owed = -inf  # until when a fast answer may still come, s
         self._silence = 0.0
+        self._doubts = 0
 
     def move_to(self, port: Port) -> None:
         """Go on over another port; what was asked on the old one is forgotten."""
         self.port = port
         self._wire_free = self._deadline = self._silence = 0.0
         self._pending = None
-        self._owed = {}
+        self._owed, self._parts_owed = {}, {}
+        self._whole_owed = -inf
 
     def send(self, frames: Iterable[bytes]) -> None:
         """Send frames that nobody answers."""
@@ -87,42 +98,72 @@ class Exchange:
         self.cycles += 1
         if isinstance(read, ChainRead):
             return self._collect_chain(read)
-        gone = len(self._owed) == len(read.spans) and min(self._owed.values()) > LATE
-        read.owed = frozenset() if gone else frozenset(self._owed)
-        stream = self.port.read(read.length, self._deadline)
-        if read.owed:
-            stream = self._newest(read, stream)
-        read.decode(stream)
-        if not read.complete:
-            self._resynchronise(read, stream)
-        if gone and read.valid.any():
-            self._owed = {}  # they have power again, and may be late from now on
+        read.owed = self._owed
+        stream = self._answer(read)
+        if not read.confusable and self.port.clock.now() < self._whole_owed:
+            self._alone(read, stream)
+        else:
+            if self._owed:
+                stream = self._newest(read, stream)
+            read.decode(stream)
+            if not read.complete:
+                self._resynchronise(read, stream)
         self._note_owed(read)
         return read.valid
+
+    def _answer(self, read: CyclicRead) -> bytes:
+        """Return as many bytes as the answer has, without the request if that came back."""
+        stream = self.port.read(read.length, self._deadline)
+        request = read.request
+        if stream and request.startswith(stream[: len(request)]):
+            stream += self.port.read(len(request), self._deadline)
+            if stream.startswith(request):
+                return stream[len(request) :]
+        return stream
 
     def _newest(self, read: CyclicRead, stream: bytes) -> bytes:
         """Return `stream` as far as it can be an answer, where earlier ones may still be coming.
 
-        A whole answer that comes sooner than the wire can carry it, or has more behind it, is
-        what an adapter held back.
+        What an adapter held back comes sooner than the wire can carry an answer, or has more
+        behind it.
         """
-        soonest = self._wire_free + (read.length - 1) * BITS / self.port.baud
         now = self.port.clock.now()
-        if len(stream) == read.length and now < soonest:
+        if len(stream) < read.length:
+            return stream + self.port.read(PLENTY, now)
+        soonest = self._wire_free + (read.length - 1) * BITS / self.port.baud
+        if now < soonest:
+            self.port.read(PLENTY, now)
             return b""
-        return stream + self.port.read(read.longest, now)
+        last = now + len(read.spans) * self.turnaround + self.port.latency + JITTER
+        return stream + self.port.read(PLENTY, last)
+
+    def _alone(self, read: CyclicRead, stream: bytes) -> None:
+        """Take in an answer that must be whole and alone: an earlier one may still be coming."""
+        stream = self._newest(read, stream)
+        read.decode(stream if len(stream) == read.length else b"")
+        if not read.complete:
+            self._count_lost(read, stream)
 
     def _note_owed(self, read: CyclicRead) -> None:
-        """Remember who was asked and has not answered; a doubtful reply may have been it.
+        """Remember who was asked and has not answered, also where a reply may have been another's.
 
         Where a servo is late, so are all behind it: they are let finish before the next request,
-        a few times. One that is silent alone is not waited for.
+        a few times. One that is silent alone is not waited for. Where answers go on being doubtful,
+        the line is let fall quiet.
         """
-        if read.complete or not read.confusable:
-            self._owed = {}
+        now = self.port.clock.now()
+        self._doubts = self._doubts + 1 if read.doubted else 0
+        if self._doubts == DOUBTS:
+            self._owed, self._doubts, self._silence = {}, 0, now + STILL_COMING
+            return
+        if read.complete:
+            self._owed, self._whole_owed = {}, -inf
+            return
+        if not read.confusable:
+            self._whole_owed = now + STILL_COMING
             return
         silent = [span.id for span, came in zip(read.spans, read.valid, strict=True) if not came]
-        self._owed = {id: self._owed.get(id, 0) + 1 for id in silent if id not in read.doubted}
+        self._owed = {id: self._owed.get(id, 0) + 1 for id in silent}
         late = self._owed.get(read.spans[-1].id, 0)
         if len(silent) > 1 and 0 < late <= LATE:
             self._silence = self._deadline + GRACE
@@ -132,12 +173,24 @@ class Exchange:
         for row, part in enumerate(chain.parts):
             if row:
                 self._ask(part)
-            stream = self.port.read(part.length, self._deadline)
+            self._collect_part(part)
+            chain.collected(row)
+        return chain.valid
+
+    def _collect_part(self, part: CyclicRead) -> None:
+        """Take in the answer of one servo; an earlier one that comes late has another behind it."""
+        id = part.spans[0].id
+        stream, now = self._answer(part), self.port.clock.now()
+        if id in self._owed or now < self._parts_owed.get(id, -inf):
+            self._alone(part, stream)
+        else:
             part.decode(stream)
             if not part.complete:
                 self._resynchronise(part, stream)
-            chain.collected(row)
-        return chain.valid
+        if part.complete:
+            self._owed.pop(id, None)
+        elif now >= self._parts_owed.get(id, -inf):
+            self._parts_owed[id] = now + STILL_COMING
 
     def answer_time(self, read: CyclicRead) -> float:
         """Return how long the answer to `read` may take once the request is on the wire, s."""
@@ -159,16 +212,19 @@ class Exchange:
             if not more:
                 break
             stream += more
-            if len(stream) > 2 * read.longest:
+            if len(stream) > 2 * read.longest + STRANGE:
                 break
             read.decode(stream)
-        lost = int((~read.valid).sum())
-        if not lost:
+        if read.complete:
             self.stuffed += 1
         else:
-            self.errors["resynchronised"] += 1
-            kind = "corrupt" if len(stream) > read.answered() else "no answer"
-            self.errors[kind] += lost
+            self._count_lost(read, stream)
+
+    def _count_lost(self, read: CyclicRead, stream: bytes) -> None:
+        """Count who is missing in an answer."""
+        self.errors["resynchronised"] += 1
+        kind = "corrupt" if len(stream) > read.answered() else "no answer"
+        self.errors[kind] += int((~read.valid).sum())
 
     def _occupy(self, count: int) -> None:
         start = max(self._wire_free, self.port.clock.now())

@@ -21,6 +21,10 @@ ROOM = 100
 """How long a write waits for room before it tries again, ms."""
 LATENCY = 1e-3
 """What an adapter may hold back when its driver does not say, s."""
+BITS = 10.0
+"""A byte on the wire: start, eight, stop."""
+PLENTY = 65_536
+"""More bytes than a driver keeps."""
 
 
 class SerialLike(Protocol):
@@ -57,6 +61,8 @@ class Port:
         place: The same, as it is found from every working folder.
         clock: The wall, or the clock of the world behind the port.
         latency: How long the adapter may hold back bytes that have arrived, s.
+        echoes: Does the adapter give back all that is sent? Then reads leave that out.
+        known: Have latency and echo been measured? See `hal.adapter`.
         sent: Bytes written so far.
         received: Bytes read so far.
         has_baud: Does its baud rate reach the wire? A plain TCP bridge has one of its own.
@@ -70,6 +76,9 @@ class Port:
         self.clock: Clock = world if world is not None else WallClock()
         self.latency: float = getattr(serial, "latency", LATENCY) if latency is None else latency
         self.sent = self.received = 0
+        self.echoes = self.known = False
+        self._echo = 0  # bytes that were sent and have not been given back
+        self._echo_end = 0.0  # when the last of them has been on the wire, s
 
     @property
     def baud(self) -> int:
@@ -86,25 +95,59 @@ class Port:
 
     def read(self, count: int, deadline: float) -> bytes:
         """Return `count` bytes, or what has come when the clock says `deadline` s."""
-        wait = deadline - self.clock.now()
-        try:
-            self._serial.timeout = wait if wait > 0.0 else 0.0
-            data = self._serial.read(count)
-        except GONE as error:
-            raise self._gone(error) from None
+        while self._echo:
+            echo = self._take(self._echo, deadline)
+            self._echo -= len(echo)
+            if not echo:
+                return b""
+        data = self._take(count, deadline)
         self.received += len(data)
         return data
 
     def write(self, data: bytes) -> None:
         """Send `data`; returns when the driver has it, not when the wire has."""
-        try:
-            self._serial.write(data)
-        except GONE as error:
-            raise self._gone(error) from None
+        if self.echoes:
+            start = max(self._echo_end, self.clock.now())
+            self._echo_end = start + len(data) * BITS / self.baud
+            self._echo += len(data)
+        self._send(data)
         self.sent += len(data)
 
     def flush_input(self) -> None:
         """Forget bytes that have arrived: a late answer must not pass for the next one."""
+        now = self.clock.now()
+        if self._echo:
+            self._echo -= min(self._echo, len(self._take(PLENTY, now)))
+            if now > self._echo_end + self.latency + LATENCY:
+                self._echo = 0  # what has not come back by now is lost
+        self._discard()
+
+    def settle(self, silence: float, longest: float) -> None:
+        """Read and forget what comes until nothing has come for `silence` s.
+
+        Gives up after `longest` s on a line that is never quiet.
+        """
+        end = self.clock.now() + longest
+        while (now := self.clock.now()) < end and self._take(1, min(now + silence, end)):
+            self._take(PLENTY, self.clock.now())
+        self.flush_input()
+
+    def _take(self, count: int, deadline: float) -> bytes:
+        """Return what has come, as of `read`, with whatever the adapter has given back."""
+        wait = deadline - self.clock.now()
+        try:
+            self._serial.timeout = wait if wait > 0.0 else 0.0
+            return self._serial.read(count)
+        except GONE as error:
+            raise self._gone(error) from None
+
+    def _send(self, data: bytes) -> None:
+        try:
+            self._serial.write(data)
+        except GONE as error:
+            raise self._gone(error) from None
+
+    def _discard(self) -> None:
         try:
             self._serial.reset_input_buffer()
         except GONE as error:
@@ -149,8 +192,7 @@ class DevicePort(Port):
         self._fd: int = serial.fileno()
         self._readable = (_selected if self._fd < SELECTABLE else _polled)(self._fd)
 
-    def read(self, count: int, deadline: float) -> bytes:
-        """Return `count` bytes, or what has come when the clock says `deadline` s."""
+    def _take(self, count: int, deadline: float) -> bytes:
         chunks: list[bytes] = []
         left = count
         while left > 0:
@@ -167,11 +209,9 @@ class DevicePort(Port):
                 raise self._gone(OSError("end of file"))
             chunks.append(chunk)
             left -= len(chunk)
-        self.received += count - left
         return chunks[0] if len(chunks) == 1 else b"".join(chunks)
 
-    def write(self, data: bytes) -> None:
-        """Send `data`; returns when the driver has it, not when the wire has."""
+    def _send(self, data: bytes) -> None:
         view = memoryview(data)
         while view:
             try:
@@ -182,4 +222,3 @@ class DevicePort(Port):
                 writable.poll(ROOM)
             except OSError as error:
                 raise self._gone(error) from None
-        self.sent += len(data)

@@ -8,10 +8,10 @@ adapter; an exception leaves its port marked as in use for ever.
 
 import contextlib
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from dynamixel_sdk import COMM_RX_TIMEOUT, COMM_SUCCESS
+from dynamixel_sdk import COMM_RX_CORRUPT, COMM_RX_TIMEOUT, COMM_SUCCESS
 from dynamixel_sdk.port_handler import PortHandler
 from dynamixel_sdk.protocol2_packet_handler import Protocol2PacketHandler
 
@@ -20,6 +20,10 @@ from hal.heartbeat import no_heartbeat
 from hal.port import Port
 from hal.protocols import protocol2
 
+QUIET = 20e-3
+"""Silence, on top of the adapter's latency, after which no late answer is to be expected, s."""
+NOISY = 0.1
+"""How long quiet is waited for on a line that has none, s."""
 SLACK = 10e-3
 """Time a servo may take to write its EEPROM before it answers, s."""
 ATTEMPTS = 3
@@ -43,7 +47,8 @@ class SdkPort(PortHandler):  # type: ignore[misc]  # the SDK has no types
         self.port = port
         self.baudrate = port.baud
         self.is_open = True
-        self._written = 0
+        self._sent = b""
+        self._ahead: bytes | None = None  # what was read, unless it may still be our own request
 
     def openPort(self) -> bool:  # noqa: N802 - the SDK's name, as all below
         """The port is open already."""
@@ -66,18 +71,29 @@ class SdkPort(PortHandler):  # type: ignore[misc]  # the SDK has no types
         return 0
 
     def readPort(self, length: int) -> bytes:  # noqa: N802
-        """Wait for `length` bytes until the packet's time is up; this lets virtual time pass."""
-        return self.port.read(length, (self.packet_start_time + self.packet_timeout) * 1e-3)
+        """Wait for `length` bytes until the packet's time is up; this lets virtual time pass.
+
+        A request that comes back is left out: in protocol 1 it looks like an answer.
+        """
+        deadline = (self.packet_start_time + self.packet_timeout) * 1e-3
+        if self._ahead is None:
+            self._ahead = b""
+            stream = self.port.read(length, deadline)
+            if stream and self._sent.startswith(stream):
+                stream += self.port.read(len(self._sent) - len(stream), deadline)
+            self._ahead = stream.removeprefix(self._sent)
+        got, self._ahead = self._ahead[:length], self._ahead[length:]
+        return got + self.port.read(length - len(got), deadline) if len(got) < length else got
 
     def writePort(self, packet: list[int]) -> int:  # noqa: N802
         """Send, all or an exception."""
-        self.port.write(bytes(packet))
-        self._written = len(packet)
+        self._sent, self._ahead = bytes(packet), None
+        self.port.write(self._sent)
         return len(packet)
 
     def setPacketTimeout(self, packet_length: int) -> None:  # noqa: N802
         """Give request and answer their time on the wire, the adapter its latency, and slack."""
-        wire = (self._written + packet_length) * 10.0 / self.port.baud
+        wire = (2 * len(self._sent) + packet_length) * 10.0 / self.port.baud
         self.setPacketTimeoutMillis((wire + 2.0 * self.port.latency + SLACK) * 1e3)
 
     def isPacketTimeout(self) -> bool:  # noqa: N802
@@ -122,6 +138,21 @@ class Link(ABC):
     def __init__(self, port: Port, packets: Any) -> None:
         self._port, self._packets = SdkPort(port), packets
         self.heartbeat = no_heartbeat
+        self._unsettled = False
+        self._got: Sequence[int] = ()
+        receive = packets.rxPacket
+
+        def received(*args: Any) -> tuple[Any, int]:
+            """Keep what the SDK receives: it never looks at the length."""
+            self._got, result = receive(*args)
+            return self._got, int(result)
+
+        packets.rxPacket = received
+
+    def settle(self) -> None:
+        """Wait until no answer to an earlier request can come any more."""
+        self._port.port.settle(QUIET + self._port.port.latency, NOISY)
+        self._unsettled = False
 
     @abstractmethod
     def ping(self, id: int, attempts: int = ATTEMPTS) -> int:
@@ -140,6 +171,7 @@ class Link(ABC):
                 None,
                 *self._packets.writeTxRx(self._port, id, address, len(value), value),
             ),
+            0,
         )
 
     @abstractmethod
@@ -151,17 +183,30 @@ class Link(ABC):
         """Reset a servo; `keep` 0xFF nothing, 0x01 the id, 0x02 id and baud rate."""
 
     def _ask(
-        self, id: int, call: Callable[[], tuple[Any, int, int]], attempts: int = ATTEMPTS
+        self,
+        id: int,
+        call: Callable[[], tuple[Any, int, int]],
+        size: int,
+        attempts: int = ATTEMPTS,
     ) -> tuple[Any, int]:
-        """Return value and error byte of a call that ends in (value, result, error)."""
+        """Return value and error byte of a call that ends in (value, result, error).
+
+        After a call that failed its answer may still come, so the line is let fall quiet before
+        the next request; an answer with another number of parameters than `size` is never taken.
+        """
         result, before = COMM_SUCCESS, self._port.port.received
         for _ in range(attempts):
             self.heartbeat()
+            if self._unsettled:
+                self.settle()
             with self._released():
                 value, result, error = call()
             if result == COMM_SUCCESS:
                 self._check(id, error)
-                return value, error
+                if self._size(self._got) == size:
+                    return value, error
+                result = COMM_RX_CORRUPT
+            self._unsettled = True
         where = f"id {id} on {self._port.port.url} at {self._port.port.baud} baud"
         if result == self.timed_out and (came := self._port.port.received - before):
             raise NoAnswerError(
@@ -172,6 +217,10 @@ class Link(ABC):
         raise CorruptAnswerError(
             f"only broken answers from {where}; a wrong baud rate, or two servos with this id?"
         )
+
+    @abstractmethod
+    def _size(self, packet: Sequence[int]) -> int:
+        """Return the number of parameters of a status that the SDK has received."""
 
     @abstractmethod
     def _check(self, id: int, error: int) -> None:
@@ -195,21 +244,25 @@ class DynamixelLink(Link):
 
     def ping(self, id: int, attempts: int = ATTEMPTS) -> int:
         """Return the model number of servo `id`."""
-        number, _ = self._ask(id, lambda: self._packets.ping(self._port, id), attempts)
+        number, _ = self._ask(id, lambda: self._packets.ping(self._port, id), 3, attempts)
         return int(number)
 
     def read(self, id: int, address: int, size: int) -> bytes:
         """Return `size` bytes at `address`."""
-        data, _ = self._ask(id, lambda: self._packets.readTxRx(self._port, id, address, size))
+        data, _ = self._ask(id, lambda: self._packets.readTxRx(self._port, id, address, size), size)
         return bytes(data)
 
     def reboot(self, id: int) -> None:
         """Restart a servo; it is deaf for some 100 ms."""
-        self._ask(id, lambda: (None, *self._packets.reboot(self._port, id)), attempts=1)
+        self._ask(id, lambda: (None, *self._packets.reboot(self._port, id)), 0, attempts=1)
 
     def factory_reset(self, id: int, keep: int) -> None:
         """Reset a servo; `keep` 0xFF nothing, 0x01 the id, 0x02 id and baud rate."""
-        self._ask(id, lambda: (None, *self._packets.factoryReset(self._port, id, keep)), 1)
+        self._ask(id, lambda: (None, *self._packets.factoryReset(self._port, id, keep)), 0, 1)
+
+    def _size(self, packet: Sequence[int]) -> int:
+        """Return the number of parameters of a status that the SDK has received."""
+        return packet[5] + (packet[6] << 8) - 4
 
     def _check(self, id: int, error: int) -> None:
         if code := error & ~protocol2.ALERT:

@@ -8,10 +8,11 @@ and dynamixel-sdk 4.1.0 cannot do a bulk read in protocol 1 (TypeError). Here th
 packets, one servo at a time.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 from dynamixel_sdk.protocol1_packet_handler import Protocol1PacketHandler
-from scservo_sdk import COMM_RX_CORRUPT, COMM_RX_TIMEOUT, COMM_SUCCESS
+from scservo_sdk import COMM_RX_TIMEOUT
 from scservo_sdk.protocol_packet_handler import protocol_packet_handler
 
 from hal.errors import RefusedError, UsageError
@@ -54,11 +55,9 @@ class Protocol1Link(Link):
         def call() -> tuple[bytes, int, int]:
             request = [0, 0, id, 4, int(Instruction.READ), address, size, 0]
             packet, result, error = self._packets.txRxPacket(self._port, request)
-            if result == COMM_SUCCESS and packet[3] != size + 2:
-                result = COMM_RX_CORRUPT
             return bytes(packet or b"")[5:-1], result, error
 
-        data, _ = self._ask(id, call)
+        data, _ = self._ask(id, call, size)
         return bytes(data)
 
     def reboot(self, id: int) -> None:
@@ -84,7 +83,11 @@ class Protocol1Link(Link):
             _, result, error = self._packets.txRxPacket(self._port, packet)
             return None, result, error
 
-        self._ask(id, call, attempts)
+        self._ask(id, call, 0, attempts)
+
+    def _size(self, packet: Sequence[int]) -> int:
+        """Return the number of parameters of a status that the SDK has received."""
+        return packet[3] - 2
 
     def _check(self, id: int, error: int) -> None:
         """A servo's health rides in every error byte; it refuses nothing."""

@@ -63,8 +63,9 @@ class ServoBackend:
         links: The buses, from `connect` to `disconnect`.
         readings: What the servos last said.
         button: The buttons of the OpenCR: any of them is a stop.
-        clamps: Clamp name to the number of commands it changed; "unarmed" and "lost" are goals
-            withheld, of a bus, and of joints that may have lost their torque.
+        clamps: Clamp name to the number of commands it changed: "goal" beyond the encoder's range,
+            "gain" beyond the register's; "unarmed" and "lost" are goals withheld, of a bus, and of
+            joints that may have lost their torque.
         lost_joints: Joint name to how it has lost its torque since the robot was armed. It gets
             no goal until `rearm`.
         watchdog_trips: Servos that had frozen for silence, and were cleared.
@@ -98,7 +99,7 @@ class ServoBackend:
         self.button = StopButton()
         self._torque = JointTorque(joints, self._couplings)
         self.lost_joints: Mapping[str, Loss] = {}
-        self.clamps: Counter[str] = Counter({"goal": 0, "gain": 0})
+        self.clamps: Counter[str] = Counter(goal=0, gain=0, unarmed=0, lost=0)
         self.watchdog_trips = 0
         n = len(joints)
         self.readings = JointReadings(self.units, self._couplings, imu, contacts)

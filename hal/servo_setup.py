@@ -93,13 +93,16 @@ def open_links(
 def set_up(
     joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, Bus], board: OpenCr | None
 ) -> None:
-    """Give the servos power, check all of them, then say and write the settings that differ.
+    """Measure the adapters, give the servos power, check all, then say and write what differs.
 
-    Emulated servos forget them with the program: there they are not worth a word.
+    Emulated servos forget their settings with the program: there they are not worth a word.
 
     Raises:
         HardwareError: Something is not as wired; nothing has been written.
     """
+    for name, bus in buses.items():
+        ours = [board.id] if board is not None and board.bus == name else []
+        bus.get_to_know_adapter([*ours, *(mount.id for mount in mounts if mount.bus == name)])
     if board is not None:
         power_up(buses[board.bus], board)
     found = check_servos(joints, mounts, buses, board)

@@ -87,6 +87,7 @@ class TelemetryWriter:
             started=wall.time(),
             clamps=tuple(backend.clamps),
             estimated=estimated,
+            driver_clamps=tuple(self._bus.clamps) if self._bus else (),
         )
         self.path = path or ring_path(robot, port)
         self._prepare()
@@ -102,7 +103,9 @@ class TelemetryWriter:
         self._payload = self._bytes[PAYLOAD_AT:]
         self._head = record.view(np.uint64)[:2]
         self._numbers = record.view(np.float64)[2:]
-        self._few = np.zeros(9 + len(header.clamps) + len(header.errors))
+        self._few = np.zeros(
+            9 + len(header.clamps) + len(header.driver_clamps) + len(header.errors)
+        )
         self._alert = np.zeros(len(header.joints))
         self._no_age = np.zeros(len(header.joints))
         self._none = {size: np.full(size, np.nan) for size in (3, 4)}
@@ -129,6 +132,7 @@ class TelemetryWriter:
         few += [imu.age if imu else np.nan, base.confidence if base else 0.0]
         few += self._backend.clamps.values()
         if bus is not None:
+            few += bus.clamps.values()
             few += bus.bus_errors().values()
             self._note_alerts(bus)
         self._few[:] = few

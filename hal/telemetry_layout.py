@@ -60,6 +60,7 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
         started: When it began, s since 1970.
         clamps: Names of the clamps that are counted.
         estimated: The base state comes from the IMU.
+        driver_clamps: Names of the clamps that the driver of the servos counts.
     """
 
     robot: str
@@ -73,6 +74,7 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
     started: float
     clamps: tuple[str, ...] = FIELDS
     estimated: bool = False
+    driver_clamps: tuple[str, ...] = ()
 
     def fields(self) -> list[Field]:
         """Return the names and shapes of a tick's numbers, in their order.
@@ -91,6 +93,7 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
         return [
             *((name, ()) for name in scalars),
             ("clamps", (len(self.clamps),)),
+            ("driver_clamps", (len(self.driver_clamps),)),
             ("errors", (len(self.errors),)),
             *((name, n) for name in (*joints, *told)),
             ("contacts", (len(self.contacts),)),

@@ -5,7 +5,7 @@ from math import pi, radians
 
 import numpy as np
 
-from hal.imu.opencr import ACCELERATION, GYRO
+from hal.imu.opencr import ACCELERATION, CUTOFF, GYRO
 from hal.joints import Array
 
 
@@ -32,7 +32,7 @@ class ImuFigures:
 
 
 OPENCR = ImuFigures(
-    cutoff=41.0,  # MPU9250, as OpenCR's firmware sets it
+    cutoff=CUTOFF,
     noise=(radians(0.01), 300e-6 * 9.80665),  # its data sheet
     bias=(radians(0.3), 0.05),  # our guess of what the calibration at rest leaves
     unit=(GYRO, ACCELERATION),

@@ -24,7 +24,6 @@ from hal.controller import Predictor
 from hal.errors import StateMissingError, UnknownNameError, UsageError
 from hal.ranges import Range, read_number
 from robots import RobotDescription
-from sim_twin.imu_errors import OPENCR
 from tools.gaits import find_gait
 from tools.shape import can_estimate, check_walks
 from tools.spells import blended
@@ -42,12 +41,13 @@ def body_of(robot: RobotDescription) -> Body:
 
 
 def build_estimator(
-    robot: RobotDescription, *, switches: bool = True, attitude: bool = False
+    robot: RobotDescription, lag: float, *, switches: bool = True, attitude: bool = False
 ) -> BaseEstimator:
     """Return what estimates the base of `robot` from its sensors.
 
     Args:
         robot: The robot.
+        lag: Delay of its IMU's own filter, s.
         switches: Its contact sensors exist; without them the soles' heights tell who stands.
         attitude: Its IMU tells its attitude and has no gyroscope.
 
@@ -66,7 +66,7 @@ def build_estimator(
     return BaseEstimator(
         load,
         model.site(robot.imu.site).pos.copy(),
-        lag=OPENCR.lag,
+        lag=lag,
         # What is no gyroscope has no bias; and what is on no servo bus is not read with the joints.
         noise=ImuNoise(start_bias=0.0, drift=0.0) if attitude else None,
         fused=attitude,

@@ -163,6 +163,11 @@ class Diagnosis:
         """Return name of the clamp to commands changed, over the ring."""
         return {k: int(n) for k, n in zip(self.header.clamps, self.change("clamps"), strict=True)}
 
+    def driver_clamps(self) -> dict[str, int]:
+        """Return name of the driver's clamp to commands changed, over the ring."""
+        counts = self.change("driver_clamps")
+        return {k: int(n) for k, n in zip(self.header.driver_clamps, counts, strict=True)}
+
     def joints(self) -> list[dict[str, Any]]:
         """Return one row a joint: present values, largest age and share of clamped ticks."""
         ages, clamped = self.ticks["age"].max(axis=0), self.change("clamped") / len(self.ticks)
@@ -206,6 +211,7 @@ class Diagnosis:
             "imu_age_s": float(self.newest["imu_age"]),
             "bus_errors": self.bus_errors(),
             "clamps": {name: count for name, count in self.clamps().items() if count},
+            "driver_clamps": {name: n for name, n in self.driver_clamps().items() if n},
             "joints": self.joints(),
             "warnings": [finding.record() for finding in self.findings] + self.slowness.records(),
             "limits": self.limits.record(),

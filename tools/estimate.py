@@ -191,7 +191,7 @@ class Estimate(Command):
             return referee
         errors = ImuErrors(OPENCR, robot.twin.timestep, self.seed)
         backend = TwinBackend(robot.twin, imu_errors=errors)
-        estimator = build_estimator(robot.description, switches=self.switches)
+        estimator = build_estimator(robot.description, OPENCR.lag, switches=self.switches)
         referee = Referee(estimator, None, listen)
         guarded = replace(robot.backend, backend=backend)
         robot.stack = replace(robot.stack, backend=guarded, estimator=referee)

@@ -96,7 +96,9 @@ def picture(diagnosis: Diagnosis) -> Group:
         f"{result['robot']}: {result['state']}{why}, last tick {result['silence_s']:.1f} s ago",
         f"{rate}{result['rate_nominal_hz']:g} Hz, {result['missed']} of {result['ticks']} ticks "
         f"missed, tick {result['tick_ms']['p50']:.2f} ms, p99 {result['tick_ms']['p99']:.2f} ms",
-        *(_counts("bus errors", result["bus_errors"]), _counts("clamps", result["clamps"])),
+        _counts("bus errors", result["bus_errors"]),
+        _counts("clamps", result["clamps"]),
+        _counts("driver clamps", result["driver_clamps"]),
     ]
     end = [Text(str(complaint), style="red") for complaint in diagnosis.complaints]
     healthy = [Text("healthy", style="green")]

@@ -36,14 +36,16 @@ def plain(value: Any) -> Any:
 def write_json(target: Path | None, command: str, result: dict[str, Any]) -> None:
     """Write one JSON object to `target`: a file, standard output for "-", or nowhere for None.
 
-    Where a robot was run, what there was to warn about is part of it. What cannot be written is
-    told in the command's last lines, and makes its status 1.
+    Where a robot was run, what there was to warn about, and what the driver of its servos has
+    clamped, are part of it. What cannot be written is told in the command's last lines, and makes
+    its status 1.
     """
     if target is None:
         return
     whole = {"schema": SCHEMA, "command": command, **result}
     if NOTES.ran:
         whole["warnings"] = NOTES.records()
+        whole["driver_clamps"] = NOTES.driver_clamps
     text = json.dumps(plain(whole), indent=2)
     with NOTES.losing():
         if target == STANDARD_OUTPUT:

@@ -4,11 +4,13 @@ A session leaves its warnings here when it is closed, and they are merged: the s
 runs is one warning. A command begins with none.
 """
 
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from copy import deepcopy
 from typing import Any
 
+from hal.backend import BusHealth
 from hal.errors import OutputError, UsageError
 from hal.guard.finding import Finding
 from tools.slowness import Slowness
@@ -21,6 +23,7 @@ class RunNotes:
 
     Attributes:
         ran: Has there been a robot at all?
+        driver_clamps: Clamp of the servos' driver to the number of commands it changed.
         lost: Results that could not be written, and why; "" where nobody was there to read one.
     """
 
@@ -30,14 +33,17 @@ class RunNotes:
     def begin(self) -> None:
         """Forget everything: a command begins."""
         self.ran = False
+        self.driver_clamps: Counter[str] = Counter()
         self.lost: list[str] = []
         self._findings: dict[str, Finding] = {}
         self._slowness: Slowness | None = None
         self._rows: list[Row] = []
 
-    def add(self, findings: Iterable[Finding], slowness: Slowness) -> None:
-        """Take in what a session had to warn about."""
+    def add(self, findings: Iterable[Finding], slowness: Slowness, backend: object = None) -> None:
+        """Take in what a session had to warn about, and what its backend has clamped."""
         self.ran = True
+        if isinstance(backend, BusHealth):
+            self.driver_clamps.update(backend.clamps)
         for finding in findings:
             known = self._findings.get(finding.saying.name)
             if known is None:
@@ -50,8 +56,9 @@ class RunNotes:
             self._slowness.merge(slowness)
 
     def add_row(self, row: Row) -> None:
-        """Take in the result of a run in another process, with its `warnings`."""
+        """Take in the result of a run in another process, with `warnings` and `driver_clamps`."""
         self.ran = True
+        self.driver_clamps.update(row.get("driver_clamps", {}))
         self._rows.append(row)
 
     @contextmanager

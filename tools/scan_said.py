@@ -66,7 +66,7 @@ def complaints(survey: Survey, url: str, missing: list[str]) -> Iterator[str]:
         yield f"something answers on {url} that is not understood (first bytes {_hex(strange[0])})"
     if missing:
         yield f"silent: {', '.join(missing)}"
-    if not (survey.servos or survey.unknown or survey.strange):
+    if not (survey.servos or survey.unknown or survey.strange or survey.echo):
         yield f"nobody answers on {url}: is the servo power on, and this the right port?"
 
 

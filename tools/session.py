@@ -294,7 +294,7 @@ class Session(Armed):
 
     def _disconnect(self) -> None:
         if not self._closed:
-            NOTES.add(self.warnings, self.slowness)
+            NOTES.add(self.warnings, self.slowness, self.backend.backend)
         super()._disconnect()
         if self.telemetry is not None:
             self.telemetry.close()

@@ -1,6 +1,7 @@
 """One family of servos read for a long time while everything goes wrong, against the truth."""
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from itertools import count
 from typing import Final
@@ -16,8 +17,6 @@ PERIOD = 0.008  # s between two cycles, as in a loop of 125 Hz
 BREAKDOWNS: Final = ("dead", "reset", "brown_out", "overload", "unplug")
 OUTAGE: Final = {"brown_out": 0.05, "unplug": 0.1}  # s
 DEAD_FOR = 5  # cycles until a dead servo is given its power back
-# Faults after which a frame is garbled, so that only chance lets it through its checksum.
-GARBLED: Final = ("corrupt", "cut", "noise", "wrong_length")
 
 
 @dataclass
@@ -62,12 +61,15 @@ class Soak:
 
     Args:
         rig: The servos.
-        rate: Share of the answers, and of the cycles, that each kind of fault hits.
+        kinds: Kind of fault to the share of the answers, or requests, that it hits.
         seed: Seed of the events.
+        breakdowns: Share of the cycles in which servo, supply or adapter fails, each in each way.
     """
 
-    def __init__(self, rig: SoakRig, rate: float, seed: int) -> None:
-        self.rig, self.rate = rig, rate
+    def __init__(
+        self, rig: SoakRig, kinds: Mapping[str, float], seed: int, breakdowns: float = 0.0
+    ) -> None:
+        self.rig, self.rate = rig, breakdowns
         self.tally = Tally()
         self._dice = np.random.default_rng(seed)
         self._before = rig.truth
@@ -77,7 +79,7 @@ class Soak:
         self._broken_until = 0.0  # an answer that was held back is still on its way
         units = rig.backend.units
         self._margin, self._reach = MARGIN * (units.last + 1.0), FASTER * units.speed
-        for kind in ANSWERS:
+        for kind, rate in kinds.items():
             rig.faults.add(make_rule(kind, rate))
 
     def run(self, reads: int) -> Tally:

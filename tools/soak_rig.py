@@ -9,6 +9,8 @@ import numpy as np
 import sim_twin.wire as wire
 from hal.joints import Array, Joint, Joints, Mask
 from hal.observation import Observation
+from hal.open_port import open_port
+from hal.port import LATENCY, Port
 from hal.servo_backend import BusPort, ServoBackend
 from hal.servo_model import ServoMount
 from hal.servos import servo_model
@@ -20,6 +22,7 @@ from sim_twin.wire.world import Bench
 # What people call a family, and the servo that stands for it.
 FAMILIES: Final = {
     "dynamixel2": "XM430-W350",
+    "dynamixel2_plain": "2XL430-W250",  # knows no fast sync read
     "dynamixel1": "MX-28",
     "ax": "AX-12A",
     "sts": "STS3215-7.4V",
@@ -29,6 +32,13 @@ BAUD = 1_000_000
 FASTEST = 9  # counts that the fastest servo turns in a cycle; the slowest turns 1
 SWING = 0.3  # of the encoder's range, each way from the middle
 _worlds = count()
+
+
+def open_untold(url: str, baud: int) -> Port:
+    """Open a port whose driver says nothing of its latency."""
+    port = open_port(url, baud)
+    port.latency = LATENCY
+    return port
 
 
 class Puppets:
@@ -48,6 +58,7 @@ class SoakRig:
         family: A key of `FAMILIES`.
         servos: How many.
         seed: Seed of faults and of the way that the shafts go.
+        latency: Of the adapter, s; nobody tells the driver.
 
     Attributes:
         backend: The driver, configured and with torque on.
@@ -56,12 +67,12 @@ class SoakRig:
         url: The port.
     """
 
-    def __init__(self, family: str, servos: int = 20, seed: int = 0) -> None:
+    def __init__(self, family: str, servos: int = 20, seed: int = 0, latency: float = 0.0) -> None:
         model, rng = servo_model(FAMILIES[family]), np.random.default_rng(seed)
         self.name, self.servos = f"soak-{family}-{next(_worlds)}", servos
         self.url = (
             f"twin://bench?servos={FAMILIES[family]}:1-{servos}&baud={BAUD}&return_delay=0"
-            f"&world={self.name}&seed={seed}"
+            f"&world={self.name}&seed={seed}&latency={1e3 * latency}"
         )
         self._model, ids = model, range(1, servos + 1)
         self._supply = min(12.0, model.rows[-1].voltage)
@@ -69,7 +80,8 @@ class SoakRig:
         joints = Joints(tuple(Joint(f"servo {id}", -2.0, 2.0, stiffness, 0.1) for id in ids))
         mounts = [ServoMount(model, "body", id, 1, model.middle, 1.0) for id in ids]
         ports = {"body": BusPort(self.url, BAUD)}
-        self.backend = ServoBackend(joints, mounts, ports, supply=self._supply)
+        opener = open_untold if latency else open_port
+        self.backend = ServoBackend(joints, mounts, ports, supply=self._supply, opener=opener)
         self.backend.connect()
         self.world = wire.find_world(self.name)
         bench = self.world.physics
@@ -84,6 +96,13 @@ class SoakRig:
         self.turn()
         self.backend.configure()
         self.backend.set_torque(True)
+
+    @property
+    def position_share(self) -> float:
+        """Share of the position in the bytes of a servo's answer."""
+        family = self.backend.lines[0].bus.family
+        state = family.cycle([self._model]).state
+        return family.registers["present_position"].size / state.size
 
     @property
     def faults(self) -> Faults:

@@ -86,7 +86,7 @@ def twin_stack(
     twin = Twin(robot, delay=delay, world=world)
     true = state == "true"
     errors = None if true else ImuErrors(OPENCR, twin.timestep, seed)
-    estimator = None if true else build_estimator(robot)
+    estimator = None if true else build_estimator(robot, OPENCR.lag)
     backend = _guarded(TwinBackend(twin, paced=paced, true_base=true, imu_errors=errors), robot)
     delay = robot.drive.command_delay if delay is None else delay
     return Stack(backend, twin, estimator, delay + robot.drive.sensor_delay)
@@ -124,11 +124,13 @@ def wire_stack(
         port, world = _in_a_world(robot, port, around)
     elif around is not None:
         raise UsageError("only a twin has another ground or plant; leave --port away")
-    backend = _guarded(servo_backend(robot, port), robot, given)
+    servos = servo_backend(robot, port)
+    backend = _guarded(servos, robot, given)
     try:
         backend.connect()
         twin = _twin_behind(world) if emulated else None
-        estimator = _estimator(robot, twin, state)
+        sensor = servos.board or servos.imu
+        estimator = _estimator(robot, twin, state, 0.0 if sensor is None else sensor.lag)
         if twin is not None:
             twin.reset(noise=noise, seed=seed)
         backend.configure()
@@ -140,7 +142,9 @@ def wire_stack(
     return Stack(backend, twin, estimator, delay, True, arm or emulated, world, given)
 
 
-def _estimator(robot: RobotDescription, twin: Twin | None, state: State | None) -> Estimator | None:
+def _estimator(
+    robot: RobotDescription, twin: Twin | None, state: State | None, lag: float
+) -> Estimator | None:
     """Return what fills in the base state behind a port; no servo bus carries foot switches."""
     if state is None and not can_estimate(robot):
         if not robot.fixed:
@@ -149,7 +153,8 @@ def _estimator(robot: RobotDescription, twin: Twin | None, state: State | None) 
             )
         return None
     if state != "true":
-        return build_estimator(robot, switches=False, attitude=not _imu_on_the_bus(robot))
+        apart = not _imu_on_the_bus(robot)
+        return build_estimator(robot, lag, switches=False, attitude=apart)
     if twin is None:
         raise UsageError("--state true needs a twin; a robot has `--state estimated`")
     return Truth(Sensors(twin))

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from hal.bus import Bus, Found
+from hal.bus import FIRST, Bus, Found
 from hal.errors import CorruptAnswerError, HardwareError
 from hal.families import FAMILIES, Family
 from hal.imu.opencr import MODEL_NUMBER as OPENCR
@@ -52,7 +52,7 @@ class Survey:
     @property
     def echo(self) -> bool:
         """Does the adapter send back what it is sent?"""
-        return any(is_echo(one.data) for _, _, one in self.strange)
+        return self.port.echoes or any(is_echo(one.data) for _, _, one in self.strange)
 
     def look(self, baud: int | None, begin: Callable[[str], None]) -> None:
         """Look for servos of every family.
@@ -72,8 +72,8 @@ class Survey:
                         self._add(Bus(self.port, family), servo, shown)
                     else:
                         others.setdefault((shown, servo.id), {})[family.name] = servo.model_number
-                if self.echo:
-                    break
+                if self.echo and not self.port.echoes:
+                    break  # nothing can be made of it
         finally:
             self.port.baud = before
         # Protocol 1 is spoken by three families: what answers one of them answers all.
@@ -84,8 +84,10 @@ class Survey:
 
     def _ask(self, family: Family, rate: int) -> list[Found]:
         """Return who answers as a servo; keep what else comes."""
+        bus, self.port.baud = Bus(self.port, family), rate
+        bus.get_to_know_adapter(FIRST)
         before = self.port.received
-        found = Bus(self.port, family).scan([rate])
+        found = bus.scan([rate])
         more = self.port.received - before - ANSWER_BYTES[family.dialect.weak] * len(found)
         if more > 0:
             self.port.baud = rate

@@ -191,7 +191,8 @@ class Walk(TwinOptions, Common):
     def _quietly(self, seed: int) -> dict[str, Any]:
         """Walk one seed in a process of its own, and return its result with its warnings."""
         NOTES.begin()
-        return self._one(seed, show=False) | {"warnings": NOTES.records()}
+        row = self._one(seed, show=False)
+        return row | {"warnings": NOTES.records(), "driver_clamps": NOTES.driver_clamps}
 
 
 def _progress(show: bool) -> Progress:

@@ -5,6 +5,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from hal.adapter import MARGIN, Probe
 from hal.errors import HardwareError
 from hal.port import Port
 from hal.protocols import protocol1, protocol2
@@ -20,6 +21,8 @@ PING_SLOT = 3e-3
 """Servos answer a broadcast ping of protocol 2 one after the other, each in its slot of this, s."""
 PING_TIME = 3e-3
 """What a servo may take to answer a ping of its own, return delay and driver included, s."""
+LATEST = 0.1
+"""What comes later than this is noise, s."""
 
 
 class Answered(NamedTuple):
@@ -58,6 +61,10 @@ class Dialect(ABC):
         """Return the frames that write `size` bytes at `address` of each id in `data`."""
 
     @abstractmethod
+    def probe(self, id: int) -> Probe:
+        """Return a request to one servo whose answer cannot be taken for its echo."""
+
+    @abstractmethod
     def who(self, port: Port, link: Link) -> list[Answered]:
         """Return who is there at the port's present baud rate."""
 
@@ -82,6 +89,11 @@ class Protocol2(Dialect):
     def sync_write(self, data: Mapping[int, bytes], address: int, size: int) -> list[bytes]:
         """Return the frame that writes `size` bytes at `address` of each id in `data`."""
         return [protocol2.sync_write(data, address, size)]
+
+    def probe(self, id: int) -> Probe:
+        """Return a ping: a status has an instruction byte of its own."""
+        answer = protocol2.status(id, bytes(3))
+        return Probe(protocol2.ping(id), len(answer), answer[:8])
 
     def who(self, port: Port, link: Link) -> list[Answered]:
         """Ping everybody at once; every reply that is whole counts."""
@@ -126,12 +138,28 @@ class Protocol1(Dialect):
         """Return the frames that write `size` bytes at `address` of each id in `data`."""
         return protocol1.split_sync_write(data, address, size, self.longest)
 
+    def probe(self, id: int) -> Probe:
+        """Return a read of one byte: unlike the answer to a ping, its answer has another length."""
+        answer = protocol1.status(id, bytes(1))
+        request = protocol1.read(id, self.model_number.address, 1)
+        return Probe(request, len(answer), answer[:4])
+
     def who(self, port: Port, link: Link) -> list[Answered]:
-        """Ping one id after the other: all who hear a common ping would answer at once."""
+        """Ping one id after the other: all who hear a common ping would answer at once.
+
+        Where one answers while another is asked, the adapter is slower than was thought.
+        """
         found, firmware = [], self.firmware
+        asked: dict[int, float] = {}
         for id in range(self.last_id + 1):
+            asked[id] = port.clock.now()
+            pongs = _pongs(port, id)
+            late = [port.clock.now() - asked[other] for other in pongs & asked.keys() - {id}]
+            if 0.0 < max(late, default=0.0) < LATEST:
+                port.latency = max(port.latency, MARGIN * max(late))
+                return self.who(port, link)
             # Noise, or two servos with this id, may pass for an answer; they have no model.
-            if _pings(port, id):
+            if id in pongs:
                 with contextlib.suppress(HardwareError):
                     version = link.read(id, firmware.address, firmware.size)
                     found.append(Answered(id, link.ping(id), firmware.decode(version)))
@@ -189,11 +217,12 @@ class Feetech(Protocol1):
         return servos + protocol1.OVERHEAD + 2 <= self.longest
 
 
-def _pings(port: Port, id: int) -> bool:
+def _pongs(port: Port, id: int) -> set[int]:
+    """Ping one id; return the ids under which an answer came."""
     request = protocol1.ping(id)
     port.flush_input()
     port.write(request)
     wire = (len(request) + protocol1.OVERHEAD) * 10.0 / port.baud
     deadline = port.clock.now() + wire + 2.0 * port.latency + PING_TIME
     stream = port.read(protocol1.OVERHEAD, deadline)
-    return any(True for _ in protocol1.salvage(stream, {id: 0}))
+    return {item.id for item in protocol1.salvage(stream, {}, (0,))}

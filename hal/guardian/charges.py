@@ -50,6 +50,8 @@ def charge_of(link: ServoLink, goals: Array | None, levels: HealthLevels | None)
         crouch={id: int(np.rint(count)) for id, count in counts.items()},
         levels=hot_and_low,
         names=dict(zip(line.ids, line.names, strict=False)),  # of joints, where they are known
+        latency=port.latency,
+        echoes=port.echoes,
     )
 
 

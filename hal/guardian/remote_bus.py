@@ -47,6 +47,8 @@ class RemoteBus:
         if self._torque is None:
             # A child of the dead host may still have it open.
             port = open_port(self.charge.url, self.charge.baud, exclusive=False)
+            port.latency = max(port.latency, self.charge.latency)
+            port.echoes = self.charge.echoes
             bus = Bus(port, family_of(self._mounts[0].model.name))
             rows, known = range(len(self._mounts)), self.charge.names
             names = [known[id] for id in self.charge.servos] if known else ()

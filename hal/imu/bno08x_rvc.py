@@ -43,6 +43,8 @@ FASTEST = 35.0
 """rad/s: no IMU of this kind follows a faster turn, but a broken frame may say one."""
 LONGEST_GAP = 10
 """Frames; behind a longer gap the index says nothing, and rates start anew."""
+CUTOFF = 41.0
+"""Of the accelerometer's low-pass filter, Hz. Assumed, as an MPU9250's: the data sheet has none."""
 IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
 IDENTITY.setflags(write=False)
 
@@ -105,11 +107,13 @@ class Bno08xRvc:
         mounting: (4,) wxyz, chip to body; by default their axes are the same.
 
     Attributes:
+        lag: Delay of the accelerometer's own filter, s.
         parser: Bytes to frames, and how many were corrupt.
         implausible: Frames that said what cannot be; an 8-bit checksum passes one in 256.
     """
 
     baud = BAUD
+    lag = 1.0 / (2.0 * np.pi * CUTOFF)
 
     def __init__(self, url: str, mounting: Array = IDENTITY) -> None:
         self.url = url

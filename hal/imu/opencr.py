@@ -25,6 +25,8 @@ POWER = Register("dynamixel_power", 24, 1)
 """1: the servos of the bus have power."""
 POWER_UP_TIME = 0.5
 """From switching that power on to servos that answer, s."""
+CUTOFF = 41.0
+"""Of the low-pass filter of gyroscope and accelerometer (MPU9250), as the firmware sets it, Hz."""
 VOLTAGE = Register("present_voltage", 31, 1)
 VOLTAGE_UNIT = 0.1
 BUTTONS = ("mode", "start", "user", "reset")
@@ -53,6 +55,11 @@ class OpenCr:
     def span(self) -> Span:
         """Buttons, voltage, gyroscope, accelerometer and angles in one run of registers."""
         return Span(self.id, 30, 20)
+
+    @property
+    def lag(self) -> float:
+        """Delay of the sensor's own filter, taken as one of first order, s."""
+        return 1.0 / (2.0 * pi * CUTOFF)
 
     def buttons(self, data: bytes) -> tuple[str, ...]:
         """Return the names of the buttons that are down in the bytes of `span`."""

@@ -12,6 +12,7 @@ class ImuSource(Protocol):
     Attributes:
         url: Its port.
         baud: Bits a second of that port.
+        lag: Delay of its own low-pass filter, s.
     """
 
     @property
@@ -22,6 +23,11 @@ class ImuSource(Protocol):
     @property
     def baud(self) -> int:
         """Bits a second of that port."""
+        ...
+
+    @property
+    def lag(self) -> float:
+        """Delay of its own low-pass filter, s."""
         ...
 
     def attach(self, port: Port) -> None:

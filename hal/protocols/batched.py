@@ -16,6 +16,9 @@ from hal.protocols.crc16 import distance_table
 from hal.protocols.cyclic import Bytes, CyclicRead, Index
 from hal.protocols.protocol2 import Span, Status
 
+FAST_HEAD = protocol2.HEADER + bytes([protocol2.BROADCAST])
+"""How the answer to a fast sync read begins."""
+
 
 class BlockRead(CyclicRead):
     """A sync read, plain or fast, or where the spans differ a bulk read.
@@ -51,7 +54,9 @@ class BlockRead(CyclicRead):
 
     def _statuses(self, stream: bytes) -> Sequence[Status]:
         if self.fast:
-            return list(protocol2.salvage_fast(stream, self.spans[0].size))
+            if stream.count(FAST_HEAD) > 1:
+                return []  # an earlier answer is among them
+            return list(protocol2.salvage_fast(stream, self.spans[0].size, self._rows))
         return list(protocol2.salvage(stream, self.longest))
 
     def _lay_out(self, answer: bytes) -> None:

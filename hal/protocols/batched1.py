@@ -29,6 +29,8 @@ class StatusRead(CyclicRead):
         super().__init__(spans)
         self.request = request
         self._sizes = {span.id: span.size for span in self.spans}
+        # Under another id than the one that was asked alone it could only be a late answer.
+        self._others = frozenset(self._sizes.values()) if len(self.spans) > 1 else frozenset()
         sizes = np.array([span.size for span in self.spans])
         self._widths = sizes + protocol1.OVERHEAD
         self.length = self.longest = int(self._widths.sum())
@@ -54,7 +56,7 @@ class StatusRead(CyclicRead):
         return bool((sums == FRAME_SUM).all())
 
     def _statuses(self, stream: bytes) -> list[Status]:
-        return list(protocol1.salvage(stream, self._sizes))
+        return list(protocol1.salvage(stream, self._sizes, self._others))
 
 
 class ChainRead(CyclicRead):

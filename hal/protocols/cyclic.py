@@ -1,7 +1,7 @@
 """What all cyclic reads are: one request, n replies, and the last good bytes of each."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -9,7 +9,10 @@ import numpy.typing as npt
 
 from hal.joints import Mask
 from hal.protocols.protocol2 import Span, Status
-from hal.protocols.turns import doubtful, in_turn, newest
+from hal.protocols.turns import in_turn, newest
+
+NOBODY = -1
+"""The id of a reply that is not what anybody was asked for."""
 
 Bytes = npt.NDArray[np.uint8]
 Index = npt.NDArray[np.intp]
@@ -28,7 +31,8 @@ class CyclicRead(ABC):
         longest: Bytes of the longest answer there can be.
         valid: (n,) bool: who answered the last request.
         complete: Did all?
-        owed: Ids that an earlier request may still be answered by; who asks keeps it.
+        owed: Ids that earlier requests may still be answered by, to the number of those; who asks
+            keeps it.
         doubted: Ids whose replies may have been to an earlier request.
         confusable: Could a late answer pass for that to another request?
         error: (n,) error bytes, and what the properties below show: as of each servo's last
@@ -49,7 +53,7 @@ class CyclicRead(ABC):
         self._ends: list[int] = np.cumsum([span.size for span in self.spans]).tolist()
         self.valid: Mask = np.zeros(len(self.spans), dtype=bool)
         self.complete = False
-        self.owed: frozenset[int] = frozenset()
+        self.owed: Mapping[int, int] = {}
         self.doubted: frozenset[int] = frozenset()
         self.error: Bytes = np.zeros(len(self.spans), dtype=np.uint8)
         self.payload: Bytes = np.zeros(self._ends[-1], dtype=np.uint8)
@@ -70,7 +74,7 @@ class CyclicRead(ABC):
 
     def decode(self, stream: bytes) -> Mask:
         """Take in an answer and return (n,) bool: whose reply was in it and good."""
-        if len(stream) == self.length:
+        if len(stream) == self.length and not stream.startswith(self.request):
             data = np.frombuffer(stream, dtype=np.uint8)
             if self._sound(data):
                 data.take(self._payload_at, out=self.payload, mode="clip")
@@ -95,14 +99,16 @@ class CyclicRead(ABC):
         """Return the good replies in a dirty stream."""
 
     def _salvage(self, stream: bytes) -> None:
+        """Take in the good replies of a stream in which our own request may have come back."""
         self.valid.fill(False)
-        found = [item for item in self._statuses(stream) if self._fits(item)]
+        stream = stream.replace(self.request, b"")
+        found = self._told_apart(self._statuses(stream))
         self.doubted = frozenset()
         if self.owed:
-            found = newest(found, self._rows, self.owed)
-            if doubtful(found, self._rows, self.owed):
-                self.doubted = frozenset(item.id for item in found)
-                found = []
+            sure = newest(found, self._rows, self.owed)
+            if not sure:
+                self.doubted = frozenset(item.id for item in found if item.id in self._rows)
+            found = sure
         for item in in_turn(found, self._rows):
             self._take(self._rows[item.id], item)
         self.complete = bool(self.valid.all())
@@ -113,9 +119,19 @@ class CyclicRead(ABC):
         self.error[row] = item.error
         self.valid[row] = True
 
-    def _fits(self, item: Status) -> bool:
-        row = self._rows.get(item.id)
-        return row is not None and len(item.params) == self.spans[row].size
+    def _told_apart(self, items: Iterable[Status]) -> list[Status]:
+        """Return the frames that are as long as was asked; others lose their id, and keep a turn.
+
+        Where one servo was asked they are left out: they can only be somebody's late answer.
+        """
+        found = []
+        for item in items:
+            row = self._rows.get(item.id)
+            if row is not None and len(item.params) == self.spans[row].size:
+                found.append(item)
+            elif len(self.spans) > 1:
+                found.append(item._replace(id=NOBODY))
+        return found
 
 
 class CyclicWrite(Protocol):

@@ -9,7 +9,7 @@ the instruction. Nothing is stuffed, so FF FF may stand inside a frame, and one 
 has a good checksum: whoever knows what he asked for should say so (`sizes`).
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from enum import IntEnum
 
 from hal.protocols.protocol2 import Span, Status
@@ -122,7 +122,9 @@ def bulk_read(spans: Iterable[Span]) -> bytes:
     return frame(BROADCAST, Instruction.BULK_READ, b"\x00" + body)
 
 
-def salvage(stream: bytes, sizes: Mapping[int, int] | None = None) -> Iterator[Status]:
+def salvage(
+    stream: bytes, sizes: Mapping[int, int] | None = None, others: Collection[int] = ()
+) -> Iterator[Status]:
     """Yield every good status frame of `stream`, whatever lies between them.
 
     Never raises. What is no frame costs its header only: the search goes on one byte behind it, so
@@ -132,12 +134,16 @@ def salvage(stream: bytes, sizes: Mapping[int, int] | None = None) -> Iterator[S
         stream: The bytes.
         sizes: Id to the bytes of parameters it was asked for; anything else is no frame. By
             default every id and every length may be.
+        others: The bytes of parameters that a reply under any other id may have.
     """
     at = stream.find(HEADER)
     while 0 <= at <= len(stream) - OVERHEAD:
         id, length = stream[at + 2], stream[at + 3]
         end = at + 4 + length
-        expected = length == sizes.get(id, -9) + 2 if sizes is not None else length >= 2
+        if sizes is None:
+            expected = length >= 2
+        else:
+            expected = length - 2 == sizes[id] if id in sizes else length - 2 in others
         if expected and id <= LAST_ID and end <= len(stream) and _sums_up(stream[at + 2 : end]):
             yield Status(id, stream[at + 4], stream[at + 5 : end - 1])
             at = stream.find(HEADER, end)

@@ -168,22 +168,22 @@ def _is_status(stream: bytes, at: int, end: int, longest: int) -> bool:
     )
 
 
-def salvage_fast(stream: bytes, size: int) -> Iterator[Status]:
+def salvage_fast(stream: bytes, size: int, ids: Iterable[int]) -> Iterator[Status]:
     """Yield the good blocks of an answer to a fast sync read of `size` bytes a servo.
 
     All servos answer in one frame without stuffing; each block ends in the CRC of the frame so
     far. Going on from the CRC that the block before it sent checks every block by itself, so one
-    bad block costs one servo.
+    bad block costs one servo. A block under an id that is not the next of `ids` is not believed.
     """
     width = size + 4
     at = stream.find(HEADER + bytes([BROADCAST]))
     if at < 0 or stream[at + 7 : at + 8] != bytes([Instruction.STATUS]):
         return
     crc = crc16(stream[at : at + 8])
-    for start in range(at + 8, len(stream) - width + 1, width):
+    for start, id in zip(range(at + 8, len(stream) - width + 1, width), ids, strict=False):
         block = stream[start : start + width]
         sent = int.from_bytes(block[-2:], "little")
-        if crc16(block[:-2], crc) == sent:
+        if crc16(block[:-2], crc) == sent and block[1] == id:
             yield Status(block[1], block[0], block[2:-2])
         crc = crc16(block[-2:], sent)
 

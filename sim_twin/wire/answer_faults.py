@@ -2,24 +2,15 @@
 
 import math
 import random
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
+
+from sim_twin.wire.inbox import Burst
+from sim_twin.wire.spoilt import spoil
 
 if TYPE_CHECKING:
     from sim_twin.wire.bus import Bus
-    from sim_twin.wire.inbox import Burst
-
-IDS = 253
-TIMED: Final = frozenset(("late", "delay", "glue"))  # these leave the bytes alone
-
-Spoil = Callable[[bytes, random.Random], bytes]
-_SPOIL: Final[dict[str, Spoil]] = {
-    "drop": lambda data, dice: b"",
-    "cut": lambda data, dice: data[: dice.randrange(len(data))],
-    "noise": lambda data, dice: dice.randbytes(dice.randint(1, 8)) + data,
-}
 
 
 @dataclass
@@ -28,15 +19,19 @@ class Fate:
 
     Attributes:
         got: What the host gets of it.
+        before: The device's last answer of this length.
         late: By how much it leaves the device later, s.
         held: Until when the adapter holds it back, s.
         glued: How long at most it waits for the next one, s.
+        torn: From which byte on the adapter holds it back, and for how long, s.
     """
 
     got: bytes
+    before: bytes = b""
     late: float = 0.0
     held: float = 0.0
     glued: float = 0.0
+    torn: tuple[int, float] | None = None
 
     def suffer(self, kind: str, seconds: float, bus: "Bus", dice: random.Random) -> None:
         """Have one fault of `fault_rule.ANSWERS` done to it."""
@@ -46,10 +41,12 @@ class Fate:
             self.held = max(self.held, bus.schedule.now + seconds)
         elif kind == "glue":
             self.glued = seconds
-        elif kind in _SPOIL:
-            self.got = _SPOIL[kind](self.got, dice)
+        elif kind == "late_byte":
+            self.torn = dice.randrange(len(self.got)), seconds
+        elif kind == "stale":
+            self.got = self.before
         else:
-            self.got = _change_byte(kind, self.got, bus, dice)
+            self.got = spoil(kind, self.got, bus.language, dice)
 
 
 class Sender:
@@ -69,6 +66,8 @@ class Sender:
 
     def _put(self, bus: "Bus", data: bytes, baud: int, fate: Fate) -> float:
         """Put it there; one that was glued to it comes with its last byte."""
+        if fate.torn is not None:
+            return self._tear(bus, data, baud, fate)
         end = bus.put(data, baud, fate.got, math.inf if fate.glued else fate.held)
         burst = bus.inbox.last
         if not fate.got or burst is None:
@@ -82,21 +81,17 @@ class Sender:
             bus.schedule.at(end + fate.glued, partial(_release, burst, end + fate.glued))
         return end
 
-
-def _change_byte(kind: str, data: bytes, bus: "Bus", dice: random.Random) -> bytes:
-    """Return `data` with another id, another length, or another byte anywhere."""
-    language = bus.language
-    place = {"wrong_id": language.id_at, "wrong_length": language.length_at}.get(kind)
-    if place is None or place >= len(data):
-        place = dice.randrange(len(data))
-    changed = data[place] ^ dice.randrange(1, 256)
-    if kind == "wrong_id":
-        changed = (data[place] + dice.randrange(1, IDS)) % IDS
-    spoilt = data[:place] + bytes((changed,)) + data[place + 1 :]
-    return language.seal(spoilt) if kind == "wrong_id" else spoilt
+    def _tear(self, bus: "Bus", data: bytes, baud: int, fate: Fate) -> float:
+        """Put it there, and what the adapter holds back of it behind it."""
+        assert fate.torn is not None
+        at, seconds = fate.torn
+        end = bus.put(data, baud, fate.got[:at], fate.held)
+        late = bus.schedule.now + seconds
+        bus.inbox.append(Burst(end, 10.0 / baud, bytearray(fate.got[at:]), held=late))
+        return end
 
 
-def _release(burst: "Burst", time: float) -> None:
+def _release(burst: Burst, time: float) -> None:
     """Stop waiting for an answer to glue to."""
     if burst.held == math.inf:
         burst.held = time

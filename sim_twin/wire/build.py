@@ -4,6 +4,8 @@ import math
 from dataclasses import replace
 
 from hal.errors import UsageError
+from hal.imu.bno08x_rvc import Bno08xRvc
+from hal.imu.opencr import OpenCr as Board
 from hal.servo_model import ServoMount
 from hal.servos import servo_model
 from robots import RobotDescription, load_robot
@@ -116,9 +118,11 @@ def _robot(address: Address, robot: RobotDescription, around: Surroundings) -> W
     if address.physics == "mujoco":
         twin = Twin(robot, delay=0.0, supply=supply, world=_behind_a_wire(around, robot, supply))
     hung, shafts = _hang_servos(address, robot, twin, supply)
-    source: ImuSource = RestingImu() if twin is None or robot.imu is None else TwinImu(twin)
     first = robot.buses[0]
     board = robot.imu is not None and first.protocol == "dynamixel2"
+    source: ImuSource = RestingImu()
+    if twin is not None and robot.imu is not None:
+        source = TwinImu(twin, Board(first.name).lag if board else Bno08xRvc.lag)
     felt = FaultyImu(source, shop.schedule)
     if board:
         servos, on = hung[first.name], address.power == "on"

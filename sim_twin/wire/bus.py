@@ -42,10 +42,14 @@ class Language(Protocol):
     Attributes:
         id_at: Where a frame has its id.
         length_at: Where it has its length, the low byte.
+        data_at: Where a status has its data.
+        tail: Bytes of its checksum.
     """
 
     id_at: int
     length_at: int
+    data_at: int
+    tail: int
 
     def seal(self, frame: bytes, /) -> bytes:
         """Return `frame` with the checksum that it should have."""
@@ -155,6 +159,8 @@ class Bus:
         self._collide(burst)
         if self.tap is not None:
             self.tap(">", self._baud, burst)
+        if self.faults.active and self.faults.asked(self) and self.plugged:
+            self.inbox.append(Burst(burst.start, burst.byte, bytearray(burst.data)))
         for at in range(0, len(burst.data), PIECE):
             for item in self.language.feed(bytes(burst.data[at : at + PIECE])):
                 if item.noise:

@@ -40,6 +40,7 @@ class Dynamixel2:
     """
 
     id_at, length_at = ID_AT, LENGTH_AT
+    data_at, tail = 9, 2
     seal = staticmethod(seal)
 
     def __init__(self) -> None:

@@ -20,7 +20,16 @@ ANSWERS: Final = {
     "wrong_id": 0.0,
     "wrong_length": 0.0,
     "glue": 0.004,
+    "longer": 0.0,
+    "shorter": 0.0,
+    "zeros": 0.0,
+    "stale": 0.0,
+    "jump": 0.0,
+    "twice": 0.0,
+    "late_byte": 0.02,
 }
+# What befalls what the host sends.
+REQUESTS: Final = {"echo": 0.0}
 # What befalls servos, supply, adapter, IMU or board.
 EVENTS: Final = {
     "dead": 0.0,
@@ -34,7 +43,7 @@ EVENTS: Final = {
     "imu_spin": math.inf,
     "button": 0.2,
 }
-SECONDS: Final = {**ANSWERS, **EVENTS}
+SECONDS: Final = {**ANSWERS, **REQUESTS, **EVENTS}
 KINDS: Final = tuple(SECONDS)
 LAST_ID: Final = 253  # 254 is everybody's
 SHARE: Final = Range(0.0, 1.0)
@@ -61,7 +70,7 @@ class Rule:
 
     Attributes:
         kind: One of `KINDS`.
-        rate: Share of the answers that it hits.
+        rate: Share of the answers, or requests, that it hits.
         at: The times that are left, s, in order; where there were any, `rate` does not count.
         ids: Whom it hits; None: everybody.
         bus: On which bus; None: on all.
@@ -157,6 +166,8 @@ def make_rule(
     if seconds is not None and not SECONDS[kind]:
         takers = ", ".join(other for other in KINDS if SECONDS[other])
         raise UsageError(f"faults: {kind}: takes no seconds; these do: {takers}")
+    if ids is not None and kind in REQUESTS:
+        raise UsageError(f"faults: {kind}: takes no ids; it concerns all that the host sends")
     who = None if ids is None else frozenset(ids)
     return Rule(kind, rate or 0.0, times, who, bus, lasts, **_extra(kind, extra))
 

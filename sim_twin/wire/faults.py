@@ -2,16 +2,17 @@
 
 import random
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple, Self, TypedDict, Unpack
+from typing import TYPE_CHECKING, NamedTuple, Self
 from weakref import ReferenceType, ref
 
 from hal.errors import UsageError
 from sim_twin.wire.answer_faults import Fate, Sender
 from sim_twin.wire.fault_events import EVERYBODY, OF_IMU, SILENCING, befall, victims
-from sim_twin.wire.fault_rule import EVENTS, KINDS, Rule, Times, make_rule
+from sim_twin.wire.fault_methods import FaultMethods
+from sim_twin.wire.fault_rule import EVENTS, KINDS, REQUESTS, Rule
 from sim_twin.wire.fault_text import parse_rules
 
 if TYPE_CHECKING:
@@ -19,31 +20,6 @@ if TYPE_CHECKING:
     from sim_twin.wire.world import World
 
 REMEMBERED = 10_000  # hits
-
-
-class When(TypedDict, total=False):
-    """How often a fault happens, or when.
-
-    Attributes:
-        rate: Share of the answers that it hits; 0.01 by default.
-        at: Instead of a rate the time, s, or several: the first answer from then on is hit, or
-            servos, supply and adapter at that very moment.
-        bus: The bus it is confined to.
-    """
-
-    rate: float
-    at: Times
-    bus: str
-
-
-class Who(When, total=False):
-    """How often or when, and whom.
-
-    Attributes:
-        ids: The ids that can be hit; everybody by default.
-    """
-
-    ids: Iterable[int]
 
 
 class Hit(NamedTuple):
@@ -55,11 +31,8 @@ class Hit(NamedTuple):
     identifier: int
 
 
-class Faults:
+class Faults(FaultMethods):
     """What goes wrong on the buses of a world.
-
-    Every method adds one kind of fault and returns the object, so that calls can be chained. See
-    `Who` for their keywords.
 
     Args:
         seed: Seed of the dice.
@@ -78,6 +51,7 @@ class Faults:
         self._dice = random.Random(seed)
         self._of: ReferenceType[World] | None = None
         self._sender = Sender()
+        self._said: dict[tuple[str, int, int], bytes] = {}  # bus, id, length to the last answer
 
     @classmethod
     def parse(cls, text: str, seed: int = 0) -> "Faults":
@@ -90,86 +64,6 @@ class Faults:
         for rule in parse_rules(text):
             faults.add(rule)
         return faults
-
-    def drop(self, **who: Unpack[Who]) -> Self:
-        """Lose answers."""
-        return self.add(make_rule("drop", **who))
-
-    def corrupt(self, **who: Unpack[Who]) -> Self:
-        """Change one byte of answers."""
-        return self.add(make_rule("corrupt", **who))
-
-    def cut(self, **who: Unpack[Who]) -> Self:
-        """Lose the end of answers."""
-        return self.add(make_rule("cut", **who))
-
-    def noisy(self, **who: Unpack[Who]) -> Self:
-        """Put up to eight random bytes before answers."""
-        return self.add(make_rule("noise", **who))
-
-    def late(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
-        """Let servos answer late; those behind them in a sync read wait."""
-        return self.add(make_rule("late", seconds=seconds, **who))
-
-    def delay(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
-        """Let the adapter hold answers back for some seconds, and what comes behind them."""
-        return self.add(make_rule("delay", seconds=seconds, **who))
-
-    def wrong_id(self, **who: Unpack[Who]) -> Self:
-        """Have answers come from another id, with a checksum that fits."""
-        return self.add(make_rule("wrong_id", **who))
-
-    def wrong_length(self, **who: Unpack[Who]) -> Self:
-        """Change the length byte of answers."""
-        return self.add(make_rule("wrong_length", **who))
-
-    def glue(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
-        """Hold answers back until the next one is there, for some seconds at most."""
-        return self.add(make_rule("glue", seconds=seconds, **who))
-
-    def dead(self, **who: Unpack[Who]) -> Self:
-        """Let servos die: no answer and no torque, for ever."""
-        return self.add(make_rule("dead", **who))
-
-    def reset(self, **who: Unpack[Who]) -> Self:
-        """Let servos start again: torque off, RAM as after power-up."""
-        return self.add(make_rule("reset", **who))
-
-    def brown_out(
-        self, volts: float = 0.0, seconds: float | None = None, **when: Unpack[When]
-    ) -> Self:
-        """Let the supply of everything sink to `volts` V for some seconds."""
-        return self.add(make_rule("brown_out", volts=volts, seconds=seconds, **when))
-
-    def overload(self, **who: Unpack[Who]) -> Self:
-        """Make servos take themselves for overloaded."""
-        return self.add(make_rule("overload", **who))
-
-    def unplug(self, seconds: float | None = None, **when: Unpack[When]) -> Self:
-        """Pull the adapter out, and put it in again after some seconds (`math.inf`: never)."""
-        return self.add(make_rule("unplug", seconds=seconds, **when))
-
-    def heat(self, degrees: float = 75.0, seconds: float | None = None, **who: Unpack[Who]) -> Self:
-        """Let motors be `degrees` C hot at once, and no cooler for some seconds, or for ever."""
-        return self.add(make_rule("heat", degrees=degrees, seconds=seconds, **who))
-
-    def imu_silent(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
-        """Let the IMU, and a board that it is on, say nothing for some seconds, or for ever."""
-        return self.add(make_rule("imu_silent", seconds=seconds, **who))
-
-    def imu_frozen(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
-        """Let the IMU repeat one sample for some seconds, or for ever."""
-        return self.add(make_rule("imu_frozen", seconds=seconds, **who))
-
-    def imu_spin(
-        self, speed: float = 3.0, seconds: float | None = None, **who: Unpack[Who]
-    ) -> Self:
-        """Let the gyroscope read `speed` rad/s about x for some seconds, or for ever."""
-        return self.add(make_rule("imu_spin", speed=speed, seconds=seconds, **who))
-
-    def button(self, seconds: float | None = None, **when: Unpack[When]) -> Self:
-        """Press the user button of an OpenCR for some seconds."""
-        return self.add(make_rule("button", seconds=seconds, **when))
 
     def add(self, rule: Rule) -> Self:
         """Add a fault."""
@@ -227,8 +121,11 @@ class Faults:
 
     def answer(self, bus: "Bus", data: bytes, baud: int, identifier: int) -> float:
         """Put an answer on the wire with what goes wrong now; return when it ends, s."""
-        now, fate = bus.schedule.now, Fate(data)
+        key, now = (bus.name, identifier, len(data)), bus.schedule.now
+        fate, self._said[key] = Fate(data, self._said.get(key, data)), data
         for rule in [*self._rules]:
+            if rule.kind in REQUESTS:
+                continue
             if not rule.strikes(self._dice, bus.name, identifier, now) or not fate.got:
                 continue  # what is lost already has nothing more to fear
             if rule.kind in EVENTS:
@@ -237,6 +134,16 @@ class Faults:
             self._note(rule.kind, bus.name, identifier)
             fate.suffer(rule.kind, rule.seconds, bus, self._dice)
         return self._sender.send(bus, data, baud, fate)
+
+    def asked(self, bus: "Bus") -> bool:
+        """Whether the adapter gives the host back what it sends now."""
+        echoes = False
+        for rule in self._rules:
+            now = bus.schedule.now
+            if rule.kind == "echo" and rule.strikes(self._dice, bus.name, EVERYBODY, now):
+                self._note(rule.kind, bus.name, EVERYBODY)
+                echoes = True
+        return echoes
 
     def _begin(self, rule: Rule, bus: "Bus", identifier: int, fate: Fate) -> None:
         """Let an event begin with an answer of whom it can befall."""

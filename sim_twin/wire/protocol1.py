@@ -59,6 +59,7 @@ class Protocol1:
     """
 
     id_at, length_at = ID_AT, LENGTH_AT
+    data_at, tail = 5, 1
     seal = staticmethod(seal)
 
     def __init__(self, dialect: Dialect) -> None:

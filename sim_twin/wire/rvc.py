@@ -45,7 +45,7 @@ def yaw_pitch_roll(quaternion: Array) -> tuple[float, float, float]:
 class Mute:
     """The language of who does not listen."""
 
-    id_at, length_at = 2, 2
+    id_at, length_at, data_at, tail = 2, 2, 3, 1
 
     def seal(self, frame: bytes) -> bytes:
         """Return `frame` with its checksum."""

@@ -26,6 +26,8 @@ class Tape:
     bus: Bus = field(init=False, repr=False)
     id_at: int = 0
     length_at: int = 0
+    data_at: int = 0
+    tail: int = 1
     _at: int = 0
 
     def seal(self, frame: bytes) -> bytes:

@@ -21,7 +21,7 @@ import numpy as np
 
 from hal.joints import Array, Mask
 from hal.servo_model import ServoMount
-from sim_twin.imu_errors import OPENCR, LowPass
+from sim_twin.imu_errors import LowPass
 from sim_twin.servo_motor import KD, KP, VMAX
 from sim_twin.twin import Twin
 
@@ -119,9 +119,13 @@ any, a robot that stands still would look as if its IMU hung."""
 
 
 class TwinImu:
-    """The IMU of a twin, behind the low-pass filter of an OpenCR's; a source for `OpenCr`.
+    """The IMU of a twin behind its own low-pass filter; a source for `OpenCr` and `start_rvc`.
 
     Without the filter a host that samples at 125 Hz would miss half of every impact.
+
+    Args:
+        twin: The twin.
+        lag: Delay of the filter, s.
 
     Attributes:
         held: Says whether hands hold the robot; it is at rest then, whatever the physics make of
@@ -130,7 +134,7 @@ class TwinImu:
 
     silent = False
 
-    def __init__(self, twin: Twin) -> None:
+    def __init__(self, twin: Twin, lag: float) -> None:
         imu = twin.robot.imu
         if imu is None:
             raise ValueError(f"robot {twin.robot.name!r} has no IMU")
@@ -141,7 +145,7 @@ class TwinImu:
         self._site = twin.data.site(imu.site).xmat.reshape(3, 3)
         self._gravity = -twin.model.opt.gravity
         self._places = np.r_[gyro : gyro + 3, acceleration : acceleration + 3]
-        self._filter = LowPass(OPENCR.lag, twin.timestep)
+        self._filter = LowPass(lag, twin.timestep)
         self._base = (
             twin.data.body(twin.robot.base).xquat if twin.robot.fixed else twin.data.qpos[3:7]
         )

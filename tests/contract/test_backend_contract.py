@@ -212,7 +212,7 @@ def test_observations_are_dated_and_later_ones_are_later(backend: Backend) -> No
 
 
 def test_request_and_collect_are_a_read(backend: Backend) -> None:
-    wait(backend, 0.08)
+    wait(backend, 0.5)
     whole = backend.read()
     backend.request()
     halves = backend.collect()

@@ -41,6 +41,7 @@ class FakeSerial:
         self.writable = True
         self.arrivals: list[tuple[float, int]] = []
         self.is_open = True
+        self.busy = 0.0  # until when what was written is on the wire, s
 
     @staticmethod
     def _fresh() -> bytearray:
@@ -65,7 +66,8 @@ class FakeSerial:
 
     def write(self, data: bytes) -> int:
         self.requests.append(bytes(data))
-        begin = self.clock.time + len(data) * 10.0 / self.baudrate
+        begin = max(self.clock.time, self.busy) + len(data) * 10.0 / self.baudrate
+        self.busy = begin
         if self.baudrate == self.baud_of_servos:
             for byte in self._answer(bytes(data)):
                 begin += 10.0 / self.baudrate

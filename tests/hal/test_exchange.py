@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from hal.exchange import LATE, TURNAROUND, Exchange
+from hal.exchange import DOUBTS, LATE, STILL_COMING, TURNAROUND, Exchange
 from hal.port import Port
 from hal.protocols import protocol2
 from hal.protocols.batched import BlockRead
@@ -91,21 +91,33 @@ def test_a_late_reply_is_not_taken_for_the_next_answer(read: BlockRead) -> None:
     assert exchange.errors == {}
 
 
-@pytest.mark.parametrize(("missed", "believed"), [(LATE - 2, False), (LATE + 2, True)])
-def test_servos_without_power_are_believed_at_once_when_they_are_back(
-    read: BlockRead, missed: int, believed: bool
+@pytest.mark.parametrize("missed", [LATE - 2, LATE + 2])
+def test_servos_that_are_back_beside_a_dead_one_are_believed_behind_a_silence(
+    read: BlockRead, missed: int
 ) -> None:
-    # After a few missed requests their answers may still be those to an earlier one.
+    # Without all of them, their answers may still be those to an earlier request.
     serial, port = fake_port(IDS)
     exchange = exchange_of(serial, port)
     serial.silent |= set(IDS)
     for _ in range(missed):
         cycle(exchange, read)
     serial.silent = {20}
-    cycle(exchange, read)
-    assert read.valid[:19].all() == read.valid.any() == believed
-    cycle(exchange, read)
+    for _ in range(DOUBTS):
+        cycle(exchange, read)
+        assert not read.valid.any()
+    assert STILL_COMING < cycle(exchange, read) < 2 * STILL_COMING
     assert read.valid[:19].all()
+
+
+def test_servos_that_are_all_back_are_believed_at_once(read: BlockRead) -> None:
+    serial, port = fake_port(IDS)
+    exchange = exchange_of(serial, port)
+    serial.silent |= set(IDS)
+    for _ in range(LATE + 2):
+        cycle(exchange, read)
+    serial.silent.clear()
+    cycle(exchange, read)
+    assert read.valid.all()
 
 
 def test_a_request_behind_a_long_write_has_its_deadline_moved(read: BlockRead) -> None:

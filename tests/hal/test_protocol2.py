@@ -66,11 +66,14 @@ def test_a_frame_is_what_the_manual_prints(frame: bytes, printed: str) -> None:
 def test_each_block_of_a_fast_answer_is_checked_by_itself() -> None:
     answer = FAST_ANSWER + bytes([0, 4, 0xFF, 3, 0, 0])
     answer += crc16(answer).to_bytes(2, "little")
-    values = [int.from_bytes(item.params, "little") for item in protocol2.salvage_fast(answer, 4)]
+    values = [
+        int.from_bytes(item.params, "little")
+        for item in protocol2.salvage_fast(answer, 4, (3, 7, 4))
+    ]
     assert values == [166, 2079, 1023]
     broken = bytearray(answer)
     broken[18] ^= 1  # a byte of id 7
-    assert [item.id for item in protocol2.salvage_fast(bytes(broken), 4)] == [3, 4]
+    assert [item.id for item in protocol2.salvage_fast(bytes(broken), 4, (3, 7, 4))] == [3, 4]
 
 
 @given(payloads)
@@ -117,7 +120,7 @@ def test_a_broken_frame_costs_no_other(items: list[Status], data: st.DataObject)
 @given(st.binary(max_size=200))
 def test_no_stream_raises(stream: bytes) -> None:
     list(protocol2.salvage(stream))
-    list(protocol2.salvage_fast(stream, 4))
+    list(protocol2.salvage_fast(stream, 4, range(9)))
 
 
 @given(statuses, st.integers(1, 60))

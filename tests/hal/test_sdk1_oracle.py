@@ -87,7 +87,7 @@ def test_silence_takes_virtual_time_only_and_noise_is_named(
     before = serial.clock.now()
     with pytest.raises(NoAnswerError, match=r"no answer from id 1 on fake://bus at 1000000 baud"):
         link.ping(1)
-    assert 0.0 < serial.clock.now() - before < 0.05
+    assert 0.0 < serial.clock.now() - before < 0.1
     serial.silent.clear()
     serial.spoil = lambda id, frame: bytes([*frame[:-1], frame[-1] ^ 4])
     with pytest.raises(CorruptAnswerError, match="two servos with this id"):

@@ -71,7 +71,7 @@ def test_time_passes_on_the_ports_clock_only() -> None:
     before = serial.clock.now()
     with pytest.raises(NoAnswerError, match=r"no answer from id 1 on fake://bus at 1000000 baud"):
         DynamixelLink(port).ping(1)
-    assert 0.0 < serial.clock.now() - before < 0.05
+    assert 0.0 < serial.clock.now() - before < 0.1
 
 
 def test_two_servos_with_one_id_are_named_as_such() -> None:

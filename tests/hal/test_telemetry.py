@@ -40,6 +40,7 @@ class Servos:
     clock: Standing = field(default_factory=Standing)
     alert_kinds: tuple[str, ...] = ("heat", "load")
     alerts: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    clamps: dict[str, int] = field(default_factory=lambda: {"goal": 0, "unarmed": 0})
     errors: dict[str, int] = field(default_factory=lambda: {"no answer": 0, "corrupt": 0})
 
     def bus_errors(self) -> Mapping[str, int]:
@@ -92,6 +93,7 @@ def test_what_is_written_is_read(writer: TelemetryWriter, guard: GuardedBackend)
     servos = guard.backend
     assert isinstance(servos, Servos)
     servos.errors["corrupt"] = 3
+    servos.clamps["unarmed"] = 2
     servos.alerts["knee"] = ("load",)
     guard.write(JointCommand.hold(JOINTS, np.array([0.0, 5.0])))
     write(writer, range(1, 3))
@@ -112,6 +114,8 @@ def test_what_is_written_is_read(writer: TelemetryWriter, guard: GuardedBackend)
     assert tick["alert"].tolist() == [0, 0b10]
     assert tick["clamps"].tolist() == [1, 0, 0, 0, 0]
     assert tick["clamped"].tolist() == [0, 1]
+    assert reader.header.driver_clamps == ("goal", "unarmed")
+    assert tick["driver_clamps"].tolist() == [0, 2]
 
 
 def test_what_is_not_measured_is_not_a_number(writer: TelemetryWriter) -> None:

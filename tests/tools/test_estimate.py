@@ -36,10 +36,11 @@ def test_an_estimate_over_its_limits_fails(monkeypatch: pytest.MonkeyPatch) -> N
 def test_op3_walks_on_its_own_sensors(
     switches: bool, rate: float | None, delay: float | None
 ) -> None:
+    from sim_twin.imu_errors import OPENCR
     from tools.build import build_estimator
 
     with Robot.open("op3", rate=rate, delay=delay, noise=0.2, state="estimated") as robot:
-        estimator = build_estimator(robot.description, switches=switches)
+        estimator = build_estimator(robot.description, OPENCR.lag, switches=switches)
         robot.stack = replace(robot.stack, estimator=estimator)
         report = robot.walk(steps=30)
     assert report.done

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from hal.command import JointCommand
 from hal.guard import GuardedBackend, SafetyLimits
@@ -16,6 +17,7 @@ from sim_twin.backend import TwinBackend
 from sim_twin.twin import Twin
 from tools.cli import run
 from tools.diagnosis import Diagnosis, Limits
+from tools.health import picture
 from tools.robot import Robot
 
 OP3 = load_robot("op3")
@@ -30,6 +32,7 @@ class OnABus(TwinBackend):
 
     alert_kinds: tuple[str, ...] = ("overheating", "overload")
     alerts: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    clamps: dict[str, int] = field(default_factory=lambda: {"goal": 0, "unarmed": 0})
     errors: dict[str, int] = field(default_factory=lambda: {"no answer": 0})
 
     def __post_init__(self) -> None:
@@ -189,6 +192,19 @@ def test_bus_errors_alerts_and_clamps_are_told(bench: Bench) -> None:
         "l_knee: clamped in 20% of the ticks",
     ]
     assert bench.diagnose().result()["clamps"] == {"position": 20}
+
+
+def test_what_the_driver_clamps_is_told_apart_from_what_the_guard_does(bench: Bench) -> None:
+    bench.ticks(50)
+    bench.backend.clamps["goal"] = 7
+    bench.ticks(50, first=51)
+    found = bench.diagnose()
+    assert found.result()["driver_clamps"] == {"goal": 7}
+    assert found.result()["clamps"] == {}
+    console = Console(width=200)
+    with console.capture() as said:
+        console.print(picture(found))
+    assert "driver clamps: goal 7" in said.get()
 
 
 def test_only_the_last_run_counts(bench: Bench) -> None:

@@ -71,3 +71,26 @@ def test_what_a_session_notes_stays_its_own(times: int) -> None:
     for _ in range(times):
         notes.add([finding], WELL)
     assert (finding.count, finding.joints) == (1, ["l_knee"])
+
+
+class Clamping:
+    """A driver of servos that has clamped."""
+
+    alert_kinds: tuple[str, ...] = ()
+
+    def __init__(self, **clamps: int) -> None:
+        self.clamps, self.alerts = clamps, dict[str, tuple[str, ...]]()
+
+    def bus_errors(self) -> dict[str, int]:
+        return {}
+
+
+def test_what_drivers_have_clamped_adds_up_over_runs_and_processes() -> None:
+    notes = RunNotes()
+    notes.add([], WELL)
+    notes.add([], WELL, Clamping(goal=3, gain=0))
+    notes.add_row({"seed": 1, "warnings": [], "driver_clamps": {"goal": 2, "unarmed": 1}})
+    notes.add_row({"seed": 2, "warnings": []})
+    assert notes.driver_clamps == {"goal": 5, "gain": 0, "unarmed": 1}
+    notes.begin()
+    assert notes.driver_clamps == {}

@@ -30,7 +30,8 @@ def test_the_duck_stands_on_its_wire(faults: str) -> None:
         oldest = 0.0
         for tick in range(TICKS):
             seen = backend.read().joints
-            oldest = max(oldest, float(seen.age.max()))
+            if tick > 3:  # while torque was switched nobody read
+                oldest = max(oldest, float(seen.age.max()))
             backend.write(JointCommand(block))
             backend.clock.wait_until(max(backend.clock.now(), (tick + 1) * PERIOD))
         (twin,) = bus.world.owned

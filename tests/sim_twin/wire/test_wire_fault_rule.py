@@ -18,7 +18,7 @@ BENCH = "twin://bench?servos=STS3215:1-4&faults="
     [
         ("dead:id=7", "'dead:id=7': unknown key 'id'; did you mean 'ids'?"),
         ("drop:0.01:volts=3", "drop: takes no volts; only brown_out does"),
-        ("drop:0.01:seconds=3", "drop: takes no seconds; these do: late, delay, glue"),
+        ("drop:0.01:seconds=3", "drop: takes no seconds; these do: late, delay, glue, late_byte"),
         ("dead:ids=7-5", "'dead:ids=7-5': a rate from 0 to 1, keys, ids up to 253"),
         ("reset:at=nan", "reset: at nan: give a finite number of s"),
         ("unplug:seconds=nan", "unplug: seconds nan: give a finite number of s"),
@@ -27,6 +27,7 @@ BENCH = "twin://bench?servos=STS3215:1-4&faults="
         ("heat:degrees=inf", "heat: degrees inf: give a finite number of degrees C"),
         ("imu_spin:degrees=3", "imu_spin: takes no degrees; only heat does"),
         ("drop:speed=3", "drop: takes no speed; only imu_spin does"),
+        ("echo:ids=3", "echo: takes no ids; it concerns all that the host sends"),
     ],
 )
 def test_a_key_that_means_nothing_is_refused_by_name(text: str, message: str) -> None:

@@ -40,6 +40,11 @@ def whole(data: bytes) -> bool:
     return len(statuses(data)) == 1 and len(data) == ANSWER
 
 
+def differ(got: bytes, right: bytes) -> int:
+    """Return how many bytes are others; a checksum is one of them."""
+    return sum(a != b for a, b in zip(got, right, strict=True))
+
+
 @pytest.mark.parametrize(
     ("kind", "looks"),
     [
@@ -49,6 +54,12 @@ def whole(data: bytes) -> bool:
         ("noise", lambda got, right: len(got) > len(right) and got.endswith(right)),
         ("wrong_id", lambda got, right: statuses(got)[0].identifier not in (1, 254, 255)),
         ("wrong_length", lambda got, right: got[3] != right[3] and got[4:] == right[4:]),
+        ("longer", lambda got, right: len(statuses(got)) == 1 and len(got) in (13, 14, 15)),
+        ("shorter", lambda got, right: len(statuses(got)) == 1 and len(got) in (9, 10, 11)),
+        ("zeros", lambda got, right: len(statuses(got)) == 1 and got[5:-1] == bytes(6)),
+        ("jump", lambda got, right: len(statuses(got)) == 1 and differ(got, right) == 2),
+        ("twice", lambda got, right: got == right + right),
+        ("echo", lambda got, right: got == ASKED + right),
     ],
 )
 def test_what_it_does_to_an_answer(
@@ -60,6 +71,30 @@ def test_what_it_does_to_an_answer(
     hit = [data for data in got if data != right]
     assert all(looks(data, right) for data in hit)
     assert len(hit) == faults_of(host).counts[kind] == pytest.approx(60, abs=25)
+
+
+def test_a_stale_answer_is_the_last_one_of_its_length(host: Host1) -> None:
+    first, other = (encode(1, READ, bytes((address, 2))) for address in (56, 62))
+    before = host.raw(first)
+    assert host.raw(other) != before
+    faults_of(host).stale(rate=1.0)
+    assert host.raw(first) == host.raw(other)
+    assert len(host.raw(ASKED)) == ANSWER
+
+
+def test_behind_a_late_byte_all_is_late(host: Host1) -> None:
+    faults_of(host).late_byte(rate=1.0, ids=[1])
+    host.port.write(encode(254, 0x82, bytes((56, 2, 1, 2))))
+    host.wait(0.015)
+    assert host.port.in_waiting < 8
+    host.wait(0.006)
+    assert [f.identifier for f in statuses(host.port.read(16))] == [1, 2]
+
+
+def test_what_nobody_answers_comes_back_too(host: Host1) -> None:
+    faults_of(host).echo(rate=1.0)
+    goal = encode(254, 0x83, bytes((42, 2, 1, 0, 8)))
+    assert host.raw(goal) == goal
 
 
 def test_a_late_answer_is_late_on_the_wire(host: Host1) -> None:

@@ -1,0 +1,76 @@
+"""What may become of readings under a kind of fault, and what must not."""
+
+from math import sqrt
+from typing import Any, Final
+
+from sim_twin.wire.fault_rule import ANSWERS, REQUESTS
+from tools.soak import Tally
+from tools.soak_rig import FAMILIES
+
+LATE_ADAPTER: Final = "late_adapter"
+"""An adapter that holds everything back, by 16 ms from the start, without saying so."""
+MIX: Final = "all"
+"""Everything at once that a reader can tell, with servos, supply and adapter failing too."""
+CHANCE: Final = ("corrupt", "cut", "noise", "wrong_length")
+"""Only chance lets a frame through its checksum after these."""
+UNSEEN: Final = ("stale", "zeros", "jump")
+"""Nothing about these frames is wrong but what they say."""
+KINDS: Final = (*ANSWERS, *REQUESTS, LATE_ADAPTER, MIX)
+TOLD: Final = tuple(kind for kind in (*ANSWERS, *REQUESTS) if kind not in (*CHANCE, *UNSEEN))
+"""Order, length or id tell these."""
+PASSES: Final = {"dynamixel2": 2.0**-16, "dynamixel2_plain": 2.0**-16}
+"""Chance that a garbled frame has a checksum that fits; else 2^-8."""
+RECOVER: Final = 3
+"""Cycles after which all who can are heard again: two doubtful answers, and silence."""
+STRANGERS: Final = 252
+"""Ids that a wrong one may be."""
+
+
+def verdict(family: str, kind: str, rate: float, tally: Tally, position: float) -> dict[str, Any]:
+    """Return what became of the readings, beside what may have.
+
+    Args:
+        family: A key of `FAMILIES`.
+        kind: One of `KINDS`.
+        rate: Share of the answers that it hit.
+        tally: What came of it.
+        position: Share of the position in the bytes of an answer.
+    """
+    wrong = tally.stale + tally.borrowed + tally.garbled
+    most = expected(family, kind, tally, position)
+    good = not (tally.raised or tally.outside or tally.waited > RECOVER)
+    return {
+        "servo": FAMILIES[family],
+        "family": family,
+        "kind": kind,
+        "rate": rate,
+        "reads": tally.reads,
+        "fresh": tally.fresh,
+        "hits": sum(tally.faults.values()),
+        "wrong_and_fresh": wrong,
+        "of_an_earlier_cycle": tally.stale,
+        "of_another_servo": tally.borrowed,
+        "of_nobody": tally.garbled,
+        "expected_at_most": round(most, 2),
+        "refused_by_range_and_step": tally.refused,
+        "outside_range_and_step": tally.outside,
+        "cycles_to_recover": tally.waited,
+        "exceptions": dict(tally.raised),
+        "met": good and wrong <= _bound(most) and not (kind == MIX and tally.stale),
+    }
+
+
+def expected(family: str, kind: str, tally: Tally, position: float) -> float:
+    """Return how many wrong readings, at most, nothing in order, length, id or checksum tells."""
+    if kind in UNSEEN:
+        share = {"stale": 1.0, "zeros": 0.0, "jump": position}[kind]
+        return share * tally.faults[kind]
+    garbled = sum(tally.faults[each] for each in CHANCE) * PASSES.get(family, 2.0**-8)
+    # Under the id of its neighbour in turn, which is silent, an answer is in its order.
+    silent = 1.0 - tally.fresh / tally.reads if tally.reads and kind == MIX else 0.0
+    return garbled + tally.faults["wrong_id"] * 2.0 / STRANGERS * silent
+
+
+def _bound(most: float) -> float:
+    """Return what a count whose mean is `most` reaches once in about a thousand times."""
+    return most + 3.0 * sqrt(most) + (most > 0.0)
