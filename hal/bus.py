@@ -158,12 +158,13 @@ class Bus:
         """
         return {id: status.params for id, status in self.statuses(spans).items()}
 
-    def statuses(self, spans: Sequence[Span]) -> dict[int, Status]:
-        """Return the same with the error bytes of the answers."""
+    def statuses(self, spans: Sequence[Span], rest: bool = False) -> dict[int, Status]:
+        """Return the same with the error bytes of the answers; `rest` as of `Exchange.request`."""
         self.heartbeat()
         read = self.family.dialect.read(spans, self.fast([span.id for span in spans]))
-        self.exchange.request(read)
-        valid = self.exchange.collect()
+        self.exchange.request(read, rest)
+        if not (valid := self.exchange.collect()).size:
+            return {}
         return {
             span.id: Status(span.id, int(read.error[row]), read.params(row))
             for row, span in enumerate(spans)

@@ -66,11 +66,12 @@ class Exchange:
         self._whole_owed = -inf  # until when a fast answer may still come, s
         self._silence = 0.0
         self._doubts = 0
+        self._quiet = 0.0  # until when nobody is to be asked, s
 
     def move_to(self, port: Port) -> None:
         """Go on over another port; what was asked on the old one is forgotten."""
         self.port = port
-        self._wire_free = self._deadline = self._silence = 0.0
+        self._wire_free = self._deadline = self._silence = self._quiet = 0.0
         self._pending = None
         self._owed, self._parts_owed = {}, {}
         self._whole_owed = -inf
@@ -81,8 +82,16 @@ class Exchange:
             self.port.write(frame)
             self._occupy(len(frame))
 
-    def request(self, read: CyclicRead) -> None:
-        """Ask; input that has come before is too late for whatever it answered."""
+    def request(self, read: CyclicRead, rest: bool = False) -> None:
+        """Ask; input that has come before is too late for whatever it answered.
+
+        Args:
+            read: What to ask.
+            rest: Rather ask nobody than wait, where the line has to fall quiet.
+        """
+        if rest and self._quiet > self.port.clock.now():
+            self._pending = None
+            return
         if isinstance(read, ChainRead):
             read.begin()
             self._ask(read.parts[0])
@@ -154,7 +163,7 @@ class Exchange:
         now = self.port.clock.now()
         self._doubts = self._doubts + 1 if read.doubted else 0
         if self._doubts == DOUBTS:
-            self._owed, self._doubts, self._silence = {}, 0, now + STILL_COMING
+            self._owed, self._doubts, self._quiet = {}, 0, now + STILL_COMING
             return
         if read.complete:
             self._owed, self._whole_owed = {}, -inf
@@ -198,8 +207,9 @@ class Exchange:
         return wire + len(read.spans) * self.turnaround + self.port.latency + SLACK
 
     def _ask(self, read: CyclicRead) -> None:
-        if self._silence > self.port.clock.now():
-            self.port.clock.wait_until(self._silence)
+        until = max(self._silence, self._quiet)
+        if until > self.port.clock.now():
+            self.port.clock.wait_until(until)
         self.port.flush_input()
         self.port.write(read.request)
         self._occupy(len(read.request))

@@ -8,6 +8,7 @@ adapter; an exception leaves its port marked as in use for ever.
 
 import contextlib
 from abc import ABC, abstractmethod
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
@@ -123,6 +124,20 @@ class SdkPackets(Protocol2PacketHandler):  # type: ignore[misc]  # the SDK has n
         return [*packet[:5], *length, *body, *packet[end : end + 2]]
 
 
+def keep_received(packets: Any) -> deque[Sequence[int]]:
+    """Return where the last packet is kept that the SDK receives: it never looks at the length."""
+    got: deque[Sequence[int]] = deque(maxlen=1)
+    receive = packets.rxPacket
+
+    def received(*args: Any) -> tuple[Any, int]:
+        packet, result = receive(*args)
+        got.append(packet)
+        return packet, int(result)
+
+    packets.rxPacket = received
+    return got
+
+
 class Link(ABC):
     """One servo at a time, verified and slow: what configuration needs.
 
@@ -139,15 +154,7 @@ class Link(ABC):
         self._port, self._packets = SdkPort(port), packets
         self.heartbeat = no_heartbeat
         self._unsettled = False
-        self._got: Sequence[int] = ()
-        receive = packets.rxPacket
-
-        def received(*args: Any) -> tuple[Any, int]:
-            """Keep what the SDK receives: it never looks at the length."""
-            self._got, result = receive(*args)
-            return self._got, int(result)
-
-        packets.rxPacket = received
+        self._got = keep_received(packets)
 
     def settle(self) -> None:
         """Wait until no answer to an earlier request can come any more."""
@@ -203,7 +210,7 @@ class Link(ABC):
                 value, result, error = call()
             if result == COMM_SUCCESS:
                 self._check(id, error)
-                if self._size(self._got) == size:
+                if self._size(self._got[-1]) == size:
                     return value, error
                 result = COMM_RX_CORRUPT
             self._unsettled = True

@@ -90,7 +90,7 @@ class ServoLine:
     def request(self) -> None:
         """Ask all servos of the line, and the board."""
         self._asked = self.reads.next()
-        self.bus.exchange.request(self._asked.read)
+        self.bus.exchange.request(self._asked.read, rest=True)
 
     def collect(self, counts: Array, health: Array, error: npt.NDArray[np.uint8]) -> Mask:
         """Take in the answers and return whose came, in the order of `rows`.
@@ -104,6 +104,7 @@ class ServoLine:
         answered = self.bus.exchange.collect()
         self.calm = False
         if not answered.size:
+            self.imu_fresh = False
             self.answered = np.zeros(servos, dtype=bool)
             return self.answered
         self.answered = valid = answered[:servos]

@@ -100,8 +100,9 @@ def _read_back(bus: Bus, ids: Sequence[int]) -> dict[int, Readback]:
     family = bus.family
     registers = [family.registers[name] for name in family.torque]
     begin = family.torque_span(0).address
+    spans = [family.torque_span(id) for id in ids]
     found = {}
-    for id, status in bus.statuses([family.torque_span(id) for id in ids]).items():
+    for id, status in bus.statuses(spans, rest=True).items():
         values = {
             each.name: each.decode(status.params[each.address - begin :][: each.size])
             for each in registers

@@ -9,7 +9,7 @@ from hal.errors import UsageError
 from tools.parallel import side_by_side
 from tools.soak import Soak, Tally
 from tools.soak_rig import FAMILIES, SoakRig
-from tools.soak_verdict import CHANCE, KINDS, LATE_ADAPTER, MIX, TOLD, verdict
+from tools.soak_verdict import KINDS, LATE_ADAPTER, MIX, MIXED, verdict
 
 RATES = (0.01, 0.05)
 """Of the answers. Everything at once comes at the first alone: at the second few are whole."""
@@ -86,5 +86,5 @@ def _soak(item: Item) -> tuple[Tally, float]:
 def _faults(kind: str, rate: float) -> dict[str, float]:
     """Return the kinds of fault on the bus; a late adapter loses answers too."""
     if kind == MIX:
-        return dict.fromkeys((*TOLD, *CHANCE), rate)
+        return dict.fromkeys(MIXED, rate)
     return {"drop" if kind == LATE_ADAPTER else kind: rate}

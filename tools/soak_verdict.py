@@ -18,10 +18,20 @@ UNSEEN: Final = ("stale", "zeros", "jump")
 KINDS: Final = (*ANSWERS, *REQUESTS, LATE_ADAPTER, MIX)
 TOLD: Final = tuple(kind for kind in (*ANSWERS, *REQUESTS) if kind not in (*CHANCE, *UNSEEN))
 """Order, length or id tell these."""
+MIXED: Final = tuple(kind for kind in (*TOLD, *CHANCE) if kind != "late_byte")
+"""What goes wrong at once: with 20 ms of silence at every tenth request nothing else would."""
 PASSES: Final = {"dynamixel2": 2.0**-16, "dynamixel2_plain": 2.0**-16}
 """Chance that a garbled frame has a checksum that fits; else 2^-8."""
-RECOVER: Final = 3
-"""Cycles after which all who can are heard again: two doubtful answers, and silence."""
+RECOVER: Final = 6
+"""Cycles after which all who can are heard again: two doubtful answers, and 30 ms of silence."""
+WHOLE: Final = 20
+"""Readings of one answer: those that are late are so together."""
+SHORTEST: Final = 12
+"""Bytes of a servo's answer, of any family."""
+FAR: Final = 2e-3
+"""Share of the readings before which a servo was silent so long that it may have got to 0."""
+EARLY: Final = 0.1
+"""Share of the late answers that come when the next one would."""
 STRANGERS: Final = 252
 """Ids that a wrong one may be."""
 
@@ -37,7 +47,7 @@ def verdict(family: str, kind: str, rate: float, tally: Tally, position: float) 
         position: Share of the position in the bytes of an answer.
     """
     wrong = tally.stale + tally.borrowed + tally.garbled
-    most = expected(family, kind, tally, position)
+    most = expected(family, kind, rate, tally, position)
     good = not (tally.raised or tally.outside or tally.waited > RECOVER)
     return {
         "servo": FAMILIES[family],
@@ -56,19 +66,24 @@ def verdict(family: str, kind: str, rate: float, tally: Tally, position: float) 
         "outside_range_and_step": tally.outside,
         "cycles_to_recover": tally.waited,
         "exceptions": dict(tally.raised),
-        "met": good and wrong <= _bound(most) and not (kind == MIX and tally.stale),
+        "met": good and wrong <= _bound(most) + (WHOLE if kind == "late_byte" else 0),
     }
 
 
-def expected(family: str, kind: str, tally: Tally, position: float) -> float:
+def expected(family: str, kind: str, rate: float, tally: Tally, position: float) -> float:
     """Return how many wrong readings, at most, nothing in order, length, id or checksum tells."""
     if kind in UNSEEN:
-        share = {"stale": 1.0, "zeros": 0.0, "jump": position}[kind]
+        share = {"stale": 1.0, "zeros": FAR, "jump": position}[kind]
         return share * tally.faults[kind]
+    # A whole answer that is late to its first byte, alone where the next one is so too, or is lost.
+    if kind == "late_byte":
+        return tally.faults[kind] * 3.0 * rate / SHORTEST**2
+    late = sum(tally.faults[each] for each in ("late", "delay", "glue")) if kind == MIX else 0
     garbled = sum(tally.faults[each] for each in CHANCE) * PASSES.get(family, 2.0**-8)
     # Under the id of its neighbour in turn, which is silent, an answer is in its order.
     silent = 1.0 - tally.fresh / tally.reads if tally.reads and kind == MIX else 0.0
-    return garbled + tally.faults["wrong_id"] * 2.0 / STRANGERS * silent
+    alone = late * len(CHANCE) * rate * EARLY
+    return garbled + alone + tally.faults["wrong_id"] * 2.0 / STRANGERS * silent
 
 
 def _bound(most: float) -> float:

@@ -11,6 +11,7 @@ KEYS = {
     "schema",
     "command",
     "warnings",
+    "driver_clamps",
     "robot",
     "gait",
     "seed",
@@ -128,7 +129,8 @@ def test_several_seeds_are_a_row_each_and_a_summary(windup: Windup) -> None:
     ran = windup("walk", "op3", "--steps", 1, "--seeds", 2, "--open-loop", "--json", "-")
     assert ran.status == 0
     result = ran.json
-    assert set(result) == {"schema", "command", "warnings", "robot", "rows", "summary"}
+    rest = {"warnings", "driver_clamps", "robot", "rows", "summary"}
+    assert set(result) == {"schema", "command", *rest}
     assert [row["seed"] for row in result["rows"]] == [0, 1]
     assert all(set(row) == KEYS - {"schema", "command"} for row in result["rows"])
     assert (result["summary"]["runs"], result["summary"]["walked"]) == (2, 2)
