@@ -172,7 +172,9 @@ class Exchange:
             self._whole_owed = now + STILL_COMING
             return
         silent = [span.id for span, came in zip(read.spans, read.valid, strict=True) if not came]
-        self._owed = {id: self._owed.get(id, 0) + 1 for id in silent}
+        answered = {span.id for span in read.spans}.difference(silent)
+        still = {id: count for id, count in self._owed.items() if id not in answered}
+        self._owed = still | {id: still.get(id, 0) + 1 for id in silent}
         late = self._owed.get(read.spans[-1].id, 0)
         if len(silent) > 1 and 0 < late <= LATE:
             self._silence = self._deadline + GRACE

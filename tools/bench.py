@@ -54,7 +54,7 @@ class Bench(Command):
     safety: end a moving robot in every way there is, and see who switches it off (an hour).
     guardian: does it leave a robot alone that walks beside a spinning process (give --minutes 30).
     loop: how late our loop wakes at 125 Hz, beside a C program that only sleeps.
-    faults: what becomes of readings under each kind of fault on the bus (half an hour).
+    faults: what becomes of readings under each kind of fault on the bus (3 minutes).
     unplug: what becomes of a robot whose adapter is pulled out and put in again (4 minutes).
     starts: does a robot start from wherever it is put, and notice what is wrong with it (5 min).
     fuzz: odd command lines on broken robots; none may end in a traceback (give --times 10000).

@@ -144,3 +144,16 @@ def test_two_buses_in_one_world_carry_their_bytes_side_by_side() -> None:
     for exchange in exchanges:
         assert exchange.collect().all()
     assert one.clock.now() - start == pytest.approx(wire_time(reads[0]))
+
+
+def test_a_question_to_some_does_not_forget_what_the_others_owe(read: BlockRead) -> None:
+    serial, port = fake_port(IDS)
+    exchange = exchange_of(serial, port)
+    serial.silent |= set(IDS[2:])
+    cycle(exchange, read)
+    few = BlockRead([Span(id, 64, 1) for id in IDS[:2]])
+    serial.silent = set(IDS)
+    cycle(exchange, few)
+    serial.silent = {1}
+    cycle(exchange, read)
+    assert not read.valid.any()  # all that came may have been late
