@@ -18,7 +18,7 @@ from dynamixel_sdk.protocol2_packet_handler import Protocol2PacketHandler
 
 from hal.errors import CorruptAnswerError, NoAnswerError, RefusedError
 from hal.heartbeat import no_heartbeat
-from hal.port import Port
+from hal.port import BITS, Port
 from hal.protocols import protocol2
 
 QUIET = 20e-3
@@ -94,7 +94,7 @@ class SdkPort(PortHandler):  # type: ignore[misc]  # the SDK has no types
 
     def setPacketTimeout(self, packet_length: int) -> None:  # noqa: N802
         """Give request and answer their time on the wire, the adapter its latency, and slack."""
-        wire = (2 * len(self._sent) + packet_length) * 10.0 / self.port.baud
+        wire = (2 * len(self._sent) + packet_length) * BITS / self.port.baud
         self.setPacketTimeoutMillis((wire + 2.0 * self.port.latency + SLACK) * 1e3)
 
     def isPacketTimeout(self) -> bool:  # noqa: N802

@@ -98,7 +98,8 @@ def set_up(
     Emulated servos forget their settings with the program: there they are not worth a word.
 
     Raises:
-        HardwareError: Something is not as wired; nothing has been written.
+        HardwareError: Something is not as wired; nothing has been written, but the status return
+            level of servos that did not answer.
     """
     for name, bus in buses.items():
         ours = [board.id] if board is not None and board.bus == name else []

@@ -7,8 +7,6 @@ from hal.servo_settings import Setting
 
 MANY = 4
 """More joints than these are counted, not named."""
-GAINS = "_gain"
-"""Registers that end so are written at every start, with the stiffness: nothing to keep."""
 
 
 def in_words(found: Sequence[Differs]) -> list[str]:
@@ -31,7 +29,7 @@ def _changes(differs: Differs) -> Iterator[str]:
     if differs.repaired:
         yield differs.repaired
     for setting in differs.settings:
-        if setting.register.area == "eeprom" and not setting.register.name.endswith(GAINS):
+        if setting.register.area == "eeprom":
             yield _change(setting)
 
 

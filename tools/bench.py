@@ -107,7 +107,7 @@ class Bench(Command):
 
     def _faults(self) -> int:
         """Read servos under faults, whose table has other columns too."""
-        result = measure_faults("", self.reads, self.seed)
+        result = measure_faults(self.reads, self.seed)
         console.print(fault_table(result["cells"]))
         console.print(
             f"wrong readings that were called fresh, of {result['reads']}; "

@@ -37,12 +37,11 @@ class Item(NamedTuple):
     seed: int
 
 
-def measure_faults(name: str, reads: int = 10_000_000, seed: int = 0) -> dict[str, Any]:
+def measure_faults(reads: int = 10_000_000, seed: int = 0) -> dict[str, Any]:
     """Return what became of `reads` servo-reads, shared by all families, faults and rates.
 
     Args:
-        name: Ignored: the buses are benches of 20 servos of one family.
-        reads: In all.
+        reads: In all, on benches of 20 servos of one family.
         seed: Seed of the faults.
 
     Raises:

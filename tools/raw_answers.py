@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from hal.families import Family
-from hal.port import Port
+from hal.port import BITS, Port
 from hal.protocols import protocol1, protocol2
 from hal.protocols.protocol2 import Status
 
@@ -64,7 +64,7 @@ def _exchange(port: Port, request: bytes) -> bytes:
     """Return all that comes when one id is pinged."""
     port.flush_input()
     port.write(request)
-    wire = (len(request) + protocol2.OVERHEAD + PING_PARAMS) * 10.0 / port.baud
+    wire = (len(request) + protocol2.OVERHEAD + PING_PARAMS) * BITS / port.baud
     return port.read(ROOM, port.clock.now() + wire + 2.0 * port.latency + TIME)
 
 

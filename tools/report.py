@@ -38,7 +38,11 @@ class WalkReport:
     loop: LoopReport = field(default_factory=LoopReport)
 
     def __post_init__(self) -> None:
-        self._origin = self._position()
+        self._origin = self._end = self._position()
+
+    def look(self) -> None:
+        """Note how far the robot has come by now: once it is limp, it falls anywhere."""
+        self._end = self._position()
 
     def __str__(self) -> str:
         return walk_said(self.result())
@@ -94,7 +98,7 @@ class WalkReport:
         gauges = self.robot.gauges
         if gauges is None:
             return {}
-        way = float(np.linalg.norm((self._position() - self._origin)[:2]))
+        way = float(np.linalg.norm((self._end - self._origin)[:2]))
         return {
             "flights": gauges.flights,
             "flight_time_s": gauges.flight_time,
@@ -126,7 +130,7 @@ class WalkReport:
     def result(self) -> dict[str, Any]:
         """Return the numbers of this walk."""
         robot, walker, loop = self.robot, self.walker, self.loop
-        end = self._position() - self._origin
+        end = self._end - self._origin
         records = walker.records
         watch = robot.predictor.stopwatch
         slip = walker.steering.slip

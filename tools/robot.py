@@ -9,7 +9,6 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from typing import Self
 
-from control.balancer import Balancer
 from control.loop import LoopReport, Until
 from control.play import GraphPlayer, PoseHolder
 from control.staged import StagedPlayer
@@ -228,7 +227,7 @@ class Robot(Session):
             report = WalkReport(self, walker, options, steps)
             try:
                 walking = self.supervisor or walker
-                until = self._looking(end, walker)
+                until = self._looking(end, report)
                 walked = self.run(walking, until=until, rollouts=stopwatch, needs_imu=True)
                 if stand > 0.0 and walked.reason == "done":
                     walked.reason = self.stand(stand).reason
@@ -242,6 +241,7 @@ class Robot(Session):
                 self.slowness.late += walker.late
                 self.slowness.library = options.model == "library"
         report.loop = self.loop
+        report.look()
         return report
 
     def _when_ready(self, planner: ProcessPlanner) -> ProcessPlanner:
@@ -261,10 +261,12 @@ class Robot(Session):
         if twin is not None:
             self.clearance = FootClearance(self.description, twin.model, twin.data)
 
-    def _looking(self, end: Until, walker: Balancer) -> Until:
-        """Return `end`, with a look at the feet and at the plans first."""
+    def _looking(self, end: Until, report: WalkReport) -> Until:
+        """Return `end`, with a look at place, feet and plans first."""
+        walker = report.walker
 
         def until(observation: Observation) -> str | None:
+            report.look()
             if self.telemetry is not None:
                 self.telemetry.plans = walker.begun, walker.late
             if self.clearance is not None:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from hal.adapter import MARGIN, Probe
 from hal.errors import HardwareError
-from hal.port import Port
+from hal.port import BITS, Port
 from hal.protocols import protocol1, protocol2
 from hal.protocols.batched import BlockRead, BlockWrite
 from hal.protocols.batched1 import ChainRead, GoalWrite, bulk_read, sync_read
@@ -147,7 +147,8 @@ class Protocol1(Dialect):
     def who(self, port: Port, link: Link) -> list[Answered]:
         """Ping one id after the other: all who hear a common ping would answer at once.
 
-        Where one answers while another is asked, the adapter is slower than was thought.
+        Where one answers while another is asked, the adapter is slower than was thought: then all
+        are pinged again. Who talks under strange ids is no reason to.
         """
         found, firmware = [], self.firmware
         asked: dict[int, float] = {}
@@ -155,8 +156,8 @@ class Protocol1(Dialect):
             asked[id] = port.clock.now()
             pongs = _pongs(port, id)
             late = [port.clock.now() - asked[other] for other in pongs & asked.keys() - {id}]
-            if 0.0 < max(late, default=0.0) < LATEST:
-                port.latency = max(port.latency, MARGIN * max(late))
+            if port.latency < max(late, default=0.0) < LATEST:
+                port.latency = MARGIN * max(late)
                 return self.who(port, link)
             # Noise, or two servos with this id, may pass for an answer; they have no model.
             if id in pongs:
@@ -222,7 +223,7 @@ def _pongs(port: Port, id: int) -> set[int]:
     request = protocol1.ping(id)
     port.flush_input()
     port.write(request)
-    wire = (len(request) + protocol1.OVERHEAD) * 10.0 / port.baud
+    wire = (len(request) + protocol1.OVERHEAD) * BITS / port.baud
     deadline = port.clock.now() + wire + 2.0 * port.latency + PING_TIME
     stream = port.read(protocol1.OVERHEAD, deadline)
     return {item.id for item in protocol1.salvage(stream, {}, (0,))}

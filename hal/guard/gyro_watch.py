@@ -18,13 +18,14 @@ from hal.guard.finding import AGAIN, Saying
 from hal.joints import Array
 
 JUMP = 0.7
-"""Change of the rates from one sample to the next that an accelerometer feels, rad/s."""
+"""From one sample to the next, rates of a body at rest that change by more are doubted, unless the
+accelerometer has felt it, rad/s."""
 BUSY = 1.0
-"""By how much more that is for each rad/s that the body has been turning lately: the knock of a
-foot falls between two samples, and turns a walking body as suddenly as a gyroscope that fails."""
+"""So much is added to that for each rad/s (rms of the last second) at which the body turns: the
+knock of a foot falls between two samples, and turns a walking body as suddenly."""
 PIVOT = 1.6
-"""How much larger than that it is about the vertical before it is doubted: a body that begins to
-turn on one foot below its IMU shakes it little. Ducks that slip while walking reach 0.8 rad/s."""
+"""A change about the vertical counts as so many times less: a body that begins to turn on one foot,
+below its IMU, shakes it little. Ducks that slip while walking reach 0.8 rad/s."""
 SHAKE = 1.4
 """What it then changes by, or differs from gravity, at least: m/s2 for each rad/s. Twins that are
 pushed, fall, roll over and get up show 2.3 or more."""

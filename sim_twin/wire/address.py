@@ -2,7 +2,7 @@
 
 ``twin://op3[?clock=virtual|real&world=NAME&bus=legs&faults=drop:0.01&seed=1&supply=12...]``: a
 robot of ours; ``twin://bench?servos=STS3215:1-20&baud=1000000``: servos of one protocol on a bench.
-``twin:///home/me/robot`` and ``twin://./robot`` are robots in folders of one's own.
+``twin:///FOLDER`` with an absolute path, or ``twin://./FOLDER``, is a robot of one's own.
 """
 
 from dataclasses import dataclass, fields, replace

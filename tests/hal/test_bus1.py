@@ -5,6 +5,7 @@ from hal.errors import HardwareError, UsageError
 from hal.exchange import TURNAROUND
 from hal.families import DYNAMIXEL_1, FEETECH_SCS, FEETECH_STS
 from hal.feetech import set_middle
+from hal.protocols import protocol1
 from hal.protocols.protocol1 import Instruction
 from hal.protocols.protocol2 import Span
 from tests.hal.fake_bus1 import AX, MX, SCS, STS, fake_port1
@@ -21,6 +22,12 @@ def test_a_scan_pings_each_id_and_names_the_model() -> None:
         (250_000, 17, "STS3215", 3),
     ]
     assert port.baud == 1_000_000
+
+
+def test_a_scan_ends_where_one_servo_answers_under_the_id_of_another() -> None:
+    serial, port = fake_port1({4: STS, 5: STS})
+    serial.spoil = lambda id, frame: protocol1.status(4, frame[5:-1]) if id == 5 else frame
+    assert [one.id for one in Bus(port, FEETECH_STS).scan([1_000_000])] == [4]
 
 
 def test_sts_and_scs_live_in_one_process_with_signs_and_orders_of_their_own() -> None:

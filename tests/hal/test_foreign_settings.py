@@ -115,6 +115,17 @@ def test_what_is_written_is_said_first(caplog: pytest.LogCaptureFixture) -> None
     assert caplog.messages == []
 
 
+def test_gains_that_stay_in_a_servo_are_said_too(caplog: pytest.LogCaptureFixture) -> None:
+    sts = servo_model("STS3215-7.4V")
+    wires = Wires()
+    wires.add("body", {1: sts})
+    wires["body"].set(1, "position_d_gain", 32)
+    backend = robot(wires, [mount(sts, "body", 1)])
+    backend.connect()
+    backend.configure()
+    assert "position_d_gain 32 -> 0 at j0" in caplog.text
+
+
 def test_one_that_has_to_be_made_to_answer_is_said_too(caplog: pytest.LogCaptureFixture) -> None:
     robot = Robot()
     robot.serial.put(2, 68, 1, 1)

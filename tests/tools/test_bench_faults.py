@@ -62,7 +62,7 @@ def test_what_order_length_or_id_tells_is_never_believed(family: str, kind: str)
 
 def test_a_few_readings_of_everything_meet_what_is_expected() -> None:
     cells = len(FAMILIES) * (2 * len(KINDS) - 1)
-    result = bench_faults.measure_faults("op3", reads=40 * cells)
+    result = bench_faults.measure_faults(reads=40 * cells)
     assert result["met"], [cell for cell in result["cells"] if not cell["met"]]
     assert len(result["cells"]) == cells
     assert fault_table(result["cells"]).row_count == len(KINDS)
@@ -116,4 +116,4 @@ def test_a_late_answer_may_be_alone_where_the_next_one_is_lost() -> None:
 
 def test_no_reads_are_refused() -> None:
     with pytest.raises(UsageError, match="--reads 0: give 1 or more"):
-        bench_faults.measure_faults("op3", 0)
+        bench_faults.measure_faults(0)

@@ -153,6 +153,16 @@ def test_a_bare_target_is_the_first_forward_variables(windup: Windup) -> None:
     ]
 
 
+def test_a_report_tells_of_the_walk_and_not_of_where_the_limp_robot_fell() -> None:
+    with Robot.open("op3", port="twin://op3?clock=virtual") as robot:
+        report = robot.walk(steps=4)
+        before = report.result()
+    after = report.result()
+    assert robot.twin.base.position[:2] != pytest.approx(report.path[-1, :2], abs=0.02)
+    for key in ("distance_m", "lateral_m", "cost_of_transport"):
+        assert after[key] == before[key]
+
+
 def test_another_rate_and_delay_are_those_of_the_run() -> None:
     with Robot.open("op3", rate=125.0, delay=0.016) as robot:
         assert robot.period == pytest.approx(0.008)

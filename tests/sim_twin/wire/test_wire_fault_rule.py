@@ -74,3 +74,27 @@ def test_a_text_for_a_world_that_runs_means_its_events_now() -> None:
     unplug, later, share, drop = parse_rules("unplug,reset:at=2,overload:0.1,drop", live=True)
     assert (unplug.at, later.at, share.at, drop.at) == ([0.0], [2.0], [], [])
     assert (share.rate, drop.rate) == (0.1, 0.01)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("dorp:1", "unknown kind 'dorp'; did you mean 'drop'?"),
+        ("drop:2", "drop: rate 2: give 0 .. 1"),
+        ("drop:x", "'drop:x': a rate from 0 to 1, keys, ids up to 253, as in"),
+        ("drop:0.1:at=3", "a rate or a time, not both"),
+        ("drop:0.1:id=3", "'drop:0.1:id=3': unknown key 'id'; did you mean 'ids'?"),
+        ("unplug:at=-1", "unplug: at -1: give 0 .. 1000000000 s"),
+    ],
+)
+def test_a_wrong_text_says_what_is_wrong(text: str, message: str) -> None:
+    with pytest.raises(UsageError, match=message.replace("?", r"\?")):
+        parse_rules(text)
+
+
+def test_a_text_says_everything_that_the_methods_do() -> None:
+    (late, unplug) = parse_rules("late:0.02:seconds=0.003:ids=1-3;9:bus=legs,unplug:at=2.5;4")
+    assert (late.rate, late.seconds, late.bus) == (0.02, 0.003, "legs")
+    assert late.ids == frozenset((1, 2, 3, 9))
+    assert (unplug.at, unplug.seconds) == ([2.5, 4.0], 0.5)
+    assert parse_rules("drop")[0].rate == 0.01
