@@ -121,10 +121,10 @@ def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting],
     try:
         number = bus.ping(mount.id)
     except NoAnswerError as error:
-        number = bus.family.dialect.estranged(bus.port, mount.id)
-        if number not in bus.family.numbers:
+        other = bus.family.dialect.estranged(bus.port, mount.id)
+        if other is None or other not in bus.family.numbers:
             raise HardwareError(_short(error)) from None
-        raise HardwareError(f"{bus.family.model_name(number)} {PROTOCOL_1}") from None
+        raise HardwareError(f"{bus.family.model_name(other)} {PROTOCOL_1}") from None
     except HardwareError as error:
         raise HardwareError(_short(error)) from None
     if number != mount.model.model_number:
