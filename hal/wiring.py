@@ -53,11 +53,11 @@ def check_mounts(
     extent = couplings.extent(joints.lower, joints.upper)
     for row, (name, mount) in enumerate(named):
         ends = sorted(float(units.counts(end)[row]) for end in extent)
-        top = mount.model.last_count
-        if ends[0] < 0 or ends[1] > top:
+        bottom, top = mount.first_count, mount.last_count
+        if ends[0] < bottom or ends[1] > top:
             raise ConfigError(
                 f"joint {name!r} (id {mount.id} on bus {mount.bus!r}): its range is "
-                f"{ends[0]:.0f} to {ends[1]:.0f} counts, its encoder ends at 0 and {top}; "
+                f"{ends[0]:.0f} to {ends[1]:.0f} counts, its encoder ends at {bottom} and {top}; "
                 "narrow the range in robot.toml or turn the horn and calibrate"
             )
 
@@ -124,7 +124,7 @@ def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting],
         raise HardwareError(f"is a {there} where a {mount.model.name} should be")
     repaired = make_answer(bus, mount.id, mount.model)
     _check_offset(bus, mount)
-    settings = differences(bus, mount.id, mount.model)
+    settings = differences(bus, mount)
     locked = [str(setting) for setting in settings if setting.register.area == "eeprom"]
     if locked and bus.read(mount.id, bus.family.registers["torque_enable"]):
         raise HardwareError(f"torque is on and {', '.join(locked)}; `windup stop` first")

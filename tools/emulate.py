@@ -11,6 +11,7 @@ import tyro
 
 from hal.errors import PortError
 from hal.ranges import Range
+from robots import load_robot
 from sim_twin.wire import Address, parse_address
 from sim_twin.wire.address import BENCH, SCHEME
 from sim_twin.wire.emulate import Emulator, emulate
@@ -18,6 +19,7 @@ from sim_twin.wire.fault_text import parse_rules
 from sim_twin.wire.hand import parse_hands
 from sim_twin.wire.outlet import Outlet
 from tools.command import Command
+from tools.doubt_once import doubt_once
 from tools.output import console
 from tools.quantities import Seed
 from tools.writing import check_writable
@@ -57,6 +59,8 @@ class Emulate(Command):
     def run(self) -> int:
         """Serve; returns the exit status."""
         address = self._address()
+        if address.robot != BENCH:
+            doubt_once(load_robot(address.robot))
         ready = partial(_on_ready, "" if address.robot == BENCH else self.robot)
         try:
             emulate(address, self.pty, self.tcp, on_ready=ready)

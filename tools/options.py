@@ -8,6 +8,7 @@ import tyro
 
 from robots import load_robot
 from tools.command import Command
+from tools.doubt_once import doubt_once
 from tools.faults import with_faults
 from tools.quantities import Noise, Rate, Seed, Seeds
 from tools.robot import Robot
@@ -51,6 +52,7 @@ class Common(Command):
         url, robot = self.url, load_robot(self.robot)
         if url is not None:
             check_port(robot, url)
+        doubt_once(robot)
 
     @property
     def url(self) -> str | None:

@@ -115,6 +115,7 @@ class Family:
         weakening: Bits of errors that weaken torque instead of ending it.
         latching: Does an error that has ended torque show until the power goes?
         wanted: The settings the stack relies on, in the order in which they are written.
+        extended: What is wanted instead where a servo shall count many turns; None where none can.
         usual: Settings that limit a servo more where they are lower than the maker's; they are
             its owner's, and only shown.
         gain: How stiffness is set on a model.
@@ -145,6 +146,7 @@ class Family:
     weakening: int = 0
     latching: bool = False
     current: Block | None = None
+    extended: Want | None = None
     usual: Sequence[Want] = ()
     check_alone: bool = False
     errors_in_answers: bool = True
