@@ -45,7 +45,7 @@ def push_walking(
     if to_the_end and robot.fallen and not robot.protect:
         stiff = PoseHolder(description.joints, description.stance, ramp=0.0)
         robot.run(stiff, LANDING, down=True)
-    supervisor, walked = robot.supervisor, report.walker.steps
+    supervisor, walked = report.supervisor, report.walker.steps
     catches = [] if supervisor is None else supervisor.catches
     fell = report.fell or bool(touch.touched)
     return {

@@ -1,7 +1,7 @@
 """What a walk was like: the numbers of `windup walk --json`."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -9,12 +9,15 @@ from control.balancer import Balancer
 from control.loop import LoopReport
 from control.navigation import PathFollower, PointFollower
 from control.planner import StepPlanner
+from control.supervisor import Supervisor
+from hal.controller import Stopwatch
 from hal.joints import Array
+from hal.observation import Observation
+from sim_twin.clearance import FootClearance
+from tools.gauges import Gauges
+from tools.session import Session
 from tools.walk_options import WalkOptions
 from tools.walk_said import walk_said
-
-if TYPE_CHECKING:
-    from tools.robot import Robot
 
 SETTLED = 10  # steps left out of the mean speed
 
@@ -24,25 +27,42 @@ class WalkReport:
     """A walk, finished or broken off.
 
     Attributes:
-        robot: The robot that walked.
+        robot: The session of the robot that walked.
         walker: Its controller, with a record of each step.
         options: What was asked for.
         requested: Steps asked for.
+        rollouts: Counts the rollouts, and their time.
+        seed: Seed of everything random.
+        gauges: What is measured at every tick.
+        feet: How close the feet of a twin come; None on a port.
+        supervisor: Who has the robot; None where nothing is to catch it.
         loop: How its loop went.
     """
 
-    robot: "Robot"
+    robot: Session
     walker: Balancer
     options: WalkOptions
     requested: int
+    rollouts: Stopwatch
+    seed: int
+    gauges: Gauges
+    feet: FootClearance | None = None
+    supervisor: Supervisor | None = None
     loop: LoopReport = field(default_factory=LoopReport)
 
     def __post_init__(self) -> None:
         self._origin = self._end = self._position()
 
-    def look(self) -> None:
+    def note_place(self) -> None:
         """Note how far the robot has come by now: once it is limp, it falls anywhere."""
         self._end = self._position()
+
+    def look(self, observation: Observation) -> None:
+        """Measure what there is to measure at a tick."""
+        self.note_place()
+        self.gauges.look(observation)
+        if self.feet is not None:
+            self.feet.look()
 
     def __str__(self) -> str:
         return walk_said(self.result())
@@ -90,14 +110,11 @@ class WalkReport:
     @property
     def clearance(self) -> float | None:
         """Smallest distance between the feet, mm; negative where they crossed."""
-        look = self.robot.clearance
-        return None if look is None else 1e3 * look.smallest
+        return None if self.feet is None else 1e3 * self.feet.smallest
 
     def motion(self) -> dict[str, Any]:
         """Return what was measured at every tick: flights, work, how much the base shook."""
-        gauges = self.robot.gauges
-        if gauges is None:
-            return {}
+        gauges = self.gauges
         way = float(np.linalg.norm((self._end - self._origin)[:2]))
         return {
             "flights": gauges.flights,
@@ -132,12 +149,11 @@ class WalkReport:
         robot, walker, loop = self.robot, self.walker, self.loop
         end = self._end - self._origin
         records = walker.records
-        watch = robot.predictor.stopwatch
         slip = walker.steering.slip
         return {
             "robot": robot.description.name,
             "gait": walker.gait.name,
-            "seed": robot.seed,
+            "seed": self.seed,
             "steps_requested": self.requested,
             "steps": walker.steps,
             "fell": self.fell,
@@ -154,9 +170,9 @@ class WalkReport:
             **self.route(),
             "sim_time_s": loop.sim_time,
             "wall_time_s": loop.wall_time,
-            "rollouts": watch.count,
-            "rollout_time_s": watch.seconds,
-            "rollouts_a_step": watch.count / max(walker.begun, 1),
+            "rollouts": self.rollouts.count,
+            "rollout_time_s": self.rollouts.seconds,
+            "rollouts_a_step": self.rollouts.count / max(walker.begun, 1),
             "replans": walker.replans,
             "catches": self.catches(),
             "slipped": slip is not None and slip.felt,
@@ -170,10 +186,9 @@ class WalkReport:
 
     def catches(self) -> list[dict[str, Any]]:
         """Return what the stepper was called for."""
-        supervisor = self.robot.supervisor
-        if supervisor is None:
+        if self.supervisor is None:
             return []
-        return [catch.record(self.walker.steps) for catch in supervisor.catches]
+        return [catch.record(self.walker.steps) for catch in self.supervisor.catches]
 
     def route(self) -> dict[str, Any]:
         """Return whether a goal was reached and how near the corners were passed; or nothing."""

@@ -12,7 +12,6 @@ from typing import Self
 from control.loop import LoopReport, Until
 from control.play import GraphPlayer, PoseHolder
 from control.staged import StagedPlayer
-from control.supervisor import Supervisor
 from hal.controller import Stopwatch
 from hal.errors import UnknownNameError
 from hal.joints import Array
@@ -50,9 +49,6 @@ class Robot(Session):
         predictor: Plays rollouts of it.
         noise: Noise of the start pose, degrees.
         seed: Seed of everything random.
-        clearance: How close the feet of a twin came in the last walk.
-        gauges: What was measured at every tick of the last walk.
-        supervisor: Who had the robot in the last walk; None where nothing was to catch it.
         player: What played the last pose graph.
         load: How hard the servos worked for that.
     """
@@ -60,9 +56,6 @@ class Robot(Session):
     predictor: RolloutPredictor = field(kw_only=True)
     noise: float = 0.0
     seed: int = 0
-    clearance: FootClearance | None = field(default=None, init=False)
-    gauges: Gauges | None = field(default=None, init=False)
-    supervisor: Supervisor | None = field(default=None, init=False)
     player: GraphPlayer | StagedPlayer | None = field(default=None, init=False)
     load: LoadGauge | None = field(default=None, init=False)
 
@@ -215,20 +208,22 @@ class Robot(Session):
             # A plan takes its time on a robot; an emulated one waits for it as long.
             wait = self.description.model_latency if self.stack.wired else 0.0
             walker = build_walk(self.description, options, self.predictor, latency=wait)
-            self.supervisor = None
+            supervisor = None
             if options.catch is not None:
-                self.supervisor = build_supervisor(self.description, walker, options.catch)
+                supervisor = build_supervisor(self.description, walker, options.catch)
             end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
             if self.paced and walker.planner is not None:
                 aside = plan_aside(self.description, options, self.predictor, self.period)
                 walker.planner = self._when_ready(stack.enter_context(aside))
             self.start_at(walker.gait.file.start, needs_imu=True)
-            self._watch_feet()
             if disturb is not None:
                 disturb(self)
-            report = WalkReport(self, walker, options, steps)
+            report = WalkReport(
+                self, walker, options, steps, self.predictor.stopwatch, self.seed,
+                Gauges(self.description.contacts), self._feet(), supervisor,
+            )  # fmt: skip
             try:
-                walking = self.supervisor or walker
+                walking = supervisor or walker
                 until = self._looking(end, report)
                 walked = self.run(walking, until=until, rollouts=stopwatch, needs_imu=True)
                 if stand > 0.0 and walked.reason == "done":
@@ -243,7 +238,7 @@ class Robot(Session):
                 self.slowness.late += walker.late
                 self.slowness.library = options.model == "library"
         report.loop = self.loop
-        report.look()
+        report.note_place()
         return report
 
     def _when_ready(self, planner: ProcessPlanner) -> ProcessPlanner:
@@ -255,26 +250,19 @@ class Robot(Session):
             self.run(holder, until=lambda _: "ready" if planner.ready() else None)
         return planner.wait_ready()
 
-    def _watch_feet(self) -> None:
-        """From now on measure what the feet do, and how close those of a twin come."""
+    def _feet(self) -> FootClearance | None:
+        """Return what measures how close the feet of a twin come from now on."""
         twin = self.stack.twin
-        self.gauges = Gauges(self.description.contacts)
-        self.clearance = None
-        if twin is not None:
-            self.clearance = FootClearance(self.description, twin.model, twin.data)
+        return None if twin is None else FootClearance(self.description, twin.model, twin.data)
 
     def _looking(self, end: Until, report: WalkReport) -> Until:
         """Return `end`, with a look at place, feet and plans first."""
         walker = report.walker
 
         def until(observation: Observation) -> str | None:
-            report.look()
+            report.look(observation)
             if self.telemetry is not None:
                 self.telemetry.plans = walker.begun, walker.late
-            if self.clearance is not None:
-                self.clearance.look()
-            if self.gauges is not None:
-                self.gauges.look(observation)
             return end(observation)
 
         return until
