@@ -1,36 +1,32 @@
 """What is wrong with a command line, as one line: the word, the near one, and what to run."""
 
 import re
-from collections.abc import Iterable, Mapping
 from dataclasses import fields
-from difflib import get_close_matches
 from itertools import takewhile
 from typing import Any, get_args, get_type_hints
 
 import tyro
 
 from hal.ranges import SHOWN
+from tools.near_word import near_word
 
 WORDS = {"FLOAT FLOAT": "two numbers", "FLOAT": "a number", "INT": "a whole number", "|": " or "}
 
 
-def mistake(arguments: list[str], commands: Mapping[str, type], said: str) -> str:
+def mistake(name: str, command: type, words: list[str], said: str) -> str:
     """Return what is wrong with a command line that the parser did not take.
 
     Args:
-        arguments: The command line, beginning with the command.
-        commands: Every command by its name.
+        name: Of the command.
+        command: Its class.
+        words: What stands behind the name.
         said: What the parser said, in its box.
     """
-    name = arguments[0]
-    if name not in commands:
-        near = _near(name, commands)
-        return f"unknown command {name!r}{near}; `windup --help` lists all"
-    known = options(commands[name])
-    for word in takewhile(lambda word: word != "--", arguments[1:]):
+    known = options(command)
+    for word in takewhile(lambda word: word != "--", words):
         option = word.partition("=")[0].replace("_", "-")
         if word.startswith("--") and option not in known:
-            near = _near(option, known)
+            near = near_word(option, known)
             return f"{name}: unknown option {option}{near}; `windup {name} --help` lists all"
     return wrong_number(said) or f"{name}: {gist(said).rstrip('.')}; see `windup {name} --help`"
 
@@ -44,11 +40,6 @@ def options(command: Any) -> set[str]:
         if tyro.conf.Positional not in get_args(hints[field.name])
     ]
     return {"--help", *(f"--{name}" for name in names), *(f"--no-{name}" for name in names)}
-
-
-def _near(word: str, known: Iterable[str]) -> str:
-    near = get_close_matches(word, sorted(known), n=1, cutoff=0.6)
-    return f" (did you mean {near[0]}?)" if near else ""
 
 
 def gist(said: str) -> str:

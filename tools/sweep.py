@@ -1,7 +1,6 @@
 """`windup sweep`: any command over a grid of its options, or at random ones."""
 
 import shlex
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import prod
@@ -22,7 +21,6 @@ from tools.writing import check_writable, writing
 
 MOST = 1_000_000
 """Runs of one sweep."""
-OWN = ("--grid", "--random", "--seed", "--seeds", "--out", "--jobs")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,26 +105,3 @@ def _missing(runs: list[Run], rows: list[Row]) -> Iterator[Run]:
         if key not in seen:
             seen.add(key)
             yield run
-
-
-def separate(arguments: list[str] | None) -> list[str]:
-    """Return the command line with a sweep's own options before those of its command.
-
-    >>> separate(["sweep", "walk", "op3", "--rv", "up", "--out", "a.csv"])
-    ['sweep', '--out', 'a.csv', '--', 'walk', 'op3', '--rv', 'up']
-    """
-    arguments = list(sys.argv[1:] if arguments is None else arguments)
-    if arguments[:1] != ["sweep"] or "--" in arguments:
-        return arguments
-    if {"-h", "--help"} & set(arguments):
-        return ["sweep", "--help"]
-    own, line = [], []
-    rest = iter(arguments[1:])
-    for word in rest:
-        if word in OWN:
-            own += [word, *(value for value in [next(rest, None)] if value is not None)]
-        elif word.partition("=")[0] in OWN:
-            own.append(word)
-        else:
-            line.append(word)
-    return ["sweep", *own, *(["--", *line] if line else [])]

@@ -13,6 +13,7 @@ import tyro
 
 from hal.errors import UnknownNameError, UsageError, WindupError
 from hal.ranges import check_numbers
+from tools.cli import parse
 from tools.output import plain
 from tools.parse_errors import gist
 from tools.sweep_grid import Axis, Point
@@ -140,8 +141,6 @@ def parse_quietly(line: list[str]) -> Any:
     Raises:
         UsageError: It means none.
     """
-    from tools.cli import parse  # the command line imports us
-
     said = io.StringIO()
     try:
         with redirect_stderr(said), redirect_stdout(said):

@@ -14,6 +14,7 @@ from hal.errors import UsageError
 from robots import load_robot
 from tools.build import build_walk
 from tools.interrupts import RunInterruptedError
+from tools.learnt_file import check_learning, keep_learnt
 from tools.options import Common
 from tools.output import console, write_json
 from tools.picture import check_picture
@@ -22,7 +23,6 @@ from tools.quantities import Count, Delay, Metres, Seconds, Speed, TurnRate
 from tools.report import WalkReport, summary
 from tools.robot import Robot
 from tools.run_notes import NOTES
-from tools.step_models import check_learning, keep_learnt
 from tools.stepping import find_stepping
 from tools.twin_options import TwinOptions
 from tools.walk_options import WalkOptions

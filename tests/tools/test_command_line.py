@@ -1,8 +1,12 @@
+import subprocess
+import sys
+
 import pytest
 
 from tests.tools.conftest import Windup, refusal
-from tools.cli import COMMANDS
-from tools.overview import overview
+from tools.command import Command
+from tools.command_table import COMMANDS, Entry
+from tools.version import installed_version
 
 LINES = {
     "help": ("walk op3 --hlep", "walk: unknown option --hlep (did you mean --help?)"),
@@ -47,8 +51,25 @@ def test_help_that_nobody_can_read_is_told(
 
 
 def test_every_command_says_in_a_few_words_what_it_does() -> None:
-    lines = overview(COMMANDS).splitlines()[-len(COMMANDS) :]
-    assert all(len(line.split(maxsplit=1)[1]) >= len("Push a robot") for line in lines)
+    assert all(len(entry.gist) >= len("Push a robot") for entry in COMMANDS.values())
+
+
+@pytest.mark.parametrize("entry", COMMANDS.values(), ids=COMMANDS)
+def test_the_table_of_commands_knows_where_each_is(entry: Entry) -> None:
+    assert issubclass(entry.load(), Command)
+
+
+def test_the_overview_imports_no_command() -> None:
+    code = (
+        "import sys\nfrom tools.cli import run\nstatus = run(['--help'])\n"
+        "print(sorted({'mujoco', 'tyro', 'scipy'} & set(sys.modules)), status)"
+    )
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert ran.stdout.splitlines()[-1] == "[] 0"
+
+
+def test_the_version_is_told(windup: Windup) -> None:
+    assert windup("--version").out == f"windup {installed_version()}\n"
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -18,6 +18,7 @@ import sim_twin.wire.worlds
 from hal.errors import PortError
 from sim_twin.twin import Twin
 from tools import cli
+from tools.command_table import COMMANDS
 
 LONG = ("bench", "reproduce", "sweep", "synthesise", "health")
 """Commands that run for long without a port or a twin, or look at what others run."""
@@ -45,8 +46,8 @@ VALUES = (
     *("a.png", "stand", "left", "hold", "front", "walk", "op3", "*"),
 )
 OPTIONS = {
-    name: [f"--{field.name.replace('_', '-')}" for field in fields(kind)]
-    for name, kind in cli.COMMANDS.items()
+    name: [f"--{field.name.replace('_', '-')}" for field in fields(entry.load())]
+    for name, entry in COMMANDS.items()
 }
 
 
@@ -62,7 +63,7 @@ def nothing_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(sim_twin.wire.emulate, "build_world", refuse)
     monkeypatch.setattr(Twin, "__init__", refuse)
     for name in LONG:
-        monkeypatch.setattr(cli.COMMANDS[name], "run", lambda self: 0)
+        monkeypatch.setattr(COMMANDS[name].load(), "run", lambda self: 0)
     monkeypatch.chdir(tmp_path)
 
 
@@ -119,6 +120,7 @@ HUNGRY = [
 PROGRAM = """
 import resource, sys
 from tools import cli
+from tools.command_table import COMMANDS
 resource.setrlimit(resource.RLIMIT_DATA, (2**30, 2**30))
 print([cli.run(line.split()) for line in sys.argv[1:]])
 """

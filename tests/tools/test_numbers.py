@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from hal.errors import UsageError
 from hal.ranges import Range
 from tests.tools.conftest import refusal
-from tools import Robot, cli
+from tools import Robot
+from tools.command_table import COMMANDS
 
 LINES = {
     "walk": "walk op3 --port /dev/ttyUSB9 --arm",
@@ -50,7 +51,8 @@ def ranges(hint: Any) -> list[Range]:
 
 OPTIONS: dict[tuple[str, str], Any] = {
     (name, option.name): hint
-    for name, kind in cli.COMMANDS.items()
+    for name, entry in COMMANDS.items()
+    for kind in [entry.load()]
     for hints in [get_type_hints(kind, include_extras=True)]
     for option in fields(kind)
     if numeric(hint := hints[option.name])
@@ -61,7 +63,7 @@ pytestmark = pytest.mark.usefixtures("nothing_opens")
 
 
 def test_the_options_of_every_command_are_looked_at() -> None:
-    assert set(LINES) == set(cli.COMMANDS)
+    assert set(LINES) == set(COMMANDS)
     assert len(OPTIONS) > 100
 
 

@@ -12,6 +12,7 @@ import tyro
 from hal.errors import HardwareError, UsageError
 from tools import cli
 from tools.command import Command
+from tools.command_table import COMMANDS, Entry
 from tools.sweep_grid import parse_axis, points
 from tools.sweep_table import CsvTable, open_table
 
@@ -47,8 +48,7 @@ class Fake(Command):
 
 @pytest.fixture(autouse=True)
 def fake_command(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    whole = cli.Command | Annotated[Fake, tyro.conf.subcommand("fake")]
-    monkeypatch.setattr(cli, "Command", whole)
+    monkeypatch.setitem(COMMANDS, "fake", Entry(__name__, "Fake", ""))
     monkeypatch.chdir(tmp_path)
 
 

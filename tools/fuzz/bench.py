@@ -5,13 +5,13 @@ import resource
 import time as wall
 from collections import Counter
 from collections.abc import Iterator
-from importlib import import_module
 from multiprocessing.connection import Connection, wait
 from os import cpu_count
 from typing import Any
 
 from rich.progress import Progress
 
+from tools.cli import run
 from tools.fuzz.trial import PATIENCE, Trial, odd_run
 from tools.output import console
 
@@ -129,7 +129,6 @@ def _trials(seeds: Iterator[int], robots: tuple[str, ...]) -> Iterator[Trial]:
 def _serve(link: Connection, robots: tuple[str, ...]) -> None:
     """Make the runs that are asked for."""
     resource.setrlimit(resource.RLIMIT_AS, (MOST, MOST))
-    run = import_module("tools.cli").run  # which imports this file
     while True:
         try:
             seed = link.recv()
