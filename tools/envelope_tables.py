@@ -1,19 +1,15 @@
 """What `windup push --envelope` prints: the largest impulses, and how each way did on the grid."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from rich.table import Table
 
+from tools.push_edge import Edge
 from tools.stepping import FEET, HOLD
 
-if TYPE_CHECKING:
-    from tools.push_envelope import Edge
-
-Edges = Mapping[float, "Edge"]
+Edges = Mapping[float, Edge]
 
 
 def largest_table(directions: Sequence[float], largest: Mapping[str, Sequence[float]]) -> Table:

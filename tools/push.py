@@ -19,6 +19,7 @@ from tools.landings import landings_said
 from tools.options import Common
 from tools.output import console, write_json
 from tools.picture import check_picture
+from tools.push_edge import LIGHT, Search
 from tools.push_envelope import Envelope
 from tools.push_trial import PushPlan, push_robot
 from tools.push_walk import push_walking, walking_said
@@ -85,7 +86,7 @@ class Push(WorldOptions, Common):
     def run(self) -> int:
         """Push; returns the exit status."""
         if self.envelope:
-            return Envelope(self).run()
+            return self._envelope().run()
         rows = []
         for seed in self.all_seeds:
             rows.append(self.one(seed, self.plan(seed), fall=True))
@@ -103,6 +104,21 @@ class Push(WorldOptions, Common):
             return 130
         clean = not any(row.get("on_forbidden") for row in rows)
         return 0 if good == len(rows) and clean else 1
+
+    def _envelope(self) -> Envelope:
+        """Return what is searched, in all directions and all ways."""
+        with self.open_robot(self.seed) as robot:
+            scale = max(round(float(robot.twin.model.body_mass.sum()) / LIGHT), 1)
+        directions = (np.arange(self.directions) * 360.0 / self.directions).tolist()
+        plan = self.plan(self.seed)
+        searches = [
+            Search(self.one, self.seed, plan, way, direction, scale)
+            for way in self.ways
+            for direction in directions
+        ]
+        return Envelope(
+            self.robot, directions, self.ways, searches, self.jobs, self.json, self.plot
+        )
 
     def one(self, seed: int, plan: PushPlan, *, fall: bool = False) -> dict[str, Any]:
         """Return the result of one trial; with `fall` a robot that falls does so to the end."""

@@ -78,7 +78,7 @@ class ServoBus:
         self._name = f"servo-bus-{next(_numbers)}"
         put_world(self._name, world)
         self.clock: Clock = VirtualClock(world)
-        self.faults: Faults = next(iter(world.buses.values())).faults
+        self.faults: Faults = world.faults
         self.url = f"twin://{self._robot or 'tape'}?clock=virtual&world={self._name}"
         self._robots: list[Robot] = []
         self._taps: list[Tap] = []

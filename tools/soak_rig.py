@@ -14,7 +14,6 @@ from hal.port import LATENCY, Port
 from hal.servo_backend import BusPort, ServoBackend
 from hal.servo_model import ServoMount
 from hal.servos import servo_model
-from sim_twin.wire.address import BENCH
 from sim_twin.wire.faults import Faults
 from sim_twin.wire.shaft import InertiaShaft
 from sim_twin.wire.world import Bench
@@ -107,7 +106,7 @@ class SoakRig:
     @property
     def faults(self) -> Faults:
         """What goes wrong on the bus."""
-        return self.world.buses[BENCH].faults
+        return self.world.faults
 
     def turn(self) -> None:
         """Turn every shaft by its own number of counts, to and fro within the encoder's range."""

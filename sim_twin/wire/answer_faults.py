@@ -4,13 +4,10 @@ import math
 import random
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
+from sim_twin.wire.bus import Bus
 from sim_twin.wire.inbox import Burst
 from sim_twin.wire.spoilt import spoil
-
-if TYPE_CHECKING:
-    from sim_twin.wire.bus import Bus
 
 
 @dataclass
@@ -33,7 +30,7 @@ class Fate:
     glued: float = 0.0
     torn: tuple[int, float] | None = None
 
-    def suffer(self, kind: str, seconds: float, bus: "Bus", dice: random.Random) -> None:
+    def suffer(self, kind: str, seconds: float, bus: Bus, dice: random.Random) -> None:
         """Have one fault of `fault_rule.ANSWERS` done to it."""
         if kind == "late":
             self.late += seconds
@@ -55,7 +52,7 @@ class Sender:
     def __init__(self) -> None:
         self._glued: dict[str, Burst] = {}
 
-    def send(self, bus: "Bus", data: bytes, baud: int, fate: Fate) -> float:
+    def send(self, bus: Bus, data: bytes, baud: int, fate: Fate) -> float:
         """Put an answer on the wire; return when it ends, s."""
         put = partial(self._put, bus, data, baud, fate)
         if fate.late <= 0.0:
@@ -64,7 +61,7 @@ class Sender:
         bus.schedule.at(start, put)
         return start + len(data) * 10.0 / baud
 
-    def _put(self, bus: "Bus", data: bytes, baud: int, fate: Fate) -> float:
+    def _put(self, bus: Bus, data: bytes, baud: int, fate: Fate) -> float:
         """Put it there; one that was glued to it comes with its last byte."""
         if fate.torn is not None:
             return self._tear(bus, data, baud, fate)
@@ -81,7 +78,7 @@ class Sender:
             bus.schedule.at(end + fate.glued, partial(_release, burst, end + fate.glued))
         return end
 
-    def _tear(self, bus: "Bus", data: bytes, baud: int, fate: Fate) -> float:
+    def _tear(self, bus: Bus, data: bytes, baud: int, fate: Fate) -> float:
         """Put it there, and what the adapter holds back of it behind it."""
         assert fate.torn is not None
         at, seconds = fate.torn

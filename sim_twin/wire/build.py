@@ -11,7 +11,7 @@ from hal.servos import servo_model
 from robots import RobotDescription, load_robot
 from sim_twin.twin import Twin
 from sim_twin.wire.address import BENCH, Address, parse_servos
-from sim_twin.wire.bus import Bus, Language, Timing
+from sim_twin.wire.bus import Bus, Language
 from sim_twin.wire.device import Device
 from sim_twin.wire.families import PROTOCOLS, full_name, make_language, make_servo
 from sim_twin.wire.faults import Faults
@@ -24,6 +24,7 @@ from sim_twin.wire.rvc import BAUD as RVC_BAUD
 from sim_twin.wire.rvc import Mute, start_rvc
 from sim_twin.wire.schedule import Schedule
 from sim_twin.wire.shaft import InertiaShaft, Shaft
+from sim_twin.wire.timing import Timing
 from sim_twin.wire.twin_shaft import TwinImu, TwinPhysics, TwinShaft
 from sim_twin.wire.world import Bench, Physics, World
 from sim_twin.world import World as Surroundings
@@ -51,7 +52,7 @@ class Workshop:
         timing = Timing(
             address.latency * 1e-3, address.turnaround * 1e-6, address.missing == "wait"
         )
-        bus = Bus(name, devices, language, self.schedule, baud, timing, self.faults)
+        bus = Bus(name, devices, language, self.schedule, baud, timing)
         self.buses[name] = bus
         return bus
 
@@ -63,7 +64,7 @@ class Workshop:
 
     def world(self, physics: Physics, supply: float, owned: tuple[object, ...] = ()) -> World:
         """Return the world with its buses."""
-        return World(physics, self.schedule, self.buses, supply, owned)
+        return World(physics, self.schedule, self.buses, supply, owned, self.faults)
 
 
 def build_world(address: Address, around: Surroundings | None = None) -> World:

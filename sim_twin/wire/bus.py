@@ -5,35 +5,23 @@ own baud rate, and the other way round.
 """
 
 import math
+import random
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
+from sim_twin.wire.air import Air
 from sim_twin.wire.device import Device
-from sim_twin.wire.faults import Faults
+from sim_twin.wire.heard import Heard
 from sim_twin.wire.imu_faults import FaultyImu
 from sim_twin.wire.inbox import Burst, Inbox
 from sim_twin.wire.schedule import Schedule
+from sim_twin.wire.timing import Timing
 
 BITS = 10  # start, eight, stop
-EPSILON = 1e-9  # s
 FORGET = 0.1  # s; a frame that has been interrupted for longer is forgotten
 BAUD_TOLERANCE = 0.03
 PIECE = 4096  # bytes of the host that are taken apart together
-
-
-class Heard(Protocol):
-    """A frame, or something that was dropped, with the bytes of the chunk that it ends at."""
-
-    @property
-    def end(self) -> int:
-        """Bytes of the chunk up to its end."""
-        ...
-
-    @property
-    def noise(self) -> bool:
-        """Whether it is nothing that anybody could answer to."""
-        ...
 
 
 class Language(Protocol):
@@ -72,19 +60,26 @@ class Language(Protocol):
         ...
 
 
-class Timing(NamedTuple):
-    """What differs between adapters and between servos, and no manual says.
+class Disturbance(Protocol):
+    """What goes wrong on a bus.
 
     Attributes:
-        latency: From a byte's end on the wire to the host having it, s.
-        turnaround: Added to every return delay, s.
-        waits: Behind a missing servo in a sync read: True, the others wait for it for ever;
-            False, they answer when its slot has passed.
+        active: Whether there is anything to go wrong.
     """
 
-    latency: float = 0.0
-    turnaround: float = 0.0
-    waits: bool = False
+    active: bool
+
+    def answer(self, bus: "Bus", data: bytes, baud: int, identifier: int) -> float:
+        """Put an answer on the wire with what goes wrong now; return when it ends, s."""
+        ...
+
+    def asked(self, bus: "Bus") -> bool:
+        """Whether the adapter gives the host back what it sends now."""
+        ...
+
+    def noise(self, count: int) -> bytes:
+        """Return bytes as of a collision or a wrong baud rate."""
+        ...
 
 
 class Bus:
@@ -96,7 +91,7 @@ class Bus:
         baud: Baud rate of the host.
         schedule: The world's.
         timing: Latencies.
-        faults: What happens to answers.
+        faults: What goes wrong; the world sets it.
         heard: When the last good instruction ended, s.
         began: When the last bytes of the host began, s.
         counts: "frames" executed, "dropped", "collisions".
@@ -116,24 +111,29 @@ class Bus:
         schedule: Schedule,
         baud: int = 1_000_000,
         timing: Timing | None = None,
-        faults: Faults | None = None,
     ) -> None:
         self.name, self.devices, self.language, self.schedule = name, devices, language, schedule
         self.timing = timing or Timing()
-        self.faults = faults or Faults()
+        self.faults: Disturbance | None = None
         self.heard = self.began = 0.0
         self.counts = {"frames": 0, "dropped": 0, "collisions": 0}
         self.plugged, self.plugs = True, 0
         self.spoken: int | None = None
         self.imu: FaultyImu | None = None
         self.tap: Callable[[str, int, Burst], None] | None = None
+        self._dice = random.Random(0)
         self._baud = baud
         self._sent = -math.inf  # when the host's last byte ends
         self._out = -math.inf  # until when the adapter is pulled out
-        self._air: list[Burst] = []  # on the wire now or soon
+        self._air = Air()
         self.inbox = Inbox(self.timing.latency)
         self._by_id: dict[int, list[Device]] = {}
         self.refresh()
+
+    @property
+    def disturbance(self) -> Disturbance | None:
+        """What goes wrong now, if anything."""
+        return self.faults if self.faults is not None and self.faults.active else None
 
     @property
     def baud(self) -> int:
@@ -164,10 +164,11 @@ class Bus:
             self.language.reset()
         burst = Burst(start, BITS / self._baud, bytearray(data))
         self._sent, self.began = burst.end, start
-        self._collide(burst)
+        self.counts["collisions"] += self._air.add(burst, self.schedule.now, self._noise)
         if self.tap is not None:
             self.tap(">", self._baud, burst)
-        if self.faults.active and self.faults.asked(self) and self.plugged:
+        wrong = self.disturbance
+        if wrong is not None and wrong.asked(self) and self.plugged:
             self.inbox.append(Burst(burst.start, burst.byte, bytearray(burst.data)))
         for at in range(0, len(burst.data), PIECE):
             for item in self.language.feed(bytes(burst.data[at : at + PIECE])):
@@ -245,9 +246,14 @@ class Bus:
 
     def answer(self, data: bytes, baud: int, identifier: int) -> float:
         """Put an answer on the wire, now; return when it ends, s."""
-        if self.faults.active:
-            return self.faults.answer(self, data, baud, identifier)
-        return self.put(data, baud)
+        wrong = self.disturbance
+        if wrong is None:
+            return self.put(data, baud)
+        return wrong.answer(self, data, baud, identifier)
+
+    def _noise(self, count: int) -> bytes:
+        """Return bytes as of a collision or a wrong baud rate."""
+        return self._dice.randbytes(count) if self.faults is None else self.faults.noise(count)
 
     def answers(self, data: Sequence[bytes]) -> None:
         """Put answers on the wire, without gaps and faults, at the host's baud rate."""
@@ -264,11 +270,11 @@ class Bus:
         """
         burst = Burst(self.schedule.now, BITS / baud, bytearray(data), held=held)
         end = burst.end
-        self._collide(burst)
+        self.counts["collisions"] += self._air.add(burst, self.schedule.now, self._noise)
         if got is not None:
             burst.data[:] = got
         if abs(baud - self._baud) > BAUD_TOLERANCE * self._baud:
-            burst.data[:] = self.faults.noise(len(burst.data))
+            burst.data[:] = self._noise(len(burst.data))
         if burst.data and self.plugged:
             self.inbox.append(burst)
             if self.tap is not None:
@@ -282,21 +288,3 @@ class Bus:
             return
         self.counts["frames"] += 1
         self.heard = end
-
-    def _collide(self, new: Burst) -> None:
-        """Make noise of what overlaps, and keep `new` in the air."""
-        now = self.schedule.now
-        air = [old for old in self._air if old.end > now]
-        for old in air:
-            start, end = max(old.start, new.start), min(old.end, new.end)
-            if start >= end - EPSILON:
-                continue
-            self.counts["collisions"] += 1
-            for burst in (old, new):
-                first = max(0, int((start - burst.start) / burst.byte))
-                last = min(len(burst.data), math.ceil((end - burst.start) / burst.byte))
-                if last > first:
-                    burst.data[first:last] = self.faults.noise(last - first)
-                    burst.ruined = min(burst.ruined, start)
-        air.append(new)
-        self._air = air

@@ -88,7 +88,7 @@ class Emulator:
         if not self._running:
             raise UsageError("the emulator has ended; nothing can be injected any more")
         rules = parse_rules(text, live=True)
-        self.world.bus().faults.check(rules)
+        self.world.faults.check(rules)
         self._orders.put(rules)
         os.write(self._wake_write, b"i")
 
@@ -178,7 +178,7 @@ class Emulator:
         """Let begin what was injected."""
         os.read(self._wake_read, CHUNK)
         while not self._orders.empty():
-            self.world.bus().faults.inject(self._orders.get(), self.world.now)
+            self.world.faults.inject(self._orders.get(), self.world.now)
 
 
 def emulate(

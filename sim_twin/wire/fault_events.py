@@ -1,17 +1,15 @@
 """What befalls servos, supply, adapter, IMU and board: whom an event can befall, and how."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import Final, Protocol
 
+from sim_twin.wire.bus import Bus
 from sim_twin.wire.device import Device
 from sim_twin.wire.fault_rule import Rule
 from sim_twin.wire.opencr import USER_BUTTON, OpenCr
-
-if TYPE_CHECKING:
-    from sim_twin.wire.bus import Bus
-    from sim_twin.wire.world import World
+from sim_twin.wire.schedule import Schedule
 
 EVERYBODY = -1
 OF_BUS: Final = frozenset(("unplug", "brown_out"))
@@ -20,7 +18,38 @@ SILENCING: Final = frozenset(("dead", "reset", "brown_out", "unplug", "imu_silen
 """Events by which an answer that is just beginning is lost."""
 
 
-def victims(rule: Rule, bus: "Bus") -> Sequence[int]:
+class Circuit(Protocol):
+    """The world as faults see it: its buses, its time and its supply."""
+
+    @property
+    def buses(self) -> Mapping[str, Bus]:
+        """The buses by name."""
+        ...
+
+    @property
+    def schedule(self) -> Schedule:
+        """What will happen."""
+        ...
+
+    @property
+    def now(self) -> float:
+        """Time, s."""
+        ...
+
+    def sag(self, volts: float) -> None:
+        """Let the supply sink to some voltage, V."""
+        ...
+
+    def recover(self, volts: float) -> None:
+        """End a sag to that voltage, V."""
+        ...
+
+    def kill(self, device: Device) -> None:
+        """Let a device never work again."""
+        ...
+
+
+def victims(rule: Rule, bus: Bus) -> Sequence[int]:
     """Return the ids on a bus that an event concerns; `EVERYBODY` stands for the bus itself."""
     if rule.bus not in (None, bus.name):
         return []
@@ -35,7 +64,7 @@ def victims(rule: Rule, bus: "Bus") -> Sequence[int]:
     return [id for id in ids if rule.concerns(bus.name, id)]
 
 
-def befall(rule: Rule, bus: "Bus", identifier: int, world: "World") -> None:
+def befall(rule: Rule, bus: Bus, identifier: int, world: Circuit) -> None:
     """Do an event to one device of a bus, or to all of it."""
     if rule.kind == "unplug":
         bus.unplug(rule.seconds)
@@ -50,7 +79,7 @@ def befall(rule: Rule, bus: "Bus", identifier: int, world: "World") -> None:
                 _hit(rule, bus, device, world)
 
 
-def _hit(rule: Rule, bus: "Bus", device: Device, world: "World") -> None:
+def _hit(rule: Rule, bus: Bus, device: Device, world: Circuit) -> None:
     """Do an event to one device."""
     now = bus.schedule.now
     if rule.kind == "reset":
@@ -68,7 +97,7 @@ def _hit(rule: Rule, bus: "Bus", device: Device, world: "World") -> None:
         _end(bus, rule, partial(device.release, USER_BUTTON))
 
 
-def _fail(rule: Rule, bus: "Bus") -> None:
+def _fail(rule: Rule, bus: Bus) -> None:
     """Let the IMU of a bus fail."""
     imu = bus.imu
     assert imu is not None
@@ -80,7 +109,7 @@ def _fail(rule: Rule, bus: "Bus") -> None:
         imu.spin(rule.seconds, rule.speed)
 
 
-def _end(bus: "Bus", rule: Rule, undo: Callable[[], None]) -> None:
+def _end(bus: Bus, rule: Rule, undo: Callable[[], None]) -> None:
     """Undo an event when its time is over, if it ever is."""
     if rule.seconds < math.inf:
         bus.schedule.at(bus.schedule.now + rule.seconds, undo)

@@ -5,19 +5,23 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import NamedTuple, Self
 from weakref import ReferenceType, ref
 
 from hal.errors import UsageError
 from sim_twin.wire.answer_faults import Fate, Sender
-from sim_twin.wire.fault_events import EVERYBODY, OF_IMU, SILENCING, befall, victims
+from sim_twin.wire.bus import Bus
+from sim_twin.wire.fault_events import (
+    EVERYBODY,
+    OF_IMU,
+    SILENCING,
+    Circuit,
+    befall,
+    victims,
+)
 from sim_twin.wire.fault_methods import FaultMethods
 from sim_twin.wire.fault_rule import EVENTS, KINDS, REQUESTS, Rule
 from sim_twin.wire.fault_text import parse_rules
-
-if TYPE_CHECKING:
-    from sim_twin.wire.bus import Bus
-    from sim_twin.wire.world import World
 
 REMEMBERED = 10_000  # hits
 
@@ -49,7 +53,7 @@ class Faults(FaultMethods):
         self.hits: deque[Hit] = deque(maxlen=REMEMBERED)
         self._rules: list[Rule] = []
         self._dice = random.Random(seed)
-        self._of: ReferenceType[World] | None = None
+        self._of: ReferenceType[Circuit] | None = None
         self._sender = Sender()
         self._said: dict[tuple[str, int, int], bytes] = {}  # bus, id, length to the last answer
 
@@ -83,7 +87,7 @@ class Faults(FaultMethods):
         self.active = False
         return self
 
-    def attach(self, world: "World") -> None:
+    def attach(self, world: Circuit) -> None:
         """Take the world into which scripted faults go.
 
         Raises:
@@ -96,7 +100,7 @@ class Faults(FaultMethods):
                 self._script(rule)
 
     @property
-    def _world(self) -> "World | None":
+    def _world(self) -> Circuit | None:
         return None if self._of is None else self._of()
 
     def check(self, rules: Sequence[Rule]) -> None:
@@ -119,7 +123,7 @@ class Faults(FaultMethods):
         """Return bytes as of a collision or a wrong baud rate."""
         return self._dice.randbytes(count)
 
-    def answer(self, bus: "Bus", data: bytes, baud: int, identifier: int) -> float:
+    def answer(self, bus: Bus, data: bytes, baud: int, identifier: int) -> float:
         """Put an answer on the wire with what goes wrong now; return when it ends, s."""
         key, now = (bus.name, identifier, len(data)), bus.schedule.now
         fate, self._said[key] = Fate(data, self._said.get(key, data)), data
@@ -135,7 +139,7 @@ class Faults(FaultMethods):
             fate.suffer(rule.kind, rule.seconds, bus, self._dice)
         return self._sender.send(bus, data, baud, fate)
 
-    def asked(self, bus: "Bus") -> bool:
+    def asked(self, bus: Bus) -> bool:
         """Whether the adapter gives the host back what it sends now."""
         echoes = False
         for rule in self._rules:
@@ -145,7 +149,7 @@ class Faults(FaultMethods):
                 echoes = True
         return echoes
 
-    def _begin(self, rule: Rule, bus: "Bus", identifier: int, fate: Fate) -> None:
+    def _begin(self, rule: Rule, bus: Bus, identifier: int, fate: Fate) -> None:
         """Let an event begin with an answer of whom it can befall."""
         concerned = victims(rule, bus)
         if EVERYBODY not in concerned and identifier not in concerned:
@@ -178,7 +182,7 @@ class Faults(FaultMethods):
             if concerned and rule.kind == "brown_out":  # everything has one supply
                 return
 
-    def _happen(self, rule: Rule, bus: "Bus", identifier: int) -> None:
+    def _happen(self, rule: Rule, bus: Bus, identifier: int) -> None:
         """Do an event to one device, or to the bus."""
         self._note(rule.kind, bus.name, identifier)
         if self._world is not None:

@@ -13,8 +13,9 @@ from functools import partial
 from typing import Final
 
 from hal.joints import Array
-from sim_twin.wire.bus import Bus, Heard
+from sim_twin.wire.bus import Bus
 from sim_twin.wire.device import Device
+from sim_twin.wire.heard import Heard
 from sim_twin.wire.imu import GRAVITY, ImuSource
 
 HEADER: Final = b"\xaa\xaa"

@@ -5,8 +5,9 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from sim_twin.wire.bus import BITS, Bus, Heard
+from sim_twin.wire.bus import BITS, Bus
 from sim_twin.wire.device import Device
+from sim_twin.wire.heard import Heard
 from sim_twin.wire.inbox import Burst
 from sim_twin.wire.schedule import Schedule
 from sim_twin.wire.shaft import InertiaShaft

@@ -67,7 +67,7 @@ def answering(turn: Turn, bus: Bus, fast: bool = False) -> list[Device]:
 def _gapless(who: Turns, bus: Bus) -> bool:
     """Whether the answers will follow each other without a gap and without an accident."""
     return (
-        not bus.faults.active
+        bus.disturbance is None
         and bus.timing.turnaround == 0.0
         and all(len(devices) == 1 for _, devices in who)
         and all(devices[0].return_delay == 0.0 for _, devices in who)

@@ -7,6 +7,7 @@ from typing import Protocol
 from hal.errors import UnknownNameError
 from sim_twin.wire.bus import Bus
 from sim_twin.wire.device import Device
+from sim_twin.wire.faults import Faults
 from sim_twin.wire.hand import Grip, Hand, Swing
 from sim_twin.wire.opencr import OpenCr
 from sim_twin.wire.schedule import Schedule
@@ -58,6 +59,7 @@ class World:
         schedule: What will happen.
         supply: Voltage of the servos, V. Set it with `set_supply`.
         dead: What will never work again.
+        faults: What goes wrong.
         grips: Where hands can take hold: by joint, on a bench by id.
         hands: The hands that turn limp joints.
     """
@@ -69,6 +71,7 @@ class World:
         buses: dict[str, Bus],
         supply: float = 12.0,
         owned: Sequence[object] = (),
+        faults: Faults | None = None,
     ) -> None:
         self.physics, self.schedule, self.buses, self.supply = physics, schedule, buses, supply
         self.owned = tuple(owned)  # such as the twin, for whoever wants the truth
@@ -83,8 +86,10 @@ class World:
         for device in self.devices:
             if isinstance(device, OpenCr):
                 device.dead = self.dead
+        self.faults = faults or Faults()
         for bus in buses.values():
-            bus.faults.attach(self)
+            bus.faults = self.faults
+        self.faults.attach(self)
 
     @property
     def now(self) -> float:

@@ -8,7 +8,8 @@ import pytest
 from tools.cli import run
 from tools.envelope_tables import summarise
 from tools.push import Push
-from tools.push_envelope import Search, find_edge
+from tools.push_edge import Search, find_edge
+from tools.push_trial import PushPlan
 
 
 def pushed(capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, str]:
@@ -72,45 +73,35 @@ def test_a_robot_that_cannot_step_is_told_who_can(capsys: pytest.CaptureFixture[
     assert "op3" in capsys.readouterr().err
 
 
-def trial(fall: float) -> Callable[[Search, float], dict[str, Any]]:
-    """Return pushes that fell from `fall` N s on, and take a step from 0.5 N s on."""
+def search(way: str, survives: Callable[[float], bool]) -> Search:
+    """Return a search in which a robot survives so, and takes a step from 0.5 N s on."""
 
-    def survives(search: Search, impulse: float) -> dict[str, Any]:
-        steps = 0 if search.way == "feet" else int(impulse > 0.5)
-        how = {"impulse": impulse, "steps": steps, "settling_s": 1.0, "astray_m": 0.01}
-        return how | {"survived": impulse < fall}
+    def push(seed: int, plan: PushPlan) -> dict[str, Any]:
+        steps = 0 if plan.way == "feet" else int(plan.impulse > 0.5)
+        how = {"impulse": plan.impulse, "steps": steps, "settling_s": 1.0, "astray_m": 0.01}
+        return how | {"survived": survives(plan.impulse)}
 
-    return survives
+    return Search(push, 0, Push(robot="op3").plan(0), way, 0.0, 1.0)
 
 
-def test_the_edge_is_the_last_before_the_first_fall(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Search, "survives", trial(0.93))
-    edge = find_edge(Search(Push(robot="op3"), "hold", 0.0, 1.0))
+def test_the_edge_is_the_last_before_the_first_fall() -> None:
+    edge = find_edge(search("hold", lambda impulse: impulse < 0.93))
     assert edge.impulse == pytest.approx(0.9)
     assert [row["survived"] for row in edge.grid] == [True, True, False, False, False, False]
 
 
-def test_a_fall_in_the_middle_of_the_grid_bounds_the_edge(monkeypatch: pytest.MonkeyPatch) -> None:
-    falls = {"impulse": 0.0, "steps": 0, "settling_s": 1.0, "astray_m": 0.0}
-    monkeypatch.setattr(
-        Search,
-        "survives",
-        lambda self, impulse: falls | {"impulse": impulse, "survived": impulse != 0.8},
-    )
-    edge = find_edge(Search(Push(robot="op3"), "hold", 0.0, 1.0))
+def test_a_fall_in_the_middle_of_the_grid_bounds_the_edge() -> None:
+    edge = find_edge(search("hold", lambda impulse: impulse != 0.8))
     assert edge.impulse == pytest.approx(0.75)
     assert [row["survived"] for row in edge.grid].count(True) == 5
 
 
-def test_a_step_is_needless_where_the_feet_alone_do_as_well(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(Search, "survives", trial(0.93))
-    push = Push(robot="op3")
-    ways = {way: {0.0: find_edge(Search(push, way, 0.0, 1.0))} for way in ("feet", "ip")}
+def test_a_step_is_needless_where_the_feet_alone_do_as_well() -> None:
+    found = {way: find_edge(search(way, lambda impulse: impulse < 0.93)) for way in ("feet", "ip")}
+    ways = {way: {0.0: edge} for way, edge in found.items()}
     assert summarise(ways["feet"], ways)["needless"] == 0
-    found = summarise(ways["ip"], ways)
-    assert (found["needless"], found["survived"], found["grid"]) == (1, 2, 6)
+    summary = summarise(ways["ip"], ways)
+    assert (summary["needless"], summary["survived"], summary["grid"]) == (1, 2, 6)
 
 
 def test_the_envelope_is_a_table_a_picture_and_json(tmp_path: Path) -> None:

@@ -14,11 +14,13 @@ from rich.table import Table
 from hal.errors import UsageError
 from robots import load_robot
 from tools.output import console
+from tools.safety.attempt import trial, under_way
+from tools.safety.moment import Moment
 from tools.safety.refusals import measure_refusals
 from tools.safety.row import Row
 from tools.safety.rows import ROWS, SIGNALS
 from tools.safety.scripts import BY_ITSELF
-from tools.safety.trial import Moment, NotMeasuredError, trial, under_way
+from tools.safety.trial import NotMeasuredError
 from tools.safety.verdict import Verdict, judge
 
 ROBOTS = ("op3", "duck")

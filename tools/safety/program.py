@@ -14,7 +14,7 @@ from tools.output import console
 from tools.robot import Robot
 from tools.safety.begin import Begin
 from tools.safety.faulty import FAULTS, break_imu, make_faulty
-from tools.safety.row import Activity
+from tools.safety.moment import Activity
 from tools.safety.scripts import LEFT_OPEN, SCRIPTS, move
 from tools.safety.standard_error import Errors, replace_standard_error
 

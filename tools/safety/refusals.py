@@ -4,8 +4,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from tools.output import console
+from tools.safety.attempt import trial
+from tools.safety.moment import Moment
 from tools.safety.row import Row
-from tools.safety.trial import PATIENCE, Moment, trial
+from tools.safety.trial import PATIENCE
 
 AT_REST = Moment("standing", 0.0)
 

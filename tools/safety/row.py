@@ -2,16 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from hal.guard import CROUCH_SECONDS
+from tools.safety.moment import ACTIVITIES, Activity
 from tools.safety.standard_error import Errors
+from tools.safety.trial import Trial
 
-if TYPE_CHECKING:
-    from tools.safety.trial import Trial
-
-Activity = Literal["standing", "walking", "closing crouch"]
-ACTIVITIES: tuple[Activity, ...] = ("standing", "walking", "closing crouch")
 End = Literal["off", "frozen", "unknown", "unattended"]
 """What is found afterwards: torque off at every servo that answers; every servo frozen by its bus
 watchdog; no answer, and a guardian that goes on trying; no answer, and nobody left to try."""
@@ -44,7 +41,7 @@ class Row:
     """
 
     name: str
-    do: Callable[["Trial"], float]
+    do: Callable[[Trial], float]
     status: tuple[int, ...]
     within: float = STOP
     crouch: bool = True

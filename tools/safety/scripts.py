@@ -9,7 +9,7 @@ from hal.errors import WindupError
 from hal.observation import Observation
 from tools.robot import Robot
 from tools.safety.begin import Begin
-from tools.safety.row import Activity
+from tools.safety.moment import Activity
 from tools.session import Watch
 
 BY_ITSELF = "its walk ended by itself"

@@ -1,23 +1,16 @@
-"""One trial: an emulated robot, a program that moves it, an ending, and what follows."""
+"""A trial that is under way: an emulated robot, a program that moves it, and its guardian."""
 
-import multiprocessing
 import os
 import signal
-import tempfile
 import time
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, replace
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 from hal.errors import WindupError
-from tools.safety.emulated import Journal, serve
-from tools.safety.processes import child_with, guardian_of
-from tools.safety.program import Program, main
-from tools.safety.row import Activity, Row
-from tools.safety.standard_error import unread
+from tools.safety.emulated import Journal
+from tools.safety.moment import Moment
 
 PATIENCE = 60.0
 """Until a program is under way, s."""
@@ -25,27 +18,12 @@ LONGEST = 8.0
 """From an ending to motors that count as never let go, s."""
 AFTERWARDS = 0.4
 """How long nothing may be driven again, and for a guardian to see that torque is off, s."""
-# What a fresh process would import anew each time: nothing of it is kept from trial to trial.
 LINES = 40
 """Of what program and guardian have printed, at most."""
-PRELOAD = ["tools.robot", "tools.safety.program", "tools.safety.emulated"]
 
 
 class NotMeasuredError(WindupError):
     """The program was not moving its robot when it should have been ended."""
-
-
-@dataclass(frozen=True)
-class Moment:
-    """When a run is ended.
-
-    Attributes:
-        activity: While it is busy with this.
-        after: So long after that began, s.
-    """
-
-    activity: Activity
-    after: float
 
 
 class Trial:
@@ -148,60 +126,3 @@ class Trial:
             while self._told.poll(0.0):
                 self.said = str(self._told.recv()[1])
         return self.said
-
-
-@contextmanager
-def trial(
-    name: str, row: Row, moment: Moment, arm: bool = True, faults: str = ""
-) -> Iterator[Trial]:
-    """Start everybody, and end everybody; `faults` go wrong on the bus from the start."""
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(PRELOAD)
-    ours, theirs = context.Pipe()
-    told, tell = context.Pipe(duplex=False)
-    with tempfile.TemporaryDirectory() as folder, ExitStack() as held:
-        path = None if row.network else Path(folder) / "bus"
-        emulator = context.Process(target=serve, args=(name, path, theirs, faults), daemon=True)
-        emulator.start()
-        theirs.close()
-        started: list[BaseProcess] = [emulator]
-        running = None
-        try:
-            if not ours.poll(PATIENCE):
-                raise NotMeasuredError("the emulator does not start")
-            port = ours.recv()
-            log = Path(folder) / "log"
-            if row.errors == "unread":
-                held.enter_context(unread(log))
-            does = Program(name, port, moment.activity, row.fault, moment.after, arm)
-            does = replace(does, errors=row.errors, log=log)
-            program = context.Process(target=main, args=(does, tell), daemon=False)
-            program.start()
-            tell.close()
-            started.append(program)
-            running = Trial(emulator, Journal(ours), program, told)
-            running.robot, running.port, running.moment, running.log = name, port, moment, log
-            yield running
-        except EOFError:
-            raise NotMeasuredError("the emulator is gone") from None
-        finally:
-            for process in reversed(started):
-                process.kill()
-                process.join()
-            if running is not None and running.guardian is not None:
-                with suppress(ProcessLookupError):
-                    os.kill(running.guardian, signal.SIGKILL)
-
-
-def under_way(running: Trial) -> None:
-    """Wait until the program is busy with what it is ended in, and for the moment to end it.
-
-    Raises:
-        NotMeasuredError: It is not.
-    """
-    running.hear("doing")
-    assert running.program.pid is not None
-    running.guardian = guardian_of(running.port)
-    running.planner = child_with(running.program.pid, "plan_worker")
-    if not running.journal.wait_until_still(1.0, still=False):
-        raise NotMeasuredError("no motor is driven though the run has begun")

@@ -190,7 +190,7 @@ def test_faults_drop_and_corrupt_answers_the_same_way_every_time() -> None:
     for _ in range(2):
         with open_host(url) as host:
             runs.append([host.raw(encode(1, 1), 14) for _ in range(300)])
-            faults = host.port.bus.faults.counts
+            faults = host.port.world.faults.counts
     assert runs[0] == runs[1]
     assert sum(not got for got in runs[0]) == faults["drop"] == pytest.approx(30, abs=15)
     spoilt = sum(bool(got) and answers(got) == [] for got in runs[0])

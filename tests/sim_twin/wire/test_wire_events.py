@@ -29,7 +29,7 @@ def op3() -> World:
 
 def inject(host: Host, text: str) -> None:
     """Let faults begin now, as a running emulator does."""
-    host.port.bus.faults.inject(parse_rules(text, live=True), host.now)
+    host.port.world.faults.inject(parse_rules(text, live=True), host.now)
 
 
 def board_of(world: World) -> OpenCr:
@@ -79,13 +79,13 @@ def test_of_two_brown_outs_the_deeper_counts_and_each_ends_by_itself(host: Host)
 
 
 def test_an_adapter_that_is_pulled_out_for_good_does_not_come_back(op3: World) -> None:
-    op3.bus().faults.unplug(at=0.1, seconds=0.5).unplug(at=0.2, seconds=math.inf)
+    op3.faults.unplug(at=0.1, seconds=0.5).unplug(at=0.2, seconds=math.inf)
     op3.advance(10.0)
     assert not op3.bus().plugged
 
 
 def test_of_two_times_without_an_adapter_the_later_end_counts(op3: World) -> None:
-    op3.bus().faults.unplug(at=0.1, seconds=1.0).unplug(at=0.2, seconds=0.1)
+    op3.faults.unplug(at=0.1, seconds=1.0).unplug(at=0.2, seconds=0.1)
     op3.advance(1.0)
     assert not op3.bus().plugged
     op3.advance(1.2)
@@ -94,7 +94,7 @@ def test_of_two_times_without_an_adapter_the_later_end_counts(op3: World) -> Non
 
 def test_events_that_are_over_are_forgotten(host: Host) -> None:
     inject(host, "reset:ids=1:at=0;0.5")
-    faults = host.port.bus.faults
+    faults = host.port.world.faults
     host.wait(0.1)
     assert faults.active
     host.wait(0.5)
@@ -123,21 +123,21 @@ def test_the_realtime_tick_wraps_behind_32767(host: Host) -> None:
 
 def test_the_user_button_is_pressed_for_its_time(op3: World) -> None:
     board = board_of(op3)
-    op3.bus().faults.button(at=0.1)
+    op3.faults.button(at=0.1)
     for until, pressed in ((0.09, 0), (0.15, USER_BUTTON), (0.29, USER_BUTTON), (0.31, 0)):
         op3.advance(until)
         assert board.read(30, 1, op3.now) == (0, bytes((pressed,)))
 
 
 def test_only_the_board_has_a_button(op3: World) -> None:
-    faults = op3.bus().faults.button(at=0.1)
+    faults = op3.faults.button(at=0.1)
     op3.advance(0.2)
     assert [(hit.kind, hit.identifier) for hit in faults.hits] == [("button", 200)]
 
 
 def test_a_dead_servo_stays_dead_when_the_board_switches_the_power(op3: World) -> None:
     servo = next(device for device in op3.devices if device.identifier == 13)
-    op3.bus().faults.dead(ids=[13], at=0.1).brown_out(at=0.2)
+    op3.faults.dead(ids=[13], at=0.1).brown_out(at=0.2)
     op3.advance(1.0)
     board_of(op3).write(24, b"\x01", op3.now)
     op3.advance(2.0)
@@ -146,6 +146,6 @@ def test_a_dead_servo_stays_dead_when_the_board_switches_the_power(op3: World) -
 
 
 def test_infinite_seconds_undo_nothing(op3: World) -> None:
-    op3.bus().faults.button(at=0.1, seconds=math.inf)
+    op3.faults.button(at=0.1, seconds=math.inf)
     op3.advance(50.0)
     assert board_of(op3).buttons == USER_BUTTON

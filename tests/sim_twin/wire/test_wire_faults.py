@@ -26,7 +26,7 @@ def host() -> Iterator[Host1]:
 
 
 def faults_of(host: Host1) -> Faults:
-    faults: Faults = host.port.bus.faults
+    faults: Faults = host.port.world.faults
     return faults
 
 

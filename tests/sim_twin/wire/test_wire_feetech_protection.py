@@ -131,7 +131,7 @@ def test_after_losing_its_power_the_torque_is_off_until_the_next_goal(
 ) -> None:
     host.write(1, "goal_position", 2100)
     host.wait(0.3)
-    host.port.bus.faults.add(make_rule(power, at=host.now))
+    host.port.world.faults.add(make_rule(power, at=host.now))
     host.wait(0.5)
     assert host.read(1, "torque_enable") == 0
     assert not host.servo(1).driving

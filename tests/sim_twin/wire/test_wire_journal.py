@@ -42,7 +42,7 @@ def test_driven_motors_are_counted() -> None:
 def test_adapters_and_supply_come_and_go_with_their_names_and_dates() -> None:
     world, seen = bench(), list[Event]()
     watcher = Watcher(world, events=seen.append)
-    world.bus().faults.unplug(at=0.15, seconds=0.1, bus="imu").brown_out(at=0.35, seconds=0.1)
+    world.faults.unplug(at=0.15, seconds=0.1, bus="imu").brown_out(at=0.35, seconds=0.1)
     before = time.monotonic()
     for step in range(6):
         look(watcher, world, 0.1 * step)

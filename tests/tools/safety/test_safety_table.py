@@ -5,9 +5,10 @@ from hal.errors import UsageError
 from hal.guard import CROUCH_SECONDS
 from tools.safety import bench
 from tools.safety.bench import _moments, measure_safety
+from tools.safety.moment import Moment
 from tools.safety.row import HANG, STOP, Row
 from tools.safety.rows import ROWS
-from tools.safety.trial import Moment, NotMeasuredError
+from tools.safety.trial import NotMeasuredError
 from tools.safety.verdict import Verdict
 
 

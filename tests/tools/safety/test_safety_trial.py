@@ -3,8 +3,9 @@
 import pytest
 
 from robots import load_robot
+from tools.safety.attempt import trial, under_way
+from tools.safety.moment import Moment
 from tools.safety.rows import ROWS
-from tools.safety.trial import Moment, trial, under_way
 from tools.safety.verdict import judge
 
 
