@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import tyro
 
+from hal.errors import UsageError
 from robots import load_robot
 from tools.command import Command
 from tools.faults import with_faults
@@ -51,6 +52,8 @@ class Common(Command):
         url, robot = self.url, load_robot(self.robot)
         if url is not None:
             check_port(robot, url)
+        elif self.arm:
+            raise UsageError("--arm needs a --port; without one only the twin moves")
 
     @property
     def url(self) -> str | None:
