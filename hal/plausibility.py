@@ -15,6 +15,8 @@ FASTER = 1.5
 """How much faster than its data sheet says a servo may turn (supply, or driven from outside)."""
 MARGIN = 0.02
 """Part of the encoder's range that a position may jump at no time at all: noise and rounding."""
+TURN = 4096.0
+"""That range of servos that count many turns, counts."""
 
 
 class Plausibility:
@@ -25,15 +27,24 @@ class Plausibility:
         speed: (n,) counts a second without load.
         velocity_unit: (n,) counts a second of one unit of the velocity register.
         weak: Does a first reading need a second one that agrees?
+        first: (n,) smallest count; 0 by default.
 
     Attributes:
         rejected: How many readings have been refused, first ones apart.
     """
 
-    def __init__(self, last: Array, speed: Array, velocity_unit: Array, weak: bool = True) -> None:
+    def __init__(
+        self,
+        last: Array,
+        speed: Array,
+        velocity_unit: Array,
+        weak: bool = True,
+        first: Array | None = None,
+    ) -> None:
+        self._first = np.zeros(len(last)) if first is None else first
         self._last, self._weak = last, weak
         self._reach = FASTER * speed
-        self._margin = MARGIN * (last + 1.0)
+        self._margin = MARGIN * np.minimum(last + 1.0, TURN)
         self._fastest = self._reach / velocity_unit
         self._position: Array = np.zeros(len(last))
         self._when: Array = np.zeros(len(last))
@@ -44,7 +55,11 @@ class Plausibility:
 
     def accept(self, position: Array, velocity: Array, valid: Mask, now: float) -> Mask:
         """Return (n,) bool: `valid` and believable. Position and velocity are (n,) counts."""
-        can_be = (position >= 0.0) & (position <= self._last) & (np.abs(velocity) <= self._fastest)
+        can_be = (
+            (position >= self._first)
+            & (position <= self._last)
+            & (np.abs(velocity) <= self._fastest)
+        )
         can_be &= valid
         allowed = self._margin + self._reach * (now - self._when)
         near = np.abs(position - self._position) <= allowed

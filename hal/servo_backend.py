@@ -214,7 +214,7 @@ class ServoBackend:
         if self._couplings:
             goal = self._couplings.servos(goal)
         counts = np.rint(self.units.counts(goal))
-        inside = np.minimum(np.maximum(counts, 0.0), self.units.last)
+        inside = np.minimum(np.maximum(counts, self.units.first), self.units.last)
         if (inside != counts).any():
             self.clamps["goal"] += 1
         real = np.zeros(block.shape)
@@ -231,8 +231,8 @@ class ServoBackend:
     def goal_counts(self, pose: Array) -> Array:
         """Return the servos' goals (n,) for a pose of the joints (n,) rad, counts."""
         goal = self._couplings.servos(pose) if self._couplings else pose
-        counts: Array = np.clip(np.rint(self.units.counts(goal)), 0.0, self.units.last)
-        return counts
+        counts = np.rint(self.units.counts(goal))
+        return np.asarray(np.clip(counts, self.units.first, self.units.last))
 
     def bus_errors(self) -> Mapping[str, int]:
         """Return kind of error to how often it has happened, over all buses."""

@@ -8,6 +8,8 @@ import numpy as np
 
 RPM = 2.0 * pi / 60.0
 """One turn a minute, rad/s."""
+EXTENDED_COUNTS = 1_048_575
+"""Largest goal in extended position mode, counts: 256 turns (e-Manual XM430, Goal Position)."""
 
 
 class OwnLimits(NamedTuple):
@@ -169,6 +171,7 @@ class ServoMount:
         zero: Counts at joint angle 0, before calibration.
         ratio: Turns of the servo for one of the joint.
         offset: What its register `homing_offset` holds, counts: it shifts what it calls `zero`.
+        extended: It counts on over many turns (extended position mode), instead of one.
     """
 
     model: ServoModel
@@ -178,3 +181,14 @@ class ServoMount:
     zero: int
     ratio: float
     offset: int = 0
+    extended: bool = False
+
+    @property
+    def first_count(self) -> int:
+        """The smallest count that it can be sent to."""
+        return -EXTENDED_COUNTS if self.extended else 0
+
+    @property
+    def last_count(self) -> int:
+        """The largest count that it can be sent to."""
+        return EXTENDED_COUNTS if self.extended else self.model.last_count

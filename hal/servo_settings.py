@@ -3,8 +3,9 @@
 from typing import NamedTuple
 
 from hal.bus import Bus
+from hal.families.family import Family, Want
 from hal.registers import Register
-from hal.servo_model import ServoModel
+from hal.servo_model import ServoModel, ServoMount
 
 
 class Setting(NamedTuple):
@@ -18,18 +19,25 @@ class Setting(NamedTuple):
         return f"{self.register.name} {self.present} instead of {self.wanted}"
 
 
-def differences(bus: Bus, id: int, model: ServoModel) -> list[Setting]:
-    """Return the settings of servo `id` that differ. Nothing is written."""
-    table = bus.family.table(model.name)
+def differences(bus: Bus, mount: ServoMount) -> list[Setting]:
+    """Return the settings of a servo that differ. Nothing is written."""
+    table = bus.family.table(mount.model.name)
     found = []
-    for name, value, mask in bus.family.wanted(model):
+    for name, value, mask in wanted_of(bus.family, mount):
         if name not in table:
             continue
-        present = bus.read(id, table[name])
+        present = bus.read(mount.id, table[name])
         wanted = value if mask is None else present & ~mask | value
         if present != wanted:
             found.append(Setting(table[name], present, wanted))
     return found
+
+
+def wanted_of(family: Family, mount: ServoMount) -> list[Want]:
+    """Return what the registers of a servo have to be, in the order in which they are written."""
+    other = family.extended if mount.extended else None
+    usual = family.wanted(mount.model)
+    return [other if other is not None and want.name == other.name else want for want in usual]
 
 
 def limits(bus: Bus, id: int, model: ServoModel) -> list[Setting]:

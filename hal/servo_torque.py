@@ -39,7 +39,8 @@ class ServoTorque:
         self._registers = line.bus.family.registers
         self._values = LineRegisters(line)
         self._watch = self._registers.get("bus_watchdog")
-        self._last = np.array([mount.model.last_count for mount in line.mounts], dtype=np.float64)
+        self._first = np.array([mount.first_count for mount in line.mounts], dtype=np.float64)
+        self._last = np.array([mount.last_count for mount in line.mounts], dtype=np.float64)
 
     def on(self, gains: Array) -> TorqueState:
         """Switch torque on where the joints are now, one after the other.
@@ -168,14 +169,15 @@ class ServoTorque:
         Raises:
             HardwareError: They do not, or a servo does not answer.
         """
-        register, last = self._registers["present_position"], self._last[rows]
+        register = self._registers["present_position"]
+        first, last = self._first[rows], self._last[rows]
         here = self._values.read(register, rows)
         if not self.line.bus.family.dialect.weak:
-            return np.clip(here, 0.0, last)
+            return np.clip(here, first, last)
         for _ in range(ATTEMPTS):
             before, here = here, self._values.read(register, rows)
             if (np.abs(here - before) <= MARGIN * last).all():
-                return np.clip(here, 0.0, last)
+                return np.clip(here, first, last)
         raise HardwareError(
             f"{self.line.bus.port.url}: positions that jump or cannot be; "
             "hold the robot still and check the wiring"
@@ -198,7 +200,7 @@ class ServoTorque:
         bus = self.line.bus
         bus.sync_write(register, dict.fromkeys(ids, 0))
         here, known = bus.sync_read(ids, self._registers["present_position"])
-        here = np.clip(here, 0, self._last[fired])
+        here = np.clip(here, self._first[fired], self._last[fired])
         at = {id: int(h) for id, h, k in zip(ids, here, known, strict=True) if k}
         if at:
             bus.sync_write(self._registers["goal_position"], at)

@@ -26,7 +26,8 @@ class Units:
         scale: (3, n) SI of one count of position (rad), velocity (rad/s) and torque (N m). The
             torque of a servo that measures no current, but load, is nan.
         offset: (3, n) counts at which each of them is 0.
-        last: (n,) largest count of the encoder.
+        first: (n,) smallest count that a servo can be sent to.
+        last: (n,) largest count that a servo can be sent to.
         speed: (n,) counts a second of the servo without load.
         speed_unit: (n,) counts a second of one unit of its velocity.
         stiffness: (n,) N m/rad at the joint for one unit of the P register.
@@ -39,7 +40,8 @@ class Units:
         per_turn = np.array([mount.model.counts_per_rev for mount in mounts])
         self.counts_per_rad: Array = sign * ratio * per_turn / (2.0 * pi)
         self.zero: Array = np.array([mount.zero for mount in mounts], dtype=np.float64)
-        self.last: Array = np.array([mount.model.last_count for mount in mounts], dtype=np.float64)
+        self.first: Array = np.array([mount.first_count for mount in mounts], dtype=np.float64)
+        self.last: Array = np.array([mount.last_count for mount in mounts], dtype=np.float64)
         motors = [mount.model.motor(supply) for mount in mounts]
         self.speed: Array = np.array([m.no_load_speed for m in motors]) * per_turn / (2.0 * pi)
         velocity = np.array([_velocity_per_count(mount) for mount in mounts])

@@ -24,6 +24,9 @@ from hal.servo_settings import Setting, differences, limits
 from hal.status_level import make_answer
 from hal.units import Units
 
+PROTOCOL_1 = "speaks protocol 1: set its Protocol Type (register 13) to 2 with DYNAMIXEL Wizard"
+"""What is wrong with a servo of the X series that answers in protocol 1."""
+
 
 def check_mounts(
     joints: Joints,
@@ -53,11 +56,11 @@ def check_mounts(
     extent = couplings.extent(joints.lower, joints.upper)
     for row, (name, mount) in enumerate(named):
         ends = sorted(float(units.counts(end)[row]) for end in extent)
-        top = mount.model.last_count
-        if ends[0] < 0 or ends[1] > top:
+        bottom, top = mount.first_count, mount.last_count
+        if ends[0] < bottom or ends[1] > top:
             raise ConfigError(
                 f"joint {name!r} (id {mount.id} on bus {mount.bus!r}): its range is "
-                f"{ends[0]:.0f} to {ends[1]:.0f} counts, its encoder ends at 0 and {top}; "
+                f"{ends[0]:.0f} to {ends[1]:.0f} counts, its encoder ends at {bottom} and {top}; "
                 "narrow the range in robot.toml or turn the horn and calibrate"
             )
 
@@ -116,7 +119,13 @@ def check_servos(
 
 
 def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting], str]:
-    number = bus.ping(mount.id)
+    try:
+        number = bus.ping(mount.id)
+    except NoAnswerError:
+        other = bus.family.dialect.estranged(bus.port, mount.id)
+        if other is None or other not in bus.family.numbers:
+            raise
+        raise HardwareError(f"{bus.family.model_name(other)} {PROTOCOL_1}") from None
     if number != mount.model.model_number:
         there = bus.family.model_name(number)
         raise HardwareError(f"is a {there} where a {mount.model.name} should be")
@@ -133,7 +142,7 @@ def _settings(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting]
     """Return what has to be written, how the servo protects itself, and what was repaired."""
     repaired = make_answer(bus, mount.id, mount.model)
     _check_offset(bus, mount)
-    settings = differences(bus, mount.id, mount.model)
+    settings = differences(bus, mount)
     locked = [str(setting) for setting in settings if setting.register.area == "eeprom"]
     if locked and bus.read(mount.id, bus.family.registers["torque_enable"]):
         raise HardwareError(f"torque is on and {', '.join(locked)}; `windup stop` first")

@@ -5,6 +5,7 @@ Every error is one line with the file, the key and, where a name is wrong, the l
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from math import isnan
 from pathlib import Path
 
 import mujoco
@@ -12,6 +13,8 @@ import mujoco
 from hal.errors import ConfigError, suggest
 from hal.servos import servo_names
 from robots import mjcf
+from robots.couplings import coupling_mistakes
+from robots.limits import travel_mistakes
 from robots.records import Foot, JointEntry, RobotFile
 from robots.structure import mistakes
 
@@ -60,10 +63,13 @@ class Checks:
         self._rate()
         self._joint_names()
         self._structure()
+        self._no_limits()
         for joint in self.robot.joint:
             self._limits(joint)
             self._servo(joint)
         self._servo_ids()
+        for key, mistake in coupling_mistakes(self.robot, self.model):
+            self._fail(key, mistake)
         self._feet()
         self._imu()
         self._poses()
@@ -95,6 +101,22 @@ class Checks:
             self._known("joint", "MJCF hinge", name, hinges)
         for name in self.robot.passive:
             self._known("passive", "MJCF joint", name, mjcf.names(self.model, "joint"))
+        for coupling in self.robot.coupling:
+            key = f"coupling {coupling.joint!r}"
+            self._known("coupling", "MJCF joint", coupling.joint, mjcf.names(self.model, "joint"))
+            self._known(f"{key}: follows", "joint", coupling.follows, entries)
+
+    def _no_limits(self) -> None:
+        """Fail with all the joints of which nothing says how far they go."""
+        lost = [joint.name for joint in self.robot.joint if isnan(joint.upper - joint.lower)]
+        if lost:
+            names = ", ".join(repr(name) for name in lost)
+            extended = 'mode = "extended" where a Dynamixel X shall turn on and on'
+            self._fail(
+                f"joint {names}",
+                "turns for ever in the MJCF: give lower and upper, at most one turn of its servo, "
+                f"or {extended}",
+            )
 
     def _limits(self, joint: JointEntry) -> None:
         key = f"joint {joint.name!r}"
@@ -114,13 +136,15 @@ class Checks:
     def _servo(self, joint: JointEntry) -> None:
         key = f"joint {joint.name!r}"
         if self.robot.drive.kind == "torque":
-            if joint.servo or joint.bus or joint.id is not None:
+            if joint.servo or joint.bus or joint.id is not None or joint.mode == "extended":
                 self._fail(key, 'has a servo, but drive.kind is "torque"')
             return
         if joint.servo is None or joint.bus is None or joint.id is None:
             self._fail(key, 'needs servo, bus and id: drive.kind is "servo"')
         self._known(f"{key}: servo", "servo", str(joint.servo), servo_names())
         self._known(f"{key}: bus", "bus", str(joint.bus), [bus.name for bus in self.robot.bus])
+        for mistake in travel_mistakes(joint):
+            self._fail(key, mistake)
 
     def _servo_ids(self) -> None:
         self._unique("bus", "bus", [bus.name for bus in self.robot.bus])

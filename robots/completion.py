@@ -1,11 +1,12 @@
-"""The sensors that an MJCF needs not have: an IMU's, the feet's, the centre of mass' velocity."""
+"""What an MJCF needs not have: sensors (IMU, feet, centre of mass' velocity), couplings."""
 
 from collections.abc import Iterable
 
 import mujoco
 import numpy as np
 
-from robots.records import ACCELEROMETER, GYRO, Foot, Imu, RobotFile
+from robots.couplings import add_couplings
+from robots.records import ACCELEROMETER, GYRO, CouplingEntry, Foot, Imu, RobotFile
 
 COM_VELOCITY = "com_velocity"
 SITE = mujoco.mjtObj.mjOBJ_SITE
@@ -18,19 +19,28 @@ REACH = 0.01
 
 
 def complete_for(robot: RobotFile, spec: mujoco.MjSpec) -> None:
-    """Add what the MJCF lacks of the sensors that a `robot.toml` asks for."""
-    complete(spec, robot.base, robot.imu, [entry.foot() for entry in robot.foot])
+    """Add what the MJCF lacks of what a `robot.toml` asks for."""
+    feet = [entry.foot() for entry in robot.foot]
+    complete(spec, robot.base, robot.imu, feet, robot.coupling)
 
 
-def complete(spec: mujoco.MjSpec, base: str, imu: Imu | None, feet: Iterable[Foot]) -> None:
-    """Add sensors that nobody names otherwise; wrong names are left to the checks.
+def complete(
+    spec: mujoco.MjSpec,
+    base: str,
+    imu: Imu | None,
+    feet: Iterable[Foot],
+    couplings: Iterable[CouplingEntry] = (),
+) -> None:
+    """Add couplings, and sensors that nobody names otherwise; wrong names are left to the checks.
 
     Args:
         spec: The robot's MJCF.
         base: Name of its base.
         imu: Its IMU: a gyroscope and an accelerometer of the names that are the default.
         feet: Its feet: a touch sensor of all the foot where it names none.
+        couplings: What robot.toml couples.
     """
+    add_couplings(spec, couplings)
     there = {sensor.name for sensor in spec.sensors}
     if imu is not None and spec.site(imu.site) is not None:
         for name, kind in IMU_KINDS.items():

@@ -19,8 +19,20 @@ from hal.servos import servo_model
 from robots import mjcf, structure
 from robots.checks import Checks, whole_steps
 from robots.completion import complete, complete_for
+from robots.limits import with_limits
 from robots.mirror import mirror_map
-from robots.records import Bus, Drive, Fall, Foot, Imu, JointEntry, RobotFile, Safety, with_defaults
+from robots.records import (
+    Bus,
+    CouplingEntry,
+    Drive,
+    Fall,
+    Foot,
+    Imu,
+    JointEntry,
+    RobotFile,
+    Safety,
+    with_defaults,
+)
 
 FOLDER = Path(__file__).parent
 FILE = "robot.toml"
@@ -45,6 +57,7 @@ class RobotDescription:
         base: Body with the free joint; where the robot is `fixed`, one that never moves.
         fixed: The base is fixed to the world, as an arm's.
         passive: Joints of the MJCF that no servo moves.
+        couplings: Which of them robot.toml lets follow others.
         torso: Body whose z axis is the robot's "up".
         joints: The joints.
         axes: (n, 3) joint axes in the base frame, zero pose.
@@ -74,6 +87,7 @@ class RobotDescription:
     base: str
     fixed: bool
     passive: tuple[str, ...]
+    couplings: tuple[CouplingEntry, ...]
     torso: str
     joints: Joints
     axes: Array
@@ -107,7 +121,7 @@ class RobotDescription:
     def spec(self) -> mujoco.MjSpec:
         """Return the MJCF, parsed afresh, with its sensors: change it as you like."""
         spec = mjcf.parse_mjcf(self.model_path)
-        complete(spec, self.base, self.imu, self.feet)
+        complete(spec, self.base, self.imu, self.feet, self.couplings)
         return spec
 
     def gaits(self) -> dict[str, Path]:
@@ -151,6 +165,7 @@ def load_robot(name_or_path: str | Path) -> RobotDescription:
     robot = load_toml(path, RobotFile)
     robot = replace(robot, joint=tuple(with_defaults(joint, robot.drive) for joint in robot.joint))
     model = mjcf.compile_mjcf(folder / robot.model, partial(complete_for, robot))
+    robot = replace(robot, joint=tuple(with_limits(joint, model) for joint in robot.joint))
     Checks(path, robot, model).run()
     return _describe(folder, robot, model)
 
@@ -182,7 +197,8 @@ def _describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDes
         model_latency=robot.model_latency,
         base=robot.base,
         fixed=structure.is_fixed(model),
-        passive=robot.passive,
+        passive=robot.unmoved,
+        couplings=robot.coupling,
         torso=robot.torso,
         joints=joints,
         axes=_frozen(mjcf.hinge_axes(model, joints.names)),
@@ -207,7 +223,16 @@ def _mount(entry: JointEntry) -> ServoMount | None:
         return None
     model = servo_model(entry.servo)
     zero = model.middle if entry.zero is None else entry.zero
-    return ServoMount(model, entry.bus, entry.id, entry.sign, zero, entry.ratio, entry.offset)
+    return ServoMount(
+        model,
+        entry.bus,
+        entry.id,
+        entry.sign,
+        zero,
+        entry.ratio,
+        entry.offset,
+        entry.mode == "extended",
+    )
 
 
 def _joint(entry: JointEntry, servo: ServoMount | None, drive: Drive) -> Joint:

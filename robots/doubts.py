@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import mujoco
 import numpy as np
 
+from robots.couplings import bring_in_step
 from robots.description import RobotDescription
 
 POINTS = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
@@ -18,6 +19,7 @@ def doubts(robot: RobotDescription) -> list[str]:
     data = mujoco.MjData(model)
     for name, angle in zip(robot.joints.names, robot.stance, strict=True):
         data.joint(name).qpos[0] = angle
+    bring_in_step(model, data.qpos, robot.joints.names)
     mujoco.mj_kinematics(model, data)
     return [
         *_points(robot, model, data),

@@ -1,5 +1,6 @@
 """What `robot.toml` may say: one record a table, strict, SI units."""
 
+from math import nan
 from typing import Annotated, Literal
 
 from msgspec import Meta
@@ -58,6 +59,10 @@ class JointEntry(Record, frozen=True):
     What `servo`, `bus`, `stiffness` and `damping` leave out, the drive's defaults say.
 
     Attributes:
+        lower: Smallest target, rad; by default the MJCF's.
+        upper: Largest target, rad; by default the MJCF's.
+        mode: How its servo counts: "position" is one turn; "extended" is 256 turns either way,
+            which Dynamixel X servos have, and forget without power.
         torque: Largest torque, N m; by default the servo's at stall, or none.
         velocity: Largest velocity, rad/s; by default the servo's without load, or none.
         zero: Counts of the servo at joint angle 0; by default half a turn.
@@ -66,8 +71,9 @@ class JointEntry(Record, frozen=True):
     """
 
     name: str
-    lower: float
-    upper: float
+    lower: float = nan
+    upper: float = nan
+    mode: Literal["position", "extended"] = "position"
     stiffness: NotNegative | None = None
     damping: NotNegative | None = None
     torque: Positive | None = None
@@ -79,6 +85,24 @@ class JointEntry(Record, frozen=True):
     zero: Annotated[int, Meta(ge=-1_048_575, le=1_048_575)] | None = None
     ratio: Annotated[float, Meta(gt=0.0, le=1_000.0)] = 1.0
     offset: Annotated[int, Meta(ge=-1_044_479, le=1_044_479)] = 0
+
+
+class CouplingEntry(Record, frozen=True):
+    """A joint without a servo that a linkage turns with another one, as URDF's <mimic> says.
+
+    ``angle of joint = offset + ratio (angle of follows)``, kept by the twin as a constraint.
+
+    Attributes:
+        joint: The passive joint, a hinge or a slide of the MJCF.
+        follows: The [[joint]] that moves it.
+        ratio: rad (of a slide m) of it for one rad of the other.
+        offset: Where it is while the other is at 0, rad (m).
+    """
+
+    joint: str
+    follows: str
+    ratio: Annotated[float, Meta(ge=-1_000.0, le=1_000.0)] = 1.0
+    offset: Annotated[float, Meta(ge=-1_000.0, le=1_000.0)] = 0.0
 
 
 class Foot(Record, frozen=True):
@@ -215,7 +239,9 @@ class RobotFile(Record, frozen=True):
         crouch: Name of the pose to crouch in.
         model_latency: From the start of a step to its plan acting, where time is the wall's, s.
         contact_threshold: Force above which a contact sensor counts as pressed, N.
-        passive: Joints of the MJCF that no servo moves: springs, couplings, casters.
+        passive: Joints of the MJCF that no servo moves: springs, casters, and what the MJCF's own
+            <equality> couples.
+        coupling: Passive joints that follow others, and how, where the MJCF does not say so.
         fall: When it counts as fallen; a robot that is fixed has none.
         poses: Pose name to joint name to rad; joints not named are at 0.
     """
@@ -237,8 +263,15 @@ class RobotFile(Record, frozen=True):
     bus: tuple[Bus, ...] = ()
     foot: tuple[FootEntry, ...] = ()
     passive: tuple[str, ...] = ()
+    coupling: tuple[CouplingEntry, ...] = ()
     fall: Fall | None = None
     model_latency: Delay = 0.06
     contact_threshold: Positive = 1.0
     imu: Imu | None = None
     safety: Safety = Safety()
+
+    @property
+    def unmoved(self) -> tuple[str, ...]:
+        """The joints of the MJCF that no servo moves, followers too."""
+        followers = tuple(coupling.joint for coupling in self.coupling)
+        return tuple(dict.fromkeys((*self.passive, *followers)))

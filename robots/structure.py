@@ -58,11 +58,12 @@ def _of_the_joints(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]
         yield "joint", "is missing: a robot has at least one [[joint]], with name, lower and upper"
     for index, kind in enumerate(model.jnt_type):
         name = model.joint(index).name
-        passive = name in robot.passive
+        passive = name in robot.unmoved
         if kind == mjcf.HINGE and passive and name in entries:
-            yield "passive", f"{name!r} is a [[joint]] as well; it has a servo or it has none"
+            key = "passive" if name in robot.passive else "coupling"
+            yield key, f"{name!r} is a [[joint]] as well; it has a servo or it has none"
         if kind == mjcf.HINGE and not passive and name not in entries:
-            how = "or passive names it, where no servo moves it"
+            how = "or name it in passive or a [[coupling]], where no servo moves it"
             yield "joint", f"the MJCF hinge {name!r} has no [[joint]]; give it one, {how}"
         if kind not in (mjcf.HINGE, mjcf.FREE) and not (kind == SLIDE and passive):
             what = "slide" if kind == SLIDE else "ball joint"

@@ -10,6 +10,7 @@ import numpy as np
 from hal.errors import DivergedError, UnknownNameError, UsageError
 from hal.joints import Array
 from hal.observation import BaseState
+from robots.couplings import bring_in_step
 from robots.description import RobotDescription
 from sim_twin.lowest import lowest_point
 from sim_twin.places import JointPlaces
@@ -95,6 +96,7 @@ class Twin:
         mujoco.mj_resetData(self.model, self.data)
         self._pushes.clear()
         self.data.qpos[self.places.position] = pose + jitter
+        bring_in_step(self.model, self.data.qpos, self.robot.joints.names)
         self._drop_to_floor()
         self.set_goals(pose)
         self._jumped()

@@ -11,6 +11,7 @@ import tyro
 
 from hal.errors import PortError
 from hal.ranges import Range
+from robots import load_robot
 from sim_twin.wire import Address, parse_address
 from sim_twin.wire.address import BENCH, SCHEME
 from sim_twin.wire.emulate import Emulator, emulate
@@ -18,6 +19,7 @@ from sim_twin.wire.fault_text import parse_rules
 from sim_twin.wire.hand import parse_hands
 from sim_twin.wire.outlet import Outlet
 from tools.command import Command
+from tools.doubt_once import doubt_once
 from tools.output import console
 from tools.quantities import Seed
 from tools.writing import check_writable
@@ -30,7 +32,8 @@ class Emulate(Command):
     robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
     """A robot's name, the path of its folder, or a whole twin:// URL (twin://bench?servos=...)."""
     pty: Path | None = None
-    """Serve on a pseudo-terminal, to be found under this path."""
+    """Serve on a pseudo-terminal, to be found under this path. It loses some of what a program
+    writes and flushes at once (tcflush, as pypot does); --tcp loses nothing."""
     tcp: Annotated[int, Range(0, 65_535)] | None = None
     """Serve on this TCP port of this machine; 0: any."""
     faults: str = ""
@@ -57,6 +60,8 @@ class Emulate(Command):
     def run(self) -> int:
         """Serve; returns the exit status."""
         address = self._address()
+        if address.robot != BENCH:
+            doubt_once(load_robot(address.robot))
         ready = partial(_on_ready, "" if address.robot == BENCH else self.robot)
         try:
             emulate(address, self.pty, self.tcp, on_ready=ready)

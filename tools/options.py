@@ -9,6 +9,7 @@ import tyro
 from hal.errors import UsageError
 from robots import load_robot
 from tools.command import Command
+from tools.doubt_once import doubt_once
 from tools.faults import with_faults
 from tools.quantities import Noise, Rate, Seed, Seeds
 from tools.robot import Robot
@@ -54,6 +55,7 @@ class Common(Command):
             check_port(robot, url)
         elif self.arm:
             raise UsageError("--arm needs a --port; without one only the twin moves")
+        doubt_once(robot)
 
     @property
     def url(self) -> str | None:

@@ -24,6 +24,7 @@ from sim_twin.rollouts import RolloutPredictor
 from sim_twin.wire.world import RealClock
 from sim_twin.world import World
 from tools.build import build_walk
+from tools.doubt_once import doubt_once
 from tools.gaits import find_gait
 from tools.gauges import Gauges
 from tools.interrupts import RunInterruptedError
@@ -103,6 +104,7 @@ class Robot(Session):
             WindupError: The robot's files, these options, or the bus cannot be.
         """
         description = load_robot(name)
+        doubt_once(description)
         wired = description.wire_rate_hz if port is not None else None
         steps = description.physics_steps(rate or wired)
         if port is None:

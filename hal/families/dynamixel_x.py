@@ -14,6 +14,7 @@ from hal.servos.x_series_registers import (
 )
 
 POSITION_MODE = 3
+EXTENDED_MODE = 4
 PWM_FULL = 885
 NO_SECOND_ID = 255
 GUARDED = 0x34
@@ -70,6 +71,7 @@ DYNAMIXEL_X = Family(
     check=Block(64, 83, STATE),
     check_alone=True,
     wanted=_wanted,
+    extended=Want("operating_mode", EXTENDED_MODE),
     gain=_gain,
     alert=0x80,
     errors=HARDWARE_ERRORS,

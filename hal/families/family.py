@@ -116,6 +116,7 @@ class Family:
         weakening: Bits of errors that weaken torque instead of ending it.
         latching: Does an error that has ended torque show until the power goes?
         wanted: The settings the stack relies on, in the order in which they are written.
+        extended: What is wanted instead where a servo shall count many turns; None where none can.
         usual: How a model protects itself as its maker delivers it; what is set otherwise is its
             owner's, and only shown.
         gain: How stiffness is set on a model.
@@ -146,6 +147,7 @@ class Family:
     weakening: int = 0
     latching: bool = False
     current: Block | None = None
+    extended: Want | None = None
     usual: Callable[[ServoModel], Sequence[Usual]] = protective_limits
     check_alone: bool = False
     errors_in_answers: bool = True

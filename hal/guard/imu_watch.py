@@ -1,8 +1,9 @@
-"""Is the IMU to be trusted? It may be silent, frozen, not a number, or spinning (`gyro_watch`).
+"""Is the IMU to be trusted?
 
-A frozen IMU repeats one sample, gyroscope and accelerometer alike. Real ones are never that still,
-but an emulated one is, of a robot that lies or that hands hold: only once the joints have moved
-meanwhile it is a reason to stop.
+It may be silent, frozen, not a number, spinning (`gyro_watch`), or stuck about one axis
+(`stuck_axis`). A frozen IMU repeats one sample, gyroscope and accelerometer alike. Real ones are
+never that still, but an emulated one is, of a robot that lies or that hands hold: only once the
+joints have moved meanwhile it is a reason to stop.
 """
 
 from collections.abc import Sequence
@@ -12,6 +13,7 @@ import numpy as np
 
 from hal.guard.finding import AGAIN, CHECK, Finding, Saying
 from hal.guard.gyro_watch import LONGEST, NEXT, GyroWatch, Verdict
+from hal.guard.stuck_axis import StuckAxis
 from hal.joints import Array
 from hal.observation import ImuState, Observation
 
@@ -39,7 +41,7 @@ class ImuWatch:
     """
 
     def __init__(self) -> None:
-        self.gyro = GyroWatch()
+        self.gyro, self._axis = GyroWatch(), StuckAxis()
         self._warnings: dict[str, Finding] = {}
         self._present = ""
         self._time = -np.inf
@@ -70,6 +72,7 @@ class ImuWatch:
         self._changed = self._heard = self._taken = now
         self._pose: Array = np.zeros(0)
         self.gyro.restart()
+        self._axis.restart()
 
     def _judge(
         self, observation: Observation, imu: ImuState | None, dt: float
@@ -90,6 +93,8 @@ class ImuWatch:
                 self.gyro.compare(sample, self._sample, now)
             self._sample, self._taken = sample, self._heard
             self._changed, self._pose = now, joints.position
+            if (stuck := self._axis.look(sample, now)) is not None:
+                return stuck, True
         elif same > FROZEN and np.abs(joints.position - self._pose).max() > MOVED:
             return (STUCK, same, FROZEN), True
         elif same > RIGID:

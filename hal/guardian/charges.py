@@ -50,6 +50,7 @@ def charge_of(link: ServoLink, goals: Array | None, levels: HealthLevels | None)
         crouch={id: int(np.rint(count)) for id, count in counts.items()},
         levels=hot_and_low,
         names=dict(zip(line.ids, line.names, strict=False)),  # of joints, where they are known
+        extended=tuple(mount.id for mount in line.mounts if mount.extended),
         latency=port.latency,
         echoes=port.echoes,
     )

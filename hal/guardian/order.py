@@ -27,6 +27,7 @@ class Charge(msgspec.Struct, frozen=True, kw_only=True):
         levels: Id to the temperature, degrees C, and the supply, V, at which a servo that is held
             has to be let go; one without is held whatever it reads.
         names: Id to joint name, for people; empty where nobody knows them.
+        extended: Ids of the servos that count many turns.
         latency: How long its adapter holds bytes back, s.
         echoes: Does its adapter give back what it is sent?
         lock: Descriptor of the lock on its adapter, held by host and guardian together.
@@ -38,6 +39,7 @@ class Charge(msgspec.Struct, frozen=True, kw_only=True):
     crouch: dict[int, int] = {}
     levels: dict[int, tuple[float, float]] = {}
     names: dict[int, str] = {}
+    extended: tuple[int, ...] = ()
     latency: float = 0.0
     echoes: bool = False
     lock: int = -1

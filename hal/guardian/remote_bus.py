@@ -35,7 +35,9 @@ class RemoteBus:
     def __init__(self, charge: Charge) -> None:
         self.charge = charge
         self.trouble = ""
-        self._mounts = [_mount(id, name) for id, name in charge.servos.items()]
+        self._mounts = [
+            _mount(id, name, id in charge.extended) for id, name in charge.servos.items()
+        ]
         self._torque: ServoTorque | None = None
 
     def torque(self) -> ServoTorque:
@@ -125,6 +127,6 @@ class RemoteBus:
         return self.torque().line.who(np.flatnonzero(which))
 
 
-def _mount(id: int, name: str) -> ServoMount:
+def _mount(id: int, name: str, extended: bool) -> ServoMount:
     model = servo_model(name)
-    return ServoMount(model, "", id, 1, model.middle, 1.0)
+    return ServoMount(model, "", id, 1, model.middle, 1.0, extended=extended)

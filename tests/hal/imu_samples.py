@@ -38,9 +38,15 @@ def upright(k: int) -> Array:
     return np.array([0.0, 6e-4 * (k % 2), GRAVITY])
 
 
+def noisy(rate: Rows, k: int) -> Array:
+    """Return a rate with noise of one part in a thousand."""
+    return np.asarray(rate, float) * (1.0 + 1e-3 * (k % 2))
+
+
 def still(seconds: float, begin: float = 0.0, rate: Rows = (0.0, 0.0, 0.0)) -> list[Observation]:
     """Return what an IMU says that rests; its gyroscope may say else."""
-    return [seen(begin + k * DT, rate, upright(k)) for k in range(round(seconds / DT))]
+    steps = range(round(seconds / DT))
+    return [seen(begin + k * DT, noisy(rate, k), upright(k)) for k in steps]
 
 
 def tipping(seconds: float, begin: float, height: float = 0.25) -> list[Observation]:

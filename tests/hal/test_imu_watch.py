@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from hal.guard.imu_watch import ImuWatch
 from hal.observation import Observation
-from tests.hal.imu_samples import DT, GRAVITY, found, seen, still, tipping, upright
+from tests.hal.imu_samples import DT, GRAVITY, found, noisy, seen, still, tipping, upright
 
 
 def test_an_imu_that_rests_is_well() -> None:
@@ -100,14 +100,14 @@ def test_a_body_that_turns_with_gravity_is_well() -> None:
     for k in range(600):  # round and round, slowly enough to feel nothing else
         angle = 1.0 * k * DT
         felt = GRAVITY * np.array([np.sin(angle), 0.0, np.cos(angle)])
-        turning.append(seen(k * DT, (0.0, -1.0, 0.0), felt))
+        turning.append(seen(k * DT, noisy((0.0, -1.0, 0.0), k), felt))
     assert found(ImuWatch(), turning) is None
 
 
 @pytest.mark.parametrize(("speed", "wrong"), [(0.0, True), (2.0, False)])
 def test_a_turn_about_the_vertical_takes_joints_that_move(speed: float, wrong: bool) -> None:
     turning = [
-        seen(k * DT, (0.0, 0.0, min(1.5 * k * DT, 1.5)), upright(k), speed=speed)
+        seen(k * DT, noisy((0.0, 0.0, min(1.5 * k * DT, 1.5)), k), upright(k), speed=speed)
         for k in range(400)
     ]
     assert (found(ImuWatch(), turning) is not None) == wrong
@@ -116,14 +116,18 @@ def test_a_turn_about_the_vertical_takes_joints_that_move(speed: float, wrong: b
 def test_a_foot_that_slips_turns_the_body_about_the_vertical_unfelt_and_is_no_spin() -> None:
     watch = ImuWatch()
     walking = still(1.0)
-    turning = [seen(1.0 + k * DT, (0.0, 0.0, 0.9), upright(k), speed=2.0) for k in range(60)]
+    turning = [
+        seen(1.0 + k * DT, noisy((0.0, 0.0, 0.9), k), upright(k), speed=2.0) for k in range(60)
+    ]
     assert found(watch, [*walking, *turning]) is None
 
 
 def test_after_a_hole_between_samples_rates_may_be_others() -> None:
     watch = ImuWatch()
     walking = still(1.0)
-    turning = [seen(1.03 + k * DT, (0.8, 0.0, 0.0), upright(k), speed=2.0) for k in range(20)]
+    turning = [
+        seen(1.03 + k * DT, noisy((0.8, 0.0, 0.0), k), upright(k), speed=2.0) for k in range(20)
+    ]
     assert found(watch, [*walking, *turning]) is None
     assert not watch.gyro.doubted
 
@@ -132,8 +136,8 @@ def test_a_body_that_walks_may_be_turned_more_suddenly_than_one_that_stands() ->
     rates = [1.5 * np.sin(2.0 * np.pi * k / 64) for k in range(257)]
     walking = [seen(k * DT, (rate, 0.0, 0.0), upright(k)) for k, rate in enumerate(rates)]
     later = [len(walking) + k for k in range(20)]
-    knocked = [seen(k * DT, (1.2, 0.0, 0.0), upright(k)) for k in later]
-    spun = [seen(k * DT, (3.0, 0.0, 0.0), upright(k)) for k in later]
+    knocked = [seen(k * DT, noisy((1.2, 0.0, 0.0), k), upright(k)) for k in later]
+    spun = [seen(k * DT, noisy((3.0, 0.0, 0.0), k), upright(k)) for k in later]
     assert found(ImuWatch(), [*walking, *knocked]) is None
     first = found(ImuWatch(), [*walking, *spun])
     assert first is not None and first[0] < (later[0] + 16) * DT
@@ -142,7 +146,7 @@ def test_a_body_that_walks_may_be_turned_more_suddenly_than_one_that_stands() ->
 def test_a_jump_that_few_samples_show_may_be_one() -> None:
     watch = ImuWatch()
     held_up = [1.0 + k * DT for k in (0, 8, 12, 16)]
-    turning = [seen(time, (0.9, 0.0, 0.0), upright(k)) for k, time in enumerate(held_up)]
+    turning = [seen(time, noisy((0.9, 0.0, 0.0), k), upright(k)) for k, time in enumerate(held_up)]
     assert found(watch, [*still(1.0), *turning]) is None
     assert watch.gyro.doubted
 
@@ -153,6 +157,29 @@ def test_a_jump_that_ends_slower_than_it_began_was_one() -> None:
     knock = [seen(0.5, (0.9, 0.0, 0.6), upright(0), speed=2.0)]
     after = [seen(0.5 + (k + 1) * DT, (0.0, 0.0, 0.1), upright(k), speed=2.0) for k in range(60)]
     assert found(watch, [*walking, *knock, *after]) is None
+
+
+def falling(rate: float | None) -> list[Observation]:
+    """Return what a body feels that turns faster and faster, its first rate being another one."""
+    run = [seen(k * DT, (2.5 + 0.1 * k, 0.0, 0.0), (0.0, 0.1 * k, 4.0)) for k in range(40)]
+    if rate is None:
+        return run
+    return [
+        replace(o, imu=replace(o.imu, angular_velocity=np.array([rate, 0.0, 0.01 * k])))
+        for k, o in enumerate(run)
+        if o.imu is not None
+    ]
+
+
+def test_a_gyroscope_that_stays_at_one_rate_while_the_body_turns_as_fast_is_stuck() -> None:
+    first = found(ImuWatch(), falling(3.0))
+    assert first is not None and first[0] == pytest.approx(0.1, abs=2 * DT)
+    assert str(first[1]) == "the IMU is stuck about one axis, at 3.0 rad/s (stop above 0.7)"
+
+
+@pytest.mark.parametrize("rate", [None, 0.0])
+def test_rates_that_change_or_are_low_are_not_stuck(rate: float | None) -> None:
+    assert found(ImuWatch(), falling(rate)) is None
 
 
 def test_a_warning_has_its_worst_value_and_how_often_it_began() -> None:

@@ -43,7 +43,7 @@ torso = "base"
 stance = "stand"
 joint = [
   { name = "knee", id = 2, lower = -2.0, upper = 0.5, servo = "XL430-W250" },
-  { name = "hip", id = 1, lower = -1.0, upper = 1.0, sign = -1, zero = 1024, ratio = 2.0 },
+  { name = "hip", id = 1, lower = -1.0, upper = 1.0, sign = -1, zero = 1400, ratio = 2.0 },
 ]
 
 [drive]
@@ -108,7 +108,7 @@ def test_gears_trade_speed_for_torque(tmp_path: Path) -> None:
 def test_a_joint_may_name_its_own_servo(tmp_path: Path) -> None:
     mounts = load_robot(folder(tmp_path)).servos
     assert [(m.model.name, m.id, m.sign, m.zero) for m in mounts if m] == [
-        ("XM430-W350", 1, -1, 1024),
+        ("XM430-W350", 1, -1, 1400),
         ("XL430-W250", 2, 1, 2048),
     ]
 
