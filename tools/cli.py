@@ -106,7 +106,7 @@ def parse(arguments: list[str]) -> Any:
         print_result(f"windup {installed_version()}\n")
         raise SystemExit(0)
     if (name := arguments[0]) not in COMMANDS:
-        near = near_word(name, COMMANDS)
+        near = near_word(name, (*COMMANDS, "--help"))
         raise UsageError(f"unknown command {name!r}{near}; `windup --help` lists all")
     from tools.parsing import parse_options  # only now: it takes longer than the help
 

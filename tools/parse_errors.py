@@ -28,6 +28,8 @@ def mistake(name: str, command: type, words: list[str], said: str) -> str:
         if word.startswith("--") and option not in known:
             near = near_word(option, known)
             return f"{name}: unknown option {option}{near}; `windup {name} --help` lists all"
+    if missing := re.match(r"Missing from windup \S+: (.*?)\.? \(required\)", gist(said)):
+        return f"{name}: {_wanted(missing[1])}; see `windup {name} --help`"
     return wrong_number(said) or f"{name}: {gist(said).rstrip('.')}; see `windup {name} --help`"
 
 
@@ -40,6 +42,19 @@ def options(command: Any) -> set[str]:
         if tyro.conf.Positional not in get_args(hints[field.name])
     ]
     return {"--help", *(f"--{name}" for name in names), *(f"--no-{name}" for name in names)}
+
+
+def _wanted(missing: str) -> str:
+    """Return what to give, of the parser's line about an argument that is missing.
+
+    >>> _wanted("URL The port: /dev/ttyUSB0, usb:SERIAL")
+    'give URL (the port: /dev/ttyUSB0, usb:SERIAL)'
+    """
+    found = re.match(r"((?:--[\w-]+ )?[A-Z]+) (.*)", missing)
+    if found is None:
+        return f"give {missing}"
+    name, about = found.groups()
+    return f"give {name} ({about[:1].lower()}{about[1:]})"
 
 
 def gist(said: str) -> str:
