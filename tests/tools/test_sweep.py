@@ -46,9 +46,14 @@ class Fake(Command):
         return 1 if self.seed else 0
 
 
+class FakeEntry(Entry):
+    def load(self) -> type:
+        return Fake
+
+
 @pytest.fixture(autouse=True)
 def fake_command(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setitem(COMMANDS, "fake", Entry(__name__, "Fake", ""))
+    monkeypatch.setitem(COMMANDS, "fake", FakeEntry("", "Fake", ""))
     monkeypatch.chdir(tmp_path)
 
 
