@@ -28,8 +28,8 @@ WHOLE: Final = 20
 """Readings of one answer: those that are late are so together."""
 SHORTEST: Final = 12
 """Bytes of a servo's answer, of any family."""
-FAR: Final = 2e-4
-"""Share of the readings of 0 that confirm one after which a servo may have got there."""
+FAR: Final = 2e-3
+"""Share of the readings before which a servo was silent so long that it may have got to 0."""
 EARLY: Final = 0.1
 """Share of the late answers that come when the next one would."""
 STRANGERS: Final = 252

@@ -1,7 +1,6 @@
 from math import pi
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -47,36 +46,6 @@ def test_after_a_true_jump_a_joint_is_believed_again_within_a_moment() -> None:
     times = np.arange(0.0, 1.0, 0.01)
     assert any(accept(plausible, 3000, 0, now) for now in times)
     assert accept(plausible, 3000, 0, 1.0)
-
-
-def known(weak: bool) -> Plausibility:
-    """A check that has believed 1000 at 0 s."""
-    plausible = Plausibility(np.array([4095.0]), np.array([4000.0]), np.array([1.0]), weak=weak)
-    accept(plausible, 1000, 0, 0.0)
-    assert accept(plausible, 1000, 0, 0.0)
-    return plausible
-
-
-@pytest.mark.parametrize("weak", [True, False])
-def test_what_is_far_off_after_a_silence_needs_a_second_reading_that_agrees(weak: bool) -> None:
-    plausible = known(weak)
-    assert not accept(plausible, 0, 0, 0.2)
-    assert not accept(plausible, 1008, 0, 0.21)
-    assert accept(plausible, 1010, 0, 0.22)
-    assert not accept(plausible, 0, 0, 0.42)
-    assert accept(plausible, 0, 0, 0.43)
-
-
-@pytest.mark.parametrize("weak", [True, False])
-def test_what_is_far_off_at_its_own_velocity_is_believed_at_once(weak: bool) -> None:
-    assert accept(known(weak), 1800, 4000, 0.2)
-
-
-def test_a_first_reading_is_believed_again_once_all_was_forgotten() -> None:
-    plausible = known(weak=False)
-    assert not accept(plausible, 0, 0, 0.2)
-    plausible.forget()
-    assert accept(plausible, 2000, 0, 0.21)
 
 
 @given(st.floats(0.0, 1.0), st.floats(0.001, 0.1))
