@@ -113,6 +113,7 @@ class Robot(Session):
                 state=state or "true",
                 paced=realtime,
                 delay=delay,
+                noise=noise,
                 seed=seed,
                 world=world,
             )
