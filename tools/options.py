@@ -52,7 +52,10 @@ class Common(Command):
         url, robot = self.url, load_robot(self.robot)
         if url is not None:
             check_port(robot, url)
-        doubt_once(robot)
+
+    def warn(self) -> None:
+        """Say that the robot's MJCF is doubtful; see `Command.warn`."""
+        doubt_once(load_robot(self.robot))
 
     @property
     def url(self) -> str | None:
