@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 walk: .venv/run.stamp
 	$(BIN)/windup walk op3 --plot walk.png
 
-test: .venv/dev.stamp .venv/ftservo.stamp
+test: .venv/dev.stamp .venv/clients.stamp
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
@@ -25,9 +25,13 @@ test: .venv/dev.stamp .venv/ftservo.stamp
 	$(PIP) -e '.[dev]'
 	@touch $@ .venv/run.stamp
 
-# A client for tests; it has the import name of feetech-servo-sdk, so it lies beside it.
-.venv/ftservo.stamp: Makefile | .venv/bin/python
+# Clients for tests. They lie beside the environment: one has the import name of
+# feetech-servo-sdk, LeRobot would bring torch, and pypot OpenCV.
+.venv/clients.stamp: Makefile | .venv/bin/python
 	$(PIP) --no-deps --upgrade --target .venv/ftservo ftservo-python-sdk==2.0.1
+	$(PIP) --no-deps --upgrade --target .venv/pypot pypot==5.0.2
+	$(PIP) --no-deps --upgrade --target .venv/lerobot \
+	  lerobot==0.4.4 deepdiff==8.6.2 orderly-set==5.5.0 tqdm==4.70.1
 	@touch $@
 
 clean:

@@ -1,19 +1,20 @@
-"""A serial port behind a TCP connection, as a bridge like ser2net serves it."""
+"""A serial port behind a TCP connection that passes baud rates too: RFC 2217, as of ser2net."""
 
 import contextlib
 import socket
 from typing import Any
 
 from hal.port import Port
+from hal.socket_port import RAW
 
-NETWORK = ("socket://", "rfc2217://")
+RFC2217 = "rfc2217://"
 """How the URLs of such ports begin."""
-RAW = "socket://"
-"""The same, of those that pass on bytes and no baud rate."""
+NETWORK = (RAW, RFC2217)
+"""The same, of all ports behind a TCP connection."""
 
 
 class NetworkPort(Port):
-    """A port of pyserial's `socket://` or `rfc2217://`, made fit for a control loop.
+    """A port of pyserial's `rfc2217://`, made fit for a control loop.
 
     pyserial leaves Nagle's algorithm on: a request behind a goal that nobody answers would wait for
     the other side's delayed acknowledgement, 40 ms. And it sleeps for 0.3 s when it closes.
@@ -22,7 +23,6 @@ class NetworkPort(Port):
     def __init__(self, serial: Any, url: str, latency: float | None = None) -> None:
         super().__init__(serial, url, latency)
         self._serial: Any = serial
-        self.has_baud = not url.startswith(RAW)
         connection = getattr(serial, "_socket", None)
         self._connection = connection if isinstance(connection, socket.socket) else None
         if self._connection is not None:

@@ -12,9 +12,10 @@ import serial
 from serial.tools import list_ports
 
 from hal.errors import PortError, UsageError
-from hal.network_port import NETWORK, NetworkPort
+from hal.network_port import RFC2217, NetworkPort
 from hal.port import GONE, DevicePort, Port
 from hal.port_access import access_remedy
+from hal.socket_port import RAW, Connection, SocketPort
 
 BAUD = 1_000_000
 
@@ -32,7 +33,9 @@ def open_port(url: str, baud: int = BAUD, *, exclusive: bool = True) -> Port:
     if "://" in url:
         _check_handler(url)
         opened = _open(url, url, baud, exclusive)
-        return NetworkPort(opened, url) if url.startswith(NETWORK) else Port(opened, url)
+        if url.startswith(RAW):
+            return SocketPort(opened, url)
+        return NetworkPort(opened, url) if url.startswith(RFC2217) else Port(opened, url)
     device = _by_serial_number(url[4:]) if url.startswith("usb:") else url
     if exclusive:
         _check_holder(device)
@@ -45,6 +48,8 @@ def open_port(url: str, baud: int = BAUD, *, exclusive: bool = True) -> Port:
 
 def _open(target: str, url: str, baud: int, exclusive: bool) -> Any:
     try:
+        if target.startswith(RAW):
+            return Connection(target, baud)
         if "://" in target:
             return serial.serial_for_url(target, baudrate=baud, timeout=0)
         return serial.Serial(target, baudrate=baud, timeout=0, exclusive=exclusive)

@@ -24,6 +24,9 @@ from hal.servo_settings import Setting, differences, limits
 from hal.status_level import make_answer
 from hal.units import Units
 
+PROTOCOL_1 = "speaks protocol 1: set its Protocol Type (register 13) to 2 with DYNAMIXEL Wizard"
+"""What is wrong with a servo of the X series that answers in protocol 1."""
+
 
 def check_mounts(
     joints: Joints,
@@ -117,6 +120,11 @@ def check_servos(
 def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting], str]:
     try:
         number = bus.ping(mount.id)
+    except NoAnswerError as error:
+        other = bus.family.dialect.estranged(bus.port, mount.id)
+        if other is None or other not in bus.family.numbers:
+            raise HardwareError(_short(error)) from None
+        raise HardwareError(f"{bus.family.model_name(other)} {PROTOCOL_1}") from None
     except HardwareError as error:
         raise HardwareError(_short(error)) from None
     if number != mount.model.model_number:

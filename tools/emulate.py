@@ -32,7 +32,8 @@ class Emulate(Command):
     robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
     """A robot's name, the path of its folder, or a whole twin:// URL (twin://bench?servos=...)."""
     pty: Path | None = None
-    """Serve on a pseudo-terminal, to be found under this path."""
+    """Serve on a pseudo-terminal, to be found under this path. It loses some of what a program
+    writes and flushes at once (tcflush, as pypot does); --tcp loses nothing."""
     tcp: Annotated[int, Range(0, 65_535)] | None = None
     """Serve on this TCP port of this machine; 0: any."""
     faults: str = ""

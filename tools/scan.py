@@ -51,7 +51,7 @@ class Scan(Command):
         return with_faults(self.url, self.faults) or self.url
 
     def run(self) -> int:
-        """Scan; returns the exit status: 3 where nobody answers, or one is missing or doubled."""
+        """Scan; returns the exit status: 3 where nobody answers, or one is not as it should be."""
         expected = _expected(self.robot)
         port = open_port(self._url)
         survey = Survey(port, expected)
@@ -63,14 +63,17 @@ class Scan(Command):
                 )
         finally:
             port.close()
-        missing = sorted(set(expected) - {row["id"] for row in survey.servos})
+        there = {row["id"] for row in (*survey.servos, *survey.protocol_1)}
+        missing = sorted(set(expected) - there)
         self._show(survey, [f"{expected[id]} (id {id})" for id in missing])
         strange = [{"id": one.id, "baud": baud, "bytes": one.data.hex()}
                    for baud, _, one in survey.strange]  # fmt: skip
         result = {"url": self.url, "servos": survey.servos, "missing_ids": missing}
+        old = {"protocol_1": survey.protocol_1}
         more = {"unknown": survey.unknown, "doubled_ids": survey.doubled, "not_understood": strange}
-        write_json(self.json, "scan", result | more)
-        return 3 if missing or survey.doubled or not survey.servos else 0
+        write_json(self.json, "scan", result | old | more)
+        wrong = missing or survey.doubled or survey.protocol_1
+        return 3 if wrong or not survey.servos else 0
 
     def _show(self, survey: Survey, missing: list[str]) -> None:
         rows, width = survey.servos, console.width

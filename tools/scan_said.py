@@ -5,6 +5,7 @@ from typing import Any, Final
 
 from rich.table import Table
 
+from hal.wiring import PROTOCOL_1
 from tools.raw_answers import Strange
 from tools.survey import Survey
 
@@ -54,6 +55,9 @@ def complaints(survey: Survey, url: str, missing: list[str]) -> Iterator[str]:
         numbers = " or ".join(f"{number} ({family})" for family, number in one["numbers"].items())
         at = "" if one["baud"] is None else f" at {one['baud']} baud"
         yield f"id {one['id']}{at}: unknown model {numbers}; no servo of Windup's has this number"
+    for one in survey.protocol_1:
+        at = "" if one["baud"] is None else f" at {one['baud']} baud"
+        yield f"id {one['id']}{at}: {one['model']} {PROTOCOL_1}"
     if survey.doubled:
         ids = ", ".join(map(str, survey.doubled))
         yield (
@@ -66,7 +70,7 @@ def complaints(survey: Survey, url: str, missing: list[str]) -> Iterator[str]:
         yield f"something answers on {url} that is not understood (first bytes {_hex(strange[0])})"
     if missing:
         yield f"silent: {', '.join(missing)}"
-    if not (survey.servos or survey.unknown or survey.strange or survey.echo):
+    if not (survey.servos or survey.unknown or survey.protocol_1 or survey.strange or survey.echo):
         yield f"nobody answers on {url}: is the servo power on, and this the right port?"
 
 

@@ -54,7 +54,9 @@ def stop_keys(descriptor: int | None) -> Iterator[Ask]:
 
 def _pressed(descriptor: int) -> str | None:
     """Return the name of the first stop key among those that wait to be read."""
-    if not select.select([descriptor], [], [], 0.0)[0] or not _in_foreground(descriptor):
+    waiting = select.poll()  # select() takes no descriptor beyond 1023
+    waiting.register(descriptor, select.POLLIN)
+    if not waiting.poll(0) or not _in_foreground(descriptor):
         return None
     try:
         typed = os.read(descriptor, 64)

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 from hal.bus import FIRST, Bus, Found
 from hal.errors import CorruptAnswerError, HardwareError
-from hal.families import FAMILIES, Family
+from hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FAMILIES, Family
 from hal.imu.opencr import MODEL_NUMBER as OPENCR
 from hal.imu.opencr import VOLTAGE
 from hal.port import Port
@@ -34,6 +34,7 @@ class Survey:
         servos: What each servo says of itself.
         unknown: Servos that answer and are no model of ours: id, baud, and what the register of
             the model number holds, by the name of the family that would have it there.
+        protocol_1: Servos of the X series that speak protocol 1: id, baud and model.
         strange: Other answers, with the baud rate and the family that was asked for.
     """
 
@@ -41,6 +42,7 @@ class Survey:
     joints: dict[int, str]
     servos: list[dict[str, Any]] = field(default_factory=list)
     unknown: list[dict[str, Any]] = field(default_factory=list)
+    protocol_1: list[dict[str, Any]] = field(default_factory=list)
     strange: list[tuple[int, Family, Strange]] = field(default_factory=list)
 
     @property
@@ -79,7 +81,10 @@ class Survey:
         # Protocol 1 is spoken by three families: what answers one of them answers all.
         known = {(row["baud"], row["id"]) for row in self.servos}
         for (shown, id), numbers in others.items():
-            if (shown, id) not in known:
+            model = DYNAMIXEL_X.numbers.get(numbers.get(DYNAMIXEL_1.name, 0))
+            if model is not None:
+                self.protocol_1.append({"id": id, "baud": shown, "model": model})
+            elif (shown, id) not in known:
                 self.unknown.append({"id": id, "baud": shown, "numbers": numbers})
 
     def _ask(self, family: Family, rate: int) -> list[Found]:
@@ -106,15 +111,17 @@ class Survey:
 def places(port: Port, baud: int | None = None) -> Iterator[tuple[Family, int]]:
     """Yield where to look: every family at every baud rate of its, or at one.
 
-    Behind a bridge that does not pass a baud rate on, that is once a family.
+    Behind a bridge that does not pass a baud rate on, that is once a family. Protocol 1 is looked
+    for at the baud rates of the X series too, which may be set to speak it.
     """
     for family in FAMILIES:
         if not port.has_baud:
             yield family, SLOW
             continue
-        for rate in family.bauds if baud is None else [baud]:
-            if rate in family.bauds:
-                yield family, rate
+        bauds = [*family.bauds]
+        if family is DYNAMIXEL_1:
+            bauds += [rate for rate in DYNAMIXEL_X.bauds if rate not in family.bauds]
+        yield from ((family, rate) for rate in bauds if baud in (None, rate))
 
 
 def _describe(bus: Bus, servo: Found) -> dict[str, Any]:

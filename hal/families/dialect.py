@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from hal.adapter import MARGIN, Probe
-from hal.errors import HardwareError
+from hal.errors import CorruptAnswerError, HardwareError, NoAnswerError, RefusedError
 from hal.port import BITS, Port
 from hal.protocols import protocol1, protocol2
 from hal.protocols.batched import BlockRead, BlockWrite
@@ -21,6 +21,8 @@ PING_SLOT = 3e-3
 """Servos answer a broadcast ping of protocol 2 one after the other, each in its slot of this, s."""
 PING_TIME = 3e-3
 """What a servo may take to answer a ping of its own, return delay and driver included, s."""
+MODEL_NUMBER = Register("model_number", 0, 2, "eeprom", False)
+"""Where every Dynamixel says what it is, whatever it speaks."""
 LATEST = 0.1
 """What comes later than this is noise, s."""
 
@@ -68,6 +70,10 @@ class Dialect(ABC):
     def who(self, port: Port, link: Link) -> list[Answered]:
         """Return who is there at the port's present baud rate."""
 
+    def estranged(self, port: Port, id: int) -> int | None:
+        """Return the model number of a silent servo that answers in another protocol, or None."""
+        return None
+
 
 class Protocol2(Dialect):
     """Dynamixel protocol 2. Fast is the fast sync read."""
@@ -108,6 +114,12 @@ class Protocol2(Dialect):
             for id, params in sorted(answers.items())
             if len(params) == 3
         ]
+
+    def estranged(self, port: Port, id: int) -> int | None:
+        """Return the model number of a servo that answers in protocol 1 instead, or None."""
+        with contextlib.suppress(NoAnswerError, CorruptAnswerError, RefusedError):
+            return Dynamixel1Link(port, MODEL_NUMBER).ping(id, attempts=1)
+        return None
 
 
 class Protocol1(Dialect):

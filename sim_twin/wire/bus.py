@@ -55,6 +55,10 @@ class Language(Protocol):
         """Return `frame` with the checksum that it should have."""
         ...
 
+    def meet(self, devices: Sequence[Device], /) -> None:
+        """Take note of who is on the bus; called whenever registers below 64 may have changed."""
+        ...
+
     def feed(self, chunk: bytes) -> list[Heard]:
         """Return the frames that end in `chunk`."""
         ...
@@ -98,6 +102,8 @@ class Bus:
         counts: "frames" executed, "dropped", "collisions".
         plugged: Whether the host's adapter is there.
         plugs: How often it has been pulled out or put in.
+        spoken: The protocol of the frame that is being executed: who speaks another one does not
+            hear it. None: all devices speak the same.
         imu: The IMU that a board on it reports, or that sends on it by itself.
         tap: Called with the direction (">" from the host), the baud rate and each burst of bytes.
     """
@@ -118,6 +124,7 @@ class Bus:
         self.heard = self.began = 0.0
         self.counts = {"frames": 0, "dropped": 0, "collisions": 0}
         self.plugged, self.plugs = True, 0
+        self.spoken: int | None = None
         self.imu: FaultyImu | None = None
         self.tap: Callable[[str, int, Burst], None] | None = None
         self._baud = baud
@@ -140,7 +147,8 @@ class Bus:
             self.language.reset()
 
     def refresh(self) -> None:
-        """Look up everybody's id again."""
+        """Look up again who has which id, and who speaks what."""
+        self.language.meet(self.devices)
         self._by_id.clear()
         for device in self.devices:
             self._by_id.setdefault(device.identifier, []).append(device)
@@ -231,6 +239,8 @@ class Bus:
         """Whether a device understands what the host sends now."""
         mine, its = self._baud, device.baud
         same = its == mine or abs(its - mine) <= BAUD_TOLERANCE * mine
+        if self.spoken is not None and device.protocol != self.spoken:
+            return False
         return same and device.listens(self.schedule.now)
 
     def answer(self, data: bytes, baud: int, identifier: int) -> float:

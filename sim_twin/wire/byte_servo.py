@@ -91,6 +91,11 @@ class ByteServo(ABC):
         return NO_ID
 
     @property
+    def protocol(self) -> int:
+        """It speaks protocol 1."""
+        return 1
+
+    @property
     def baud(self) -> int:
         """Its baud rate."""
         return self._rates.get(self.table.get("baud_rate"), 0)

@@ -25,6 +25,11 @@ class Device(Protocol):
         ...
 
     @property
+    def protocol(self) -> int:
+        """The protocol that it speaks, 1 or 2."""
+        ...
+
+    @property
     def baud(self) -> int:
         """Its baud rate."""
         ...

@@ -1,6 +1,6 @@
 """The instructions of Dynamixel protocol 2: who does what, who answers, and when."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 from sim_twin.wire.bus import Bus, Heard
@@ -54,6 +54,9 @@ class Dynamixel2:
             SYNC_WRITE: _sync_write,
             BULK_WRITE: _bulk_write,
         }
+
+    def meet(self, devices: Sequence[Device]) -> None:
+        """All devices speak protocol 2."""
 
     def feed(self, chunk: bytes) -> list[Heard]:
         """Return the frames that end in `chunk`."""

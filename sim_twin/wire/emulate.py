@@ -17,6 +17,7 @@ from pathlib import Path
 from queue import SimpleQueue
 
 from hal.errors import UsageError
+from hal.port import SELECTABLE
 from sim_twin.wire.address import Address
 from sim_twin.wire.build import build_world
 from sim_twin.wire.fault_rule import Rule
@@ -163,7 +164,7 @@ class Emulator:
     def _wait(self, seconds: float, start: float) -> None:
         """Sleep until something comes, or for some time."""
         places = {place: outlet for outlet in self.outlets for place in outlet.descriptors()}
-        ready, _, _ = select.select([*places, self._wake_read], [], [], seconds)
+        ready = _readable([*places, self._wake_read], seconds)
         self.world.schedule.now = wall.perf_counter() - start - HOP
         for place in ready:
             if place in places:
@@ -211,6 +212,16 @@ def emulate(
         if on_ready is not None:
             on_ready(emulator)
         emulator.run()
+
+
+def _readable(places: list[int], seconds: float) -> list[int]:
+    """Wait for some s at most; return the descriptors that can be read."""
+    if max(places) < SELECTABLE:
+        return select.select(places, [], [], seconds)[0]
+    poller = select.poll()  # rounds the wait up to whole milliseconds
+    for place in places:
+        poller.register(place, select.POLLIN)
+    return [place for place, _ in poller.poll(seconds * 1e3)]
 
 
 def _be_punctual() -> None:

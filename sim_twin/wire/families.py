@@ -7,8 +7,8 @@ from hal.servos import servo_model
 from sim_twin.wire import dynamixel1_tables, feetech_tables, x_series
 from sim_twin.wire.bus import Language
 from sim_twin.wire.device import Device
+from sim_twin.wire.dynamixel import Dynamixel
 from sim_twin.wire.dynamixel1_servo import Dynamixel1Servo
-from sim_twin.wire.dynamixel2 import Dynamixel2
 from sim_twin.wire.feetech_servo import FeetechServo
 from sim_twin.wire.protocol1 import DYNAMIXEL1, FEETECH, Protocol1
 from sim_twin.wire.servo import Servo
@@ -39,7 +39,7 @@ def full_name(name: str) -> str:
 def make_language(protocol: str) -> Language:
     """Return a new speaker of a protocol."""
     if protocol == "dynamixel2":
-        return Dynamixel2()
+        return Dynamixel()
     return Protocol1(FEETECH if protocol == "feetech" else DYNAMIXEL1)
 
 

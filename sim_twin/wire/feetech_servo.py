@@ -3,8 +3,9 @@
 With the lock on, the EEPROM's registers, the id too, can be written all the same, but power-up
 brings back what was there before: so the memory table has it. A goal switches the torque on.
 Writing 128 to the torque register makes the present position the middle, 2048, by way of the
-offset. Register 44 is the PWM of PWM mode; on an STS it does nothing in the others, as a "time" it
-acts on an SCS whose speed is 0 (memory tables of SMS, STS and SCS; zeroth-bot pull request 89).
+offset. Register 44 is the PWM of PWM mode, and on an STS nothing else: the tables of SMS and STS
+give it in 0.1 % and for that mode, and who tried it as a time in position mode saw nothing
+(zeroth-bot pull request 89). On an SCS it is a time in ms while the speed is 0 (its table).
 """
 
 import math

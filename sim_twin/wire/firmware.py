@@ -12,6 +12,7 @@ from sim_twin.wire.x_series import CURRENT, POSITION, PWM, VELOCITY, WATCHDOG_UN
 ALERT = 0x80  # in the error byte of a status: look at Hardware Error Status
 TORQUE_BY_GOAL = 0x08  # bit of the drive mode
 TRIPPED = 0xFF  # bus watchdog: -1
+REMOTE = 20  # the first protocol type of a remote control, which the X330 have
 STARTUP_TORQUE, STARTUP_RESTORE = 0x01, 0x02  # bits of the startup configuration
 GOAL_LIMITS = {
     "goal_pwm": "pwm_limit",
@@ -180,6 +181,8 @@ class Firmware:
             inside = get("min_position_limit") <= value <= get("max_position_limit")
             return OK if inside else BAD_LIMIT
         if name == "operating_mode" and value not in self.model.modes:
+            return BAD_RANGE
+        if name == "protocol_type" and 2 < value < REMOTE:
             return BAD_RANGE
         if name == "bus_watchdog" and (value < 0 or (value > 0 and get(name) < 0)):
             return BAD_RANGE

@@ -52,6 +52,12 @@ class Link(Protocol):
 class Pty:
     """A pseudo-terminal, under a path of your choice.
 
+    It loses some of what a program writes and flushes at once with `tcflush`, as pyserial's
+    `reset_output_buffer` does: a worker of the kernel carries bytes across (`tty_buffer.c`), and a
+    flush takes those that it has not carried yet, however eagerly somebody reads. Measured on two
+    processors: 18 to 50 % of the writes with the flush right behind, 0.7 % with 0.3 ms between;
+    18 % of pypot's sync writes in threes, none of those 1 ms apart.
+
     Raises:
         UsageError: Something other than what a dead emulator has left is at that path already, or
             nothing can be put there.

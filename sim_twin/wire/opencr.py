@@ -106,6 +106,11 @@ class OpenCr:
         return 255
 
     @property
+    def protocol(self) -> int:
+        """It speaks protocol 2."""
+        return 2
+
+    @property
     def baud(self) -> int:
         """Its baud rate."""
         return BAUD_RATES[self.registers.memory[4]]

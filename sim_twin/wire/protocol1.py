@@ -1,6 +1,6 @@
 """The instructions of protocol 1, in the dialects of Dynamixel AX and MX and of Feetech."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Final, NamedTuple
 
@@ -17,6 +17,7 @@ from sim_twin.wire.frames1 import (
     encode,
     seal,
 )
+from sim_twin.wire.register_file import EEPROM_END
 from sim_twin.wire.turns import READS, Round, Turn, take_turns
 
 PING, READ, WRITE, REG_WRITE, ACTION, RESET, REBOOT = 0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x08
@@ -24,7 +25,7 @@ SYNC_READ, SYNC_WRITE, BULK_READ = 0x82, 0x83, 0x92
 WRITES = 2  # return level from which everything is answered
 CHECKSUM_ERROR, INSTRUCTION_ERROR = 0x10, 0x40  # bits of a Dynamixel's error byte
 LONGEST_READ = 244  # bytes; an answer of 250 is the longest
-IDENTITY_END = 8  # below lie id and baud rate
+IDENTITY_END = 14  # below lie ids, baud rate and protocol
 PING_SLOT = 0.001  # s for each id of a broadcast ping, assumed: SDKs allow three times as much
 
 
@@ -72,6 +73,9 @@ class Protocol1:
             SYNC_WRITE: _sync_write,
         }
 
+    def meet(self, devices: Sequence[Device]) -> None:
+        """All devices speak protocol 1."""
+
     def feed(self, chunk: bytes) -> list[Heard]:
         """Return the frames that end in `chunk`."""
         return [*self._parser.feed(chunk)]
@@ -112,8 +116,11 @@ class Protocol1:
         needs = {PING: 0, READ: READS}.get(frame.instruction, WRITES)
         for device in bus.listeners(frame.identifier):
             level, delay, baud = device.return_level, device.return_delay, device.baud
+            silent = device.identifier != frame.identifier
+            if silent and _changes_eeprom(frame):
+                continue
             answer = self._act(device, frame, bus)
-            if answer is not None and level >= needs:
+            if answer is not None and level >= needs and not silent:
                 error, data = answer
                 status = encode(frame.identifier, error, data)
                 _later(device, bus, status, delay, baud)
@@ -163,6 +170,13 @@ class Protocol1:
             _later(device, bus, status, device.return_delay + device.identifier * slot)
 
 
+def _changes_eeprom(frame: Frame1) -> bool:
+    """Whether an instruction is one that the second id of an X does not give access to."""
+    if frame.instruction in (WRITE, REG_WRITE):
+        return frame.parameters[:1] < bytes((EEPROM_END,))
+    return frame.instruction == RESET
+
+
 def _later(
     device: Device, bus: Bus, status: bytes, delay: float | None = None, baud: int = 0
 ) -> None:
@@ -195,6 +209,8 @@ def _sync_write(parameters: bytes, bus: Bus) -> None:
     address, count = parameters[0], parameters[1]
     for at in range(2, len(parameters) - count, count + 1):
         for device in bus.listeners(parameters[at]):
+            if device.identifier != parameters[at] and address < EEPROM_END:
+                continue
             device.write(address, parameters[at + 1 : at + 1 + count], bus.schedule.now)
     if address < IDENTITY_END:
         bus.refresh()

@@ -8,11 +8,13 @@ roll about y: the data sheet's example, pitch -1.10 and roll 20.85 degrees, feel
 
 import math
 import struct
+from collections.abc import Sequence
 from functools import partial
 from typing import Final
 
 from hal.joints import Array
 from sim_twin.wire.bus import Bus, Heard
+from sim_twin.wire.device import Device
 from sim_twin.wire.imu import GRAVITY, ImuSource
 
 HEADER: Final = b"\xaa\xaa"
@@ -50,6 +52,9 @@ class Mute:
     def seal(self, frame: bytes) -> bytes:
         """Return `frame` with its checksum."""
         return frame[:-1] + bytes((sum(frame[2:-1]) & 0xFF,))
+
+    def meet(self, devices: Sequence[Device]) -> None:
+        """There are none."""
 
     def feed(self, chunk: bytes) -> list[Heard]:
         """Hear nothing."""

@@ -1,11 +1,21 @@
 """An X-series servo on a bus: who it is, and what the instructions of the protocol do to it."""
 
+from collections.abc import Sequence
+
 from hal.servo_model import ServoModel
 from sim_twin.wire.backup import RESTORE, STORE
 from sim_twin.wire.firmware import Firmware
 from sim_twin.wire.health import OVERLOAD
+from sim_twin.wire.old_errors import old_error
 from sim_twin.wire.present import MOTION
-from sim_twin.wire.register_file import BAD_ACCESS, BAD_INSTRUCTION, BAD_RANGE, FAILED, OK
+from sim_twin.wire.register_file import (
+    BAD_ACCESS,
+    BAD_INSTRUCTION,
+    BAD_RANGE,
+    FAILED,
+    OK,
+    Item,
+)
 from sim_twin.wire.shaft import Shaft
 from sim_twin.wire.x_series import BAUD_RATES, PRESENT, Model
 
@@ -59,6 +69,15 @@ class Servo:
     def shadow(self) -> int:
         """A second id, on whose instructions it acts without an answer; 253 and up: none."""
         return self.registers.memory[12]
+
+    @property
+    def protocol(self) -> int:
+        """The protocol that it speaks: a new one at once, as with id and baud rate (assumed).
+
+        The remote controls' protocols of the X330 are not emulated: without their signal at start
+        such a servo speaks protocol 2 (e-Manual of the XL330, Protocol Type).
+        """
+        return 1 if self.registers.memory[13] == 1 else 2
 
     @property
     def baud(self) -> int:
@@ -117,18 +136,20 @@ class Servo:
             firmware.present.write(now, firmware.driving, firmware.health.temperature, motion)
         data = self.registers.read(address, count)
         if data is None:
-            return self.firmware.alert | BAD_ACCESS, b""
-        return self.firmware.alert, data
+            return self._said(BAD_ACCESS), b""
+        return self._said(OK), data
 
     def write(self, address: int, data: bytes, now: float) -> int:
         """Do a write and return the error byte."""
         error, writes = self.registers.check(address, data, self.firmware.torque_on)
         error = error or self.firmware.veto(writes)
-        if not error:
-            self.registers.commit(writes)
-            for item, value in writes:
-                self.firmware.written(item.name, value, now)
-        return self.firmware.alert | error
+        if error:
+            return self._said(error, writes)
+        said = self._said(OK)  # in the protocol in which it was told
+        self.registers.commit(writes)
+        for item, value in writes:
+            self.firmware.written(item.name, value, now)
+        return said
 
     def register_write(self, address: int, data: bytes) -> int:
         """Keep a write for `action` and return the error byte."""
@@ -137,12 +158,12 @@ class Servo:
         if not error:
             self._registered = (address, data)
             self.registers.set("registered_instruction", 1)
-        return self.firmware.alert | error
+        return self._said(error, writes)
 
     def action(self, now: float) -> int:
         """Do the write that is kept and return the error byte."""
         if self._registered is None:
-            return self.firmware.alert | BAD_INSTRUCTION
+            return self._said(BAD_INSTRUCTION)
         address, data = self._registered
         self._registered = None
         self.registers.set("registered_instruction", 0)
@@ -158,9 +179,9 @@ class Servo:
         """Reset everything (0xFF), but the id (1), but id and baud rate (2); then reboot."""
         keep = {0xFF: (), 0x01: ("id",), 0x02: ("id", "baud_rate")}.get(option)
         if keep is None or (broadcast and option == 0xFF):
-            return self.firmware.alert | BAD_RANGE
+            return self._said(BAD_RANGE)
         if self.firmware.torque_on:
-            return self.firmware.alert | BAD_ACCESS
+            return self._said(BAD_ACCESS)
         items = [item for item in self.registers.eeprom() if item.name not in keep]
         self.registers.reset(items)
         self.reboot(now)
@@ -169,12 +190,12 @@ class Servo:
     def clear(self, parameters: bytes) -> int:
         """Forget the turns and return the error byte; not while moving."""
         if parameters != b"\x01DXL\x22":
-            return self.firmware.alert | BAD_RANGE
+            return self._said(BAD_RANGE)
         self.sample()
         if self.firmware.present.moving:
-            return self.firmware.alert | FAILED
+            return self._said(FAILED)
         self.firmware.hold_here(forget=True)
-        return self.firmware.alert
+        return self._said(OK)
 
     def backup(self, parameters: bytes, now: float) -> int:
         """Store the control table, or restore its EEPROM and reboot; return the error byte.
@@ -183,17 +204,17 @@ class Servo:
         """
         firmware, backup = self.firmware, self.firmware.backup
         if not backup.known:
-            return firmware.alert | BAD_INSTRUCTION
+            return self._said(BAD_INSTRUCTION)
         if parameters not in (STORE, RESTORE):
-            return firmware.alert | BAD_RANGE
+            return self._said(BAD_RANGE)
         if firmware.torque_on or (parameters == RESTORE and not backup.ready):
-            return firmware.alert | FAILED
+            return self._said(FAILED)
         if parameters == STORE:
             backup.store()
         else:
             backup.restore()
             self.reboot(now)
-        return firmware.alert
+        return self._said(OK)
 
     def overload(self, now: float) -> None:
         """Take itself for overloaded."""
@@ -217,3 +238,10 @@ class Servo:
         if volts > 0.0 and not self.firmware.powered:
             self._ready = now + BOOT_SECONDS
         self.firmware.set_supply(volts, now)
+
+    def _said(self, error: int, writes: Sequence[tuple[Item, int]] = ()) -> int:
+        """Return the error byte of an answer, as its protocol has it."""
+        firmware = self.firmware
+        if self.protocol == 1:
+            return old_error(error, firmware.health.errors, {item.name for item, _ in writes})
+        return firmware.alert | error

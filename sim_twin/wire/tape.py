@@ -1,10 +1,12 @@
 """A world that answers from a trace, without servos and physics, and checks the host's bytes."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
 from sim_twin.wire.bus import BITS, Bus, Heard
+from sim_twin.wire.device import Device
 from sim_twin.wire.inbox import Burst
 from sim_twin.wire.schedule import Schedule
 from sim_twin.wire.shaft import InertiaShaft
@@ -33,6 +35,9 @@ class Tape:
     def seal(self, frame: bytes) -> bytes:
         """Return `frame`."""
         return frame
+
+    def meet(self, devices: Sequence[Device]) -> None:
+        """There are none."""
 
     def feed(self, chunk: bytes) -> list[Heard]:
         """Compare what the host sends, and schedule what was answered."""

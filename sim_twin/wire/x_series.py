@@ -38,7 +38,7 @@ REGISTERS: Final = (
     Item(10, 1, "drive_mode", "RW", 0, 0, 13),
     Item(11, 1, "operating_mode", "RW", 3, 0, 16),
     Item(12, 1, "secondary_id", "RW", 255, 0, 255),
-    Item(13, 1, "protocol_type", "RW", 2, 2, 2),  # 1 is answered with Data Range Error
+    Item(13, 1, "protocol_type", "RW", 2, 1, 2),
     Item(20, 4, "homing_offset", "RW", 0, -OFFSET, OFFSET),
     Item(24, 4, "moving_threshold", "RW", 10, 0, 1023),
     Item(31, 1, "temperature_limit", "RW", 80, 0, 100),
@@ -172,7 +172,8 @@ def _amps(limit: int) -> dict[str, Limits]:
 
 def _x330(number: int, name: str, milliamps: int, changed: dict[str, Limits]) -> Model:
     return Model(
-        name, number, SIX_MODES, 1.0e-3, _PORTS, {**_heat(70), **_amps(milliamps), **changed},
+        name, number, SIX_MODES, 1.0e-3, _PORTS,
+        {**_heat(70), **_amps(milliamps), "protocol_type": (2, 2, 22), **changed},
         _SMALL, firmware=52, fast_since=46, bauds=7,
     )  # fmt: skip
 

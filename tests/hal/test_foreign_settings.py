@@ -41,6 +41,16 @@ def held(bus: ServoBus, robot: str, name: str) -> int:
         return Bus(port, family).read(KNEE[robot], family.table(MODEL[robot])[name])
 
 
+def test_a_servo_that_speaks_protocol_1_is_told_by_joint_and_id() -> None:
+    with ServoBus("op3", physics="inertia") as bus:
+        left_with(bus, "op3", protocol_type=1)
+        with pytest.raises(HardwareError) as caught:
+            bus.robot()
+        assert "knee' id 13: XM430-W350 speaks protocol 1: set its Protocol Type" in str(
+            caught.value
+        )
+
+
 @pytest.mark.parametrize(
     ("robot", "offset", "off"),
     [("op3", 512, "45.0"), ("op3", -20, "1.8"), ("duck", 500, "43.9"), ("duck", -1500, "131.8")],

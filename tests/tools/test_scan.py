@@ -1,12 +1,15 @@
 import io
 import json
 from collections.abc import Iterator
+from contextlib import closing
 from typing import Any
 
 import pytest
 from rich.console import Console
 
-from hal.families import DYNAMIXEL_X, FAMILIES, FEETECH_STS
+from hal.bus import Bus
+from hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FAMILIES, FEETECH_STS
+from hal.open_port import open_port
 from hal.port import Port
 from hal.protocols import protocol1, protocol2
 from tests.tools.conftest import Windup
@@ -115,6 +118,25 @@ def test_somebody_who_talks_unasked_is_heard() -> None:
     found = Survey(Port(Chatter(lambda _: b""), "line"), {})
     found.look(4_000_000, lambda _: None)
     assert "not understood (first bytes aa aa 07)" in said(found)
+
+
+def test_an_x_that_speaks_protocol_1_is_told_by_its_model() -> None:
+    with closing(open_port("twin://bench?servos=XM430-W350:1-2")) as port:
+        register = DYNAMIXEL_X.table("XM430-W350")["protocol_type"]
+        Bus(port).command(2, register, 1)
+        found = Survey(port, {})
+        found.look(BAUD, lambda _: None)
+    assert [row["id"] for row in found.servos] == [1]
+    assert (found.unknown, found.strange) == ([], [])
+    assert said(found) == (
+        "id 2 at 1000000 baud: XM430-W350 speaks protocol 1: "
+        "set its Protocol Type (register 13) to 2 with DYNAMIXEL Wizard"
+    )
+
+
+def test_protocol_1_is_looked_for_at_the_baud_rates_of_the_x_series_too() -> None:
+    rates = {rate for family, rate in places(port_of(lambda _: b"")) if family is DYNAMIXEL_1}
+    assert rates == {*DYNAMIXEL_1.bauds, *DYNAMIXEL_X.bauds}
 
 
 def test_an_echo_is_called_one_and_nothing_is_made_of_it() -> None:

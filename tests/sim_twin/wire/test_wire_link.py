@@ -1,5 +1,6 @@
 """Who may plug into a TCP port of an emulator, and where a pseudo-terminal may be put."""
 
+import os
 import socket
 import struct
 import subprocess
@@ -13,6 +14,7 @@ from urllib.parse import urlsplit
 import pytest
 
 from hal.errors import UsageError
+from sim_twin.wire.emulate import _readable
 from sim_twin.wire.link import Pty, Tcp
 
 PATIENCE = 20.0  # s for the machine
@@ -171,3 +173,17 @@ def test_a_file_and_a_folder_that_is_not_there_are_told(tmp_path: Path) -> None:
         Pty(tmp_path / "bus")
     with pytest.raises(UsageError, match=r"cannot make .*: No such file or directory"):
         Pty(tmp_path / "nowhere" / "bus")
+
+
+def test_descriptors_beyond_those_that_select_takes_are_waited_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("sim_twin.wire.emulate.SELECTABLE", 0)
+    reader, writer = os.pipe()
+    try:
+        assert _readable([reader], 0.0) == []
+        os.write(writer, b"x")
+        assert _readable([reader], PATIENCE) == [reader]
+    finally:
+        os.close(reader)
+        os.close(writer)
