@@ -14,7 +14,7 @@ class Differs(NamedTuple):
         id: Its id there.
         joint: Its joint's name.
         settings: What has to be written.
-        limits: What limits it more than the maker does; it stays.
+        limits: How it protects itself otherwise than it is delivered; that stays.
         repaired: What had to be written already for it to answer, in words; "" for nothing.
     """
 

@@ -87,7 +87,15 @@ class PortError(HardwareError):
 
 
 class NoAnswerError(HardwareError):
-    """A servo that was asked said nothing before the deadline."""
+    """A servo that was asked said nothing before the deadline.
+
+    Attributes:
+        came: How many bytes came that were no answer of its.
+    """
+
+    def __init__(self, message: str, came: int = 0) -> None:
+        super().__init__(message)
+        self.came = came
 
 
 class CorruptAnswerError(HardwareError):

@@ -4,6 +4,7 @@ import contextlib
 import errno
 import importlib
 import os
+import stat
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -18,6 +19,8 @@ from hal.port_access import access_remedy
 from hal.socket_port import RAW, Connection, SocketPort
 
 BAUD = 1_000_000
+MEMORY_DEVICES = 1
+"""Major number of /dev/null, /dev/zero and their like (Linux, admin-guide/devices.txt)."""
 
 
 def open_port(url: str, baud: int = BAUD, *, exclusive: bool = True) -> Port:
@@ -37,6 +40,7 @@ def open_port(url: str, baud: int = BAUD, *, exclusive: bool = True) -> Port:
             return SocketPort(opened, url)
         return NetworkPort(opened, url) if url.startswith(RFC2217) else Port(opened, url)
     device = _by_serial_number(url[4:]) if url.startswith("usb:") else url
+    _check_kind(device, url)
     if exclusive:
         _check_holder(device)
     opened = _open(device, url, baud, exclusive)
@@ -114,8 +118,7 @@ def _explain(device: str, url: str, error: Exception) -> str:
     if "://" in device:
         return f"{url} cannot be opened: {error}"
     if not os.path.exists(device):
-        ports = ", ".join(sorted(p.device for p in list_ports.comports())) or "none"
-        return f"no port {url}; ports there are: {ports}"
+        return f"no port {url}; ports there are: {_ports()}"
     if code == errno.EACCES or "ermission denied" in str(error):
         return f"no permission for {url}; {access_remedy(device)}"
     if code in (errno.EAGAIN, errno.EBUSY, errno.EWOULDBLOCK) or "lock port" in str(error):
@@ -132,6 +135,18 @@ def _busy(url: str, held_by: dict[int, str]) -> str:
     who = ", ".join(f"{name} (pid {pid})" for pid, name in held_by.items())
     it, pids = "it" if len(held_by) == 1 else "them", " ".join(map(str, held_by))
     return f"port {url} is in use by {who}; end {it} first: Ctrl-C there, or `kill -INT {pids}`"
+
+
+def _check_kind(device: str, url: str) -> None:
+    """Refuse what is there and cannot be a serial port: a file, a folder, a disk, /dev/null."""
+    with contextlib.suppress(OSError):  # it is not there, or not ours to see: opening says so
+        found = os.stat(device)
+        if not stat.S_ISCHR(found.st_mode) or os.major(found.st_rdev) == MEMORY_DEVICES:
+            raise PortError(f"{url} is no serial port; those that are there: {_ports()}")
+
+
+def _ports() -> str:
+    return ", ".join(sorted(p.device for p in list_ports.comports())) or "none"
 
 
 def _check_holder(device: str) -> None:

@@ -217,7 +217,7 @@ class Link(ABC):
         where = f"id {id} on {self._port.port.url} at {self._port.port.baud} baud"
         if result == self.timed_out and (came := self._port.port.received - before):
             raise NoAnswerError(
-                f"no answer from {where}, but {came} bytes that are none; run `windup scan`"
+                f"no answer from {where}, but {came} bytes that are none; run `windup scan`", came
             )
         if result == self.timed_out:
             raise NoAnswerError(f"no answer from {where}; is it powered? run `windup scan`")

@@ -41,13 +41,15 @@ def wanted_of(family: Family, mount: ServoMount) -> list[Want]:
 
 
 def limits(bus: Bus, id: int, model: ServoModel) -> list[Setting]:
-    """Return what limits servo `id` more than its maker does; `wanted` is the maker's value."""
+    """Return how servo `id` protects itself oddly; `wanted` is the value it is delivered with."""
     table = bus.family.table(model.name)
     found = []
-    for name, usual, _ in bus.family.usual:
-        present = bus.read(id, table[name]) if name in table else usual
-        if present < usual:
-            found.append(Setting(table[name], present, usual))
+    for usual in bus.family.usual(model):
+        if usual.name not in table:
+            continue
+        present = bus.read(id, table[usual.name])
+        if usual.is_odd(present):
+            found.append(Setting(table[usual.name], present, usual.value))
     return found
 
 

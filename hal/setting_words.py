@@ -1,4 +1,4 @@
-"""What is changed in servos, or limits them, in words: before it is written."""
+"""What is changed in servos, or how they protect themselves, in words: before it is written."""
 
 from collections.abc import Iterator, Sequence
 
@@ -20,7 +20,7 @@ def in_words(found: Sequence[Differs]) -> list[str]:
         for differs in found
         for limit in differs.limits
     ]
-    lines = ("servo settings are changed", changes), ("servos limit themselves", limits)
+    lines = ("servo settings are changed", changes), ("servos protect themselves oddly", limits)
     return [f"{head}: {_grouped(pairs, len(found))}" for head, pairs in lines if pairs]
 
 

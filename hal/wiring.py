@@ -102,7 +102,8 @@ def check_servos(
         try:
             found.append(Differs(bus, mount.id, name, *_inspect(bus, mount)))
         except HardwareError as error:
-            problems.setdefault(bus.port.url, []).append(f"joint {name!r} id {mount.id}: {error}")
+            who = f"joint {name!r} id {mount.id}: {_short(error)}"
+            problems.setdefault(bus.port.url, []).append(who)
     if board is not None:
         bus = buses[board.bus]
         if bus.family is not DYNAMIXEL_X:
@@ -120,16 +121,25 @@ def check_servos(
 def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting], str]:
     try:
         number = bus.ping(mount.id)
-    except NoAnswerError as error:
+    except NoAnswerError:
         other = bus.family.dialect.estranged(bus.port, mount.id)
         if other is None or other not in bus.family.numbers:
-            raise HardwareError(_short(error)) from None
+            raise
         raise HardwareError(f"{bus.family.model_name(other)} {PROTOCOL_1}") from None
-    except HardwareError as error:
-        raise HardwareError(_short(error)) from None
     if number != mount.model.model_number:
         there = bus.family.model_name(number)
         raise HardwareError(f"is a {there} where a {mount.model.name} should be")
+    try:
+        return _settings(bus, mount)
+    except NoAnswerError as error:
+        raise HardwareError(
+            f"answers a ping, but not every question after it{_strange(error)}; a loose cable, or "
+            "a weak supply?"
+        ) from None
+
+
+def _settings(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting], str]:
+    """Return what has to be written, how the servo protects itself, and what was repaired."""
     repaired = make_answer(bus, mount.id, mount.model)
     _check_offset(bus, mount)
     settings = differences(bus, mount)
@@ -161,10 +171,14 @@ def _check_offset(bus: Bus, mount: ServoMount) -> None:
 
 def _short(error: HardwareError) -> str:
     if isinstance(error, NoAnswerError):
-        return "no answer"
+        return f"no answer{_strange(error)}"
     if isinstance(error, CorruptAnswerError):
         return "only broken answers (two servos with this id?)"
     return str(error)
+
+
+def _strange(error: NoAnswerError) -> str:
+    return f", but {error.came} bytes that are none" if error.came else ""
 
 
 def _sentence(url: str, problems: list[str]) -> str:

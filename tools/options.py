@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import tyro
 
+from hal.errors import UsageError
 from robots import load_robot
 from tools.command import Command
 from tools.doubt_once import doubt_once
@@ -52,6 +53,8 @@ class Common(Command):
         url, robot = self.url, load_robot(self.robot)
         if url is not None:
             check_port(robot, url)
+        elif self.arm:
+            raise UsageError("--arm needs a --port; without one only the twin moves")
 
     def warn(self) -> None:
         """Say that the robot's MJCF is doubtful; see `Command.warn`."""

@@ -24,7 +24,7 @@ def mistake(arguments: list[str], commands: Mapping[str, type], said: str) -> st
     """
     name = arguments[0]
     if name not in commands:
-        near = _near(name, commands)
+        near = _near(name, (*commands, "--help"))
         return f"unknown command {name!r}{near}; `windup --help` lists all"
     known = options(commands[name])
     for word in takewhile(lambda word: word != "--", arguments[1:]):
@@ -32,6 +32,8 @@ def mistake(arguments: list[str], commands: Mapping[str, type], said: str) -> st
         if word.startswith("--") and option not in known:
             near = _near(option, known)
             return f"{name}: unknown option {option}{near}; `windup {name} --help` lists all"
+    if missing := re.match(r"Missing from windup \S+: (.*?)\.? \(required\)", gist(said)):
+        return f"{name}: {_wanted(missing[1])}; see `windup {name} --help`"
     return wrong_number(said) or f"{name}: {gist(said).rstrip('.')}; see `windup {name} --help`"
 
 
@@ -49,6 +51,19 @@ def options(command: Any) -> set[str]:
 def _near(word: str, known: Iterable[str]) -> str:
     near = get_close_matches(word, sorted(known), n=1, cutoff=0.6)
     return f" (did you mean {near[0]}?)" if near else ""
+
+
+def _wanted(missing: str) -> str:
+    """Return what to give, of the parser's line about an argument that is missing.
+
+    >>> _wanted("URL The port: /dev/ttyUSB0, usb:SERIAL")
+    'give URL (the port: /dev/ttyUSB0, usb:SERIAL)'
+    """
+    found = re.match(r"((?:--[\w-]+ )?[A-Z]+) (.*)", missing)
+    if found is None:
+        return f"give {missing}"
+    name, about = found.groups()
+    return f"give {name} ({about[:1].lower()}{about[1:]})"
 
 
 def gist(said: str) -> str:

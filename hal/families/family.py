@@ -15,6 +15,7 @@ import numpy.typing as npt
 from hal.errors import UsageError
 from hal.families.dialect import Dialect
 from hal.families.gain import Gain
+from hal.families.usual import Usual, protective_limits
 from hal.protocols.protocol2 import Span
 from hal.registers import Register, RegisterTable
 from hal.servo_model import ServoModel
@@ -117,8 +118,8 @@ class Family:
         latching: Does an error that has ended torque show until the power goes?
         wanted: The settings the stack relies on, in the order in which they are written.
         extended: What is wanted instead where a servo shall count many turns; None where none can.
-        usual: Settings that limit a servo more where they are lower than the maker's; they are
-            its owner's, and only shown.
+        usual: How a model protects itself as its maker delivers it; what is set otherwise is its
+            owner's, and only shown.
         gain: How stiffness is set on a model.
         alert: Bits of an answer's error byte that say the servo is unwell.
         errors: Bit of an error to its meaning.
@@ -149,7 +150,7 @@ class Family:
     latching: bool = False
     current: Block | None = None
     extended: Want | None = None
-    usual: Sequence[Want] = ()
+    usual: Callable[[ServoModel], Sequence[Usual]] = protective_limits
     check_alone: bool = False
     errors_in_answers: bool = True
     goal_wakes: bool = True

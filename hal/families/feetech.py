@@ -7,6 +7,7 @@ until the power goes, so the loop may change gains without wearing anything.
 from hal.families.dialect import Feetech
 from hal.families.family import Block, Family, Mark, Want
 from hal.families.gain import Gain
+from hal.families.usual import Usual, protective_limits
 from hal.servo_model import ServoModel
 from hal.servos.feetech_registers import (
     BAUD_CODES,
@@ -62,13 +63,18 @@ def _wanted(model: ServoModel) -> tuple[Want, ...]:
 
 
 USUAL = (
-    Want("protection_current", 500),
-    Want("overload_torque", 80),
-    Want("protective_torque", 20),
-    Want("protection_time", 200),
-    Want("overcurrent_time", 200),
+    Usual("protection_current", 500),
+    Usual("overload_torque", 80),
+    Usual("protective_torque", 20),
+    Usual("protection_time", 200),
+    Usual("overcurrent_time", 200),
 )
 """What protects a servo, as its maker delivers it (memory table, 28 and 34 to 38)."""
+
+
+def _usual(model: ServoModel) -> tuple[Usual, ...]:
+    return *protective_limits(model), *USUAL
+
 
 _STS_GAIN = Gain(STS["position_p_gain"], LARGEST_P)
 _SCS_GAIN = Gain(SCS["position_p_gain"], LARGEST_P)
@@ -99,7 +105,7 @@ FEETECH_STS = Family(
     health=Block(56, 8, _STS_STATE),
     check=Block(40, 24, _STS_STATE),
     wanted=_sts_wanted,
-    usual=USUAL,
+    usual=_usual,
     gain=_sts_gain,
     alert=_ALERT,
     errors=HARDWARE_ERRORS,
@@ -122,7 +128,7 @@ FEETECH_SCS = Family(
     health=Block(56, 8, _SCS_STATE),
     check=Block(40, 24, _SCS_STATE),
     wanted=_wanted,
-    usual=USUAL,
+    usual=_usual,
     gain=_scs_gain,
     alert=_ALERT,
     errors=HARDWARE_ERRORS,

@@ -8,6 +8,7 @@ from hal.bus import Bus
 from hal.errors import HardwareError
 from hal.families import family_of
 from hal.families.feetech import USUAL
+from hal.families.usual import protective_limits
 from hal.imu.opencr import OpenCr
 from hal.servo_setup import power_up
 from hal.servos import servo_model
@@ -32,6 +33,16 @@ def left_with(bus: ServoBus, robot: str, **values: int) -> None:
             host.write(KNEE[robot], table["lock"], 0)
         for name, value in values.items():
             host.sync_write(table[name], {KNEE[robot]: value})
+
+
+def delivered() -> Robot:
+    """Return a robot whose servos protect themselves as their maker delivers them."""
+    robot = Robot()
+    for id in (1, 2, 3, 4):
+        robot.serial.put(id, 31, 80, 1)
+        robot.serial.put(id, 32, 160, 2)
+        robot.serial.put(id, 34, 95, 2)
+    return robot
 
 
 def held(bus: ServoBus, robot: str, name: str) -> int:
@@ -112,7 +123,7 @@ def test_what_changes_the_meaning_of_a_count_or_a_command_is_written(
 
 
 def test_what_is_written_is_said_first(caplog: pytest.LogCaptureFixture) -> None:
-    robot = Robot()
+    robot = delivered()
     robot.serial.put(2, 12, 7, 1)
     robot.serial.put(3, 63, 0, 1)
     robot.backend.configure()
@@ -148,13 +159,15 @@ def test_limits_of_its_owner_are_left_and_shown(caplog: pytest.LogCaptureFixture
     wires = Wires()
     wires.add("body", {1: sts, 2: sts})
     for id in (1, 2):
-        for name, value, _ in USUAL:
-            wires["body"].set(id, name, value)
+        for usual in (*protective_limits(sts), *USUAL):
+            wires["body"].set(id, usual.name, usual.value)
     wires["body"].set(2, "overload_torque", 25)
     backend = robot(wires, [mount(sts, "body", 1), mount(sts, "body", 2)])
     backend.connect()
     backend.configure()
-    assert "servos limit themselves: overload_torque 25 (usual: 80) at j1" in caplog.messages
+    assert (
+        "servos protect themselves oddly: overload_torque 25 (usual: 80) at j1" in caplog.messages
+    )
     assert wires["body"].show(2, "overload_torque") == 25
 
 
@@ -167,3 +180,32 @@ def test_an_offset_that_the_robots_file_states_is_kept() -> None:
     backend.connect()
     backend.configure()
     assert wires["body"].show(1, "homing_offset") == -300
+
+
+def test_a_temperature_limit_other_than_the_makers_is_shown(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    robot = delivered()
+    robot.serial.put(2, 31, 30, 1)
+    robot.serial.put(3, 31, 100, 1)
+    robot.backend.configure()
+    assert caplog.messages[-1] == (
+        "servos protect themselves oddly: temperature_limit 30 (usual: 80) at j1; "
+        "temperature_limit 100 (usual: 80) at j2"
+    )
+
+
+def test_a_range_of_supply_is_odd_only_where_it_is_narrow() -> None:
+    _, low, high = protective_limits(servo_model("XM430-W350"))
+    assert (low.is_odd(110), low.is_odd(60)) == (True, False)
+    assert (high.is_odd(130), high.is_odd(161)) == (True, False)
+
+
+@pytest.mark.parametrize("robot", KNEE)
+def test_who_answers_half_of_what_is_asked_is_not_taken_for_one_without_power(robot: str) -> None:
+    half = f"drop:0.5:ids={KNEE[robot]}"
+    with ServoBus(robot, seed=1, faults=half) as bus, pytest.raises(HardwareError) as raised:
+        bus.robot()
+    assert "answers a ping, but not every question" in str(raised.value)
+    assert "powered" not in str(raised.value)
+    assert str(raised.value).count("windup scan") == 1

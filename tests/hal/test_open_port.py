@@ -141,3 +141,9 @@ def test_any_url_of_pyserial_is_a_port() -> None:
     with open_port("loop://") as port:
         port.write(b"round")
         assert port.read(5, port.clock.now() + 1.0) == b"round"
+
+
+@pytest.mark.parametrize("path", ["/dev/null", "/dev/zero", __file__, "/"])
+def test_what_is_no_serial_port_is_told_so(path: str) -> None:
+    with pytest.raises(PortError, match=f"^{path} is no serial port; those that are there: "):
+        open_port(path)

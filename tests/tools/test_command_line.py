@@ -5,7 +5,7 @@ from tools.cli import COMMANDS
 from tools.overview import overview
 
 LINES = {
-    "help": ("walk op3 --hlep", "walk: unknown option --hlep (did you mean --help?)"),
+    "misspelt": ("walk op3 --hlep", "walk: unknown option --hlep (did you mean --help?)"),
     "alone": ("walk --hlep", "walk: unknown option --hlep (did you mean --help?)"),
     "option": ("walk op3 --stepps 3", "(did you mean --steps?); `windup walk --help` lists all"),
     "value": ("walk op3 --stepps=3", "unknown option --stepps (did you mean --steps?)"),
@@ -14,7 +14,10 @@ LINES = {
     "command": ("wlak op3", "unknown command 'wlak' (did you mean walk?); `windup --help` lists"),
     "other": ("dance", "unknown command 'dance'; `windup --help` lists all"),
     "nothing": ("", "give a command, such as `windup robots`; `windup --help` lists all"),
-    "positional": ("walk", "see `windup walk --help`"),
+    "positional": ("walk", "walk: give ROBOT (a robot's name"),
+    "needed": ("stop op3", "stop: give --port STR (its servo bus; see `windup walk --help`);"),
+    "help": ("help", "unknown command 'help' (did you mean --help?)"),
+    "armed twin": ("stand op3 --arm", "--arm needs a --port; without one only the twin moves"),
     "choice": ("walk op3 --sampling best", "see `windup walk --help`"),
     "swept": ("sweep walk op3 --hlep --out a.csv", "unknown option --hlep (did you mean --help?)"),
     "plot": ("stand op3 --plot a.png", "stand: unknown option --plot"),
