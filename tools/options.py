@@ -55,7 +55,10 @@ class Common(Command):
             check_port(robot, url)
         elif self.arm:
             raise UsageError("--arm needs a --port; without one only the twin moves")
-        doubt_once(robot)
+
+    def warn(self) -> None:
+        """Say that the robot's MJCF is doubtful; see `Command.warn`."""
+        doubt_once(load_robot(self.robot))
 
     @property
     def url(self) -> str | None:
