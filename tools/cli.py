@@ -87,6 +87,7 @@ def run(arguments: list[str] | None = None) -> int:
         command = parse(separate(words))
         command.check()
         check_writable(getattr(command, "json", None))
+        command.warn()
         status = int(command.run())
         _say_warnings()
         return _say_lost(status)

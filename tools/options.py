@@ -58,7 +58,10 @@ class Common(Command):
                 raise UsageError("--noise is of a twin's start pose; leave it or --port away")
         elif self.arm:
             raise UsageError("--arm needs a --port; without one only the twin moves")
-        doubt_once(robot)
+
+    def warn(self) -> None:
+        """Say that the robot's MJCF is doubtful; see `Command.warn`."""
+        doubt_once(load_robot(self.robot))
 
     @property
     def url(self) -> str | None:

@@ -11,7 +11,7 @@ from hal.servos import servo_model
 from robots import RobotDescription, load_robot
 from sim_twin.twin import Twin
 from sim_twin.wire.address import BENCH, Address, parse_servos
-from sim_twin.wire.bus import Bus, Language, Timing
+from sim_twin.wire.bus import Bus, Timing
 from sim_twin.wire.device import Device
 from sim_twin.wire.families import PROTOCOLS, full_name, make_language, make_servo
 from sim_twin.wire.faults import Faults
@@ -19,6 +19,7 @@ from sim_twin.wire.grips import bench_grips, robot_grips
 from sim_twin.wire.hand import parse_hands
 from sim_twin.wire.imu import ImuSource, RestingImu
 from sim_twin.wire.imu_faults import FaultyImu
+from sim_twin.wire.language import Language
 from sim_twin.wire.opencr import OpenCr
 from sim_twin.wire.rvc import BAUD as RVC_BAUD
 from sim_twin.wire.rvc import Mute, start_rvc

@@ -7,10 +7,11 @@ own.
 from collections.abc import Sequence
 from typing import Final
 
-from sim_twin.wire.bus import Bus, Heard
+from sim_twin.wire.bus import Bus
 from sim_twin.wire.device import Device
 from sim_twin.wire.dynamixel2 import Dynamixel2
 from sim_twin.wire.frames1 import Frame1, Frame1Error
+from sim_twin.wire.language import Heard
 from sim_twin.wire.protocol1 import DYNAMIXEL1, Protocol1
 
 OLD: Final = 1

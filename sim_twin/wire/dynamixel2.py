@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from sim_twin.wire.bus import Bus, Heard
+from sim_twin.wire.bus import Bus
 from sim_twin.wire.device import Device
 from sim_twin.wire.frames import (
     BROADCAST,
@@ -19,6 +19,7 @@ from sim_twin.wire.frames import (
     encode_status,
     seal,
 )
+from sim_twin.wire.language import Heard
 from sim_twin.wire.register_file import BAD_CRC, BAD_INSTRUCTION, BAD_LENGTH, EEPROM_END, OK
 from sim_twin.wire.turns import READS, Round, Turn, answering, take_turns
 

@@ -5,11 +5,11 @@ from typing import Final
 from hal.errors import UnknownNameError, UsageError
 from hal.servos import servo_model
 from sim_twin.wire import dynamixel1_tables, feetech_tables, x_series
-from sim_twin.wire.bus import Language
 from sim_twin.wire.device import Device
 from sim_twin.wire.dynamixel import Dynamixel
 from sim_twin.wire.dynamixel1_servo import Dynamixel1Servo
 from sim_twin.wire.feetech_servo import FeetechServo
+from sim_twin.wire.language import Language
 from sim_twin.wire.protocol1 import DYNAMIXEL1, FEETECH, Protocol1
 from sim_twin.wire.servo import Servo
 from sim_twin.wire.shaft import Shaft

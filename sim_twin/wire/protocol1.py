@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Final, NamedTuple
 
-from sim_twin.wire.bus import BITS, Bus, Heard
+from sim_twin.wire.bus import BITS, Bus
 from sim_twin.wire.device import Device
 from sim_twin.wire.frames1 import (
     BROADCAST,
@@ -17,6 +17,7 @@ from sim_twin.wire.frames1 import (
     encode,
     seal,
 )
+from sim_twin.wire.language import Heard
 from sim_twin.wire.register_file import EEPROM_END
 from sim_twin.wire.turns import READS, Round, Turn, take_turns
 

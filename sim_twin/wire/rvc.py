@@ -13,9 +13,10 @@ from functools import partial
 from typing import Final
 
 from hal.joints import Array
-from sim_twin.wire.bus import Bus, Heard
+from sim_twin.wire.bus import Bus
 from sim_twin.wire.device import Device
 from sim_twin.wire.imu import GRAVITY, ImuSource
+from sim_twin.wire.language import Heard
 
 HEADER: Final = b"\xaa\xaa"
 BAUD: Final = 115_200

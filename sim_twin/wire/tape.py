@@ -5,9 +5,10 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from sim_twin.wire.bus import BITS, Bus, Heard
+from sim_twin.wire.bus import BITS, Bus
 from sim_twin.wire.device import Device
 from sim_twin.wire.inbox import Burst
+from sim_twin.wire.language import Heard
 from sim_twin.wire.schedule import Schedule
 from sim_twin.wire.shaft import InertiaShaft
 from sim_twin.wire.trace import FROM_HOST, TO_HOST, Line, TraceError, difference, read_trace

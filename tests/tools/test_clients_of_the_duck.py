@@ -181,6 +181,7 @@ def test_rustypot_sync_writes_goals_and_sees_the_speed_with_its_sign(pot: Any, s
 def test_ftservos_own_sdk_in_a_process_of_its_own(bus: str) -> None:
     # It has the name of feetech-servo-sdk, so it lies beside the environment, see the Makefile.
     beside = Path(sys.prefix) / "ftservo"
+    assert beside.is_dir(), "ftservo-python-sdk is not installed: run `make .venv/clients.stamp`"
     client = Path(__file__).with_name("ftservo_client.py")
     ran = subprocess.run(
         [sys.executable, str(client), bus],

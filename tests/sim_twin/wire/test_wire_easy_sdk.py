@@ -55,6 +55,18 @@ def test_it_finds_motors_and_knows_their_models(connector: Any) -> None:
         connector.createAllMotors(9, 3)
 
 
+def test_it_finds_all_motors_and_reads_and_writes_their_registers(connector: Any) -> None:
+    def everybody() -> bool:
+        return sorted(motor.id for motor in connector.createAllMotors()) == [1, 2, 3]
+
+    wait_for(lambda: answered(everybody))
+    for size, address, value in ((1, 65, 1), (2, 84, 700), (4, 112, 100)):
+        before = getattr(connector, f"read{size}ByteData")(2, address)
+        getattr(connector, f"write{size}ByteData")(2, address, value)
+        assert getattr(connector, f"read{size}ByteData")(2, address) == value != before
+        getattr(connector, f"write{size}ByteData")(2, address, before)
+
+
 def test_it_reads_the_limits_that_it_has_set(motor: Any) -> None:
     for name, value in (
         ("MaxPositionLimit", 4000),
@@ -139,19 +151,56 @@ def test_it_changes_an_id_reboots_and_resets(connector: Any) -> None:
     motor.changeID(2)
     motor.LEDOn()
     motor.reboot()
-    wait_for(lambda: answers(motor))
+    wait_for(lambda: answered(motor.ping))
     assert motor.isLEDOn() == 0
     motor.setVelocityLimit(77)
     motor.factoryResetExceptIDAndBaudRate()
-    wait_for(lambda: answers(motor))
+    wait_for(lambda: answered(motor.ping))
     assert motor.getVelocityLimit() != 77
 
 
-def answers(motor: Any) -> bool:
+def answered(call: Callable[[], Any]) -> bool:
     try:
-        return bool(motor.ping())
+        return bool(call())
     except DxlRuntimeError:
         return False
+
+
+def test_it_resets_all_but_the_id_and_then_all(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(dynamixel_sdk.port_handler, "LATENCY_TIMER", 100)
+    with emulator("twin://bench?servos=XM430-W350:7", tmp_path / "servo") as name:
+        connector = Connector(name, 1_000_000)
+        wait_for(lambda: answered(lambda: connector.ping(7)))
+        connector.createMotor(7).factoryResetExceptID()
+        connector.closePort()
+        connector = Connector(name, 57_600)
+        wait_for(lambda: answered(lambda: connector.ping(7)))
+        connector.createMotor(7).factoryResetAll()
+        wait_for(lambda: answered(lambda: connector.ping(1)))
+        connector.closePort()
+
+
+@pytest.mark.parametrize(
+    ("mode", "stage", "counts"),
+    [
+        (OperatingMode.VELOCITY, "stageSetGoalVelocity", -60),
+        (OperatingMode.CURRENT, "stageSetGoalCurrent", -40),
+        (OperatingMode.PWM, "stageSetGoalPWM", -200),
+    ],
+)
+def test_a_group_drives_motors_backward(
+    connector: Any, mode: OperatingMode, stage: str, counts: int
+) -> None:
+    motor, group = connector.createMotor(1), connector.createGroupExecutor()
+    motor.setOperatingMode(mode)
+    motor.enableTorque()
+    group.addCmd(getattr(motor, stage)(counts))
+    group.executeWrite()
+    wait_for(lambda: motor.getPresentVelocity() < -20)
+    motor.disableTorque()
+    motor.setOperatingMode(OperatingMode.POSITION)
 
 
 def test_a_group_writes_and_reads_one_register_or_several(connector: Any) -> None:
@@ -175,6 +224,10 @@ def test_a_group_writes_and_reads_one_register_or_several(connector: Any) -> Non
     wait_for(lambda: abs(group.executeRead()[0] - 2000) < 8)
     assert group.executeRead()[1] == 1
     group.clearStagedReadCommands()
+    group.addCmd(motors[1].stageLEDOff())
+    group.executeWrite()
+    group.clearStagedWriteCommands()
+    wait_for(lambda: motors[1].isLEDOn() == 0)
     for stage in ("stageGetPresentVelocity", "stageGetPresentCurrent", "stageGetPresentPWM"):
         for motor in motors:
             group.addCmd(getattr(motor, stage)())

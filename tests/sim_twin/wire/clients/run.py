@@ -11,21 +11,24 @@ from typing import Any
 ROOT = Path(__file__).parents[4]
 
 
-def run_client(name: str, *arguments: str, package: str, paths: Sequence[Path] = ()) -> Any:
+def run_client(
+    name: str, *arguments: str, package: str | None = None, paths: Sequence[Path] = ()
+) -> Any:
     """Return what the script ``NAME_client`` printed last, as JSON.
 
     Args:
         name: Which script of this folder.
         *arguments: Its arguments.
-        package: Folder beside the environment's packages, see the Makefile.
+        package: Folder beside the environment's packages, see the Makefile; None: it needs none.
         paths: Further folders to import from.
     """
-    beside = Path(sys.prefix) / package
-    assert beside.is_dir(), f"{package} is not installed: run `make .venv/clients.stamp`"
+    beside = [] if package is None else [Path(sys.prefix) / package]
+    for folder in beside:
+        assert folder.is_dir(), f"{package} is not installed: run `make .venv/clients.stamp`"
     ran = subprocess.run(
         [sys.executable, "-m", f"tests.sim_twin.wire.clients.{name}_client", *arguments],
         cwd=ROOT,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (beside, *paths)))},
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (*beside, *paths)))},
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
