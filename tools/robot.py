@@ -113,6 +113,7 @@ class Robot(Session):
                 state=state or "true",
                 paced=realtime,
                 delay=delay,
+                noise=noise,
                 seed=seed,
                 world=world,
             )
@@ -219,15 +220,16 @@ class Robot(Session):
             if options.catch is not None:
                 self.supervisor = build_supervisor(self.description, walker, options.catch)
             end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
-            if self.paced and walker.planner is not None:
-                aside = plan_aside(self.description, options, self.predictor, self.period)
-                walker.planner = self._when_ready(stack.enter_context(aside))
-            self.start_at(walker.gait.file.start, needs_imu=True)
-            self._watch_feet()
-            if disturb is not None:
-                disturb(self)
             report = WalkReport(self, walker, options, steps)
             try:
+                if self.paced and walker.planner is not None:
+                    aside = plan_aside(self.description, options, self.predictor, self.period)
+                    walker.planner = self._when_ready(stack.enter_context(aside))
+                self.start_at(walker.gait.file.start, needs_imu=True)
+                self._watch_feet()
+                if disturb is not None:
+                    disturb(self)
+                report.begin()
                 walking = self.supervisor or walker
                 until = self._looking(end, report)
                 walked = self.run(walking, until=until, rollouts=stopwatch, needs_imu=True)
