@@ -11,6 +11,7 @@ from pathlib import Path
 import mujoco
 
 from hal.errors import ConfigError, suggest
+from hal.families import family_of
 from hal.servos import servo_names
 from robots import mjcf
 from robots.couplings import coupling_mistakes
@@ -96,6 +97,10 @@ class Checks:
     def _joint_names(self) -> None:
         entries = [joint.name for joint in self.robot.joint]
         self._unique("joint", "joint", entries)
+        for index, body in enumerate(self.model.jnt_bodyid.tolist()):
+            if self.model.jnt_type[index] != mjcf.FREE and not self.model.joint(index).name:
+                on = self.model.body(body).name
+                self._fail("model", f"a joint of body {on!r} has no name in the MJCF: give it one")
         hinges = mjcf.hinge_names(self.model)
         for name in entries:
             self._known("joint", "MJCF hinge", name, hinges)
@@ -114,8 +119,8 @@ class Checks:
             extended = 'mode = "extended" where a Dynamixel X shall turn on and on'
             self._fail(
                 f"joint {names}",
-                "turns for ever in the MJCF: give lower and upper, at most one turn of its servo, "
-                f"or {extended}",
+                "no range in the MJCF, and no lower and upper here: give both, at most one turn "
+                f"of its servo, or {extended}",
             )
 
     def _limits(self, joint: JointEntry) -> None:
@@ -143,8 +148,20 @@ class Checks:
             self._fail(key, 'needs servo, bus and id: drive.kind is "servo"')
         self._known(f"{key}: servo", "servo", str(joint.servo), servo_names())
         self._known(f"{key}: bus", "bus", str(joint.bus), [bus.name for bus in self.robot.bus])
+        self._bus(key, joint)
         for mistake in travel_mistakes(joint):
             self._fail(key, mistake)
+
+    def _bus(self, key: str, joint: JointEntry) -> None:
+        """Fail unless a servo speaks as its bus does."""
+        family = family_of(str(joint.servo))
+        bus = next(bus for bus in self.robot.bus if bus.name == joint.bus)
+        if family.protocol != bus.protocol:
+            speaks = f'a {joint.servo} speaks "{family.protocol}"'
+            self._fail(key, f'{speaks}, and bus {bus.name!r} has protocol "{bus.protocol}"')
+        if bus.baud not in family.bauds:
+            rates = ", ".join(map(str, sorted(family.bauds)))
+            self._fail(f"bus {bus.name!r}: baud", f"a {joint.servo} has no {bus.baud}, but {rates}")
 
     def _servo_ids(self) -> None:
         self._unique("bus", "bus", [bus.name for bus in self.robot.bus])
@@ -168,8 +185,16 @@ class Checks:
             key = f"foot {foot.name!r}"
             self._known(f"{key}: body", "body", foot.body, mjcf.names(self.model, "body"))
             self._known(f"{key}: site", "site", foot.site, mjcf.names(self.model, "site"))
+            self._sole(key, foot)
             for sensor in foot.sensors:
                 self._sensor(f"{key}: sensors", sensor, TOUCH)
+
+    def _sole(self, key: str, foot: Foot) -> None:
+        """Fail unless a foot's site is on its body."""
+        site = self.model.site(foot.site)
+        if site.bodyid[0] != self.model.body(foot.body).id:
+            there = self.model.body(site.bodyid[0]).name
+            self._fail(f"{key}: site", f"{foot.site!r} is on body {there!r}, not on {foot.body!r}")
 
     def _imu(self) -> None:
         imu = self.robot.imu

@@ -22,10 +22,19 @@ def doubts(robot: RobotDescription) -> list[str]:
     bring_in_step(model, data.qpos, robot.joints.names)
     mujoco.mj_kinematics(model, data)
     return [
+        *_floor(robot, model),
         *_points(robot, model, data),
         *_armature(robot, model),
         *_neighbours(model, data),
     ]
+
+
+def _floor(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
+    """Yield that there is nothing to stand on."""
+    solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
+    if not robot.fixed and not (solid & (model.body_weldid[model.geom_bodyid] == 0)).any():
+        plane = '<geom type="plane" size="0 0 0.05"/>'
+        yield f"no floor: the robot falls for ever; add {plane} to the <worldbody>"
 
 
 def _points(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[str]:

@@ -78,8 +78,9 @@ def names(model: mujoco.MjModel, kind: str) -> tuple[str, ...]:
 
 
 def hinge_names(model: mujoco.MjModel) -> tuple[str, ...]:
-    """Return the names of all hinges, in MJCF order; '' where one has none."""
-    return tuple(model.joint(j).name for j in np.flatnonzero(model.jnt_type == HINGE))
+    """Return the names of all hinges that have one, in MJCF order."""
+    found = (model.joint(j).name for j in np.flatnonzero(model.jnt_type == HINGE))
+    return tuple(name for name in found if name)
 
 
 def hinge_axes(model: mujoco.MjModel, names: tuple[str, ...]) -> Array:

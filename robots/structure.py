@@ -55,7 +55,7 @@ def _actuators(model: mujoco.MjModel) -> str:
 def _of_the_joints(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
     entries = [joint.name for joint in robot.joint]
     if not entries:
-        yield "joint", "is missing: a robot has at least one [[joint]], with name, lower and upper"
+        yield "joint", "is missing: a robot has at least one [[joint]], with name and, on a bus, id"
     for index, kind in enumerate(model.jnt_type):
         name = model.joint(index).name
         passive = name in robot.unmoved
@@ -66,5 +66,11 @@ def _of_the_joints(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]
             how = "or name it in passive or a [[coupling]], where no servo moves it"
             yield "joint", f"the MJCF hinge {name!r} has no [[joint]]; give it one, {how}"
         if kind not in (mjcf.HINGE, mjcf.FREE) and not (kind == SLIDE and passive):
-            what = "slide" if kind == SLIDE else "ball joint"
-            yield "model", f"joint {name!r} is a {what}: servos turn hinges; passive slides can be"
+            yield "model", f"joint {name!r} is {_undriven(kind)}"
+
+
+def _undriven(kind: int) -> str:
+    """Return what a joint is that no servo can move, and what to do."""
+    if kind == SLIDE:
+        return "a slide, and servos turn hinges: name it in passive, if no servo moves it"
+    return "a ball joint: make it three hinges"

@@ -6,6 +6,7 @@ from math import cos, radians, sin, tan
 import mujoco
 import numpy as np
 
+from hal.errors import UsageError
 from hal.joints import Array
 from sim_twin.rough import RoughGround
 
@@ -79,10 +80,16 @@ class Ground:
         return float(tiles[min(int((x - self.start) / self.length), len(tiles) - 1), 1])
 
     def build(self, spec: mujoco.MjSpec) -> None:
-        """Replace the floor plane of `spec` by such ground, with the plane's own surface."""
+        """Replace the floor plane of `spec` by such ground, with the plane's own surface.
+
+        Raises:
+            UsageError: It has none.
+        """
         if self.flat:
             return
-        floor = next(g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_PLANE)
+        floor = next((g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_PLANE), None)
+        if floor is None:
+            raise UsageError("the MJCF has no plane to make other ground of; add one as its floor")
         begin = self.start - BEHIND
         self._tile(spec, floor, begin, 0.0, BEHIND, 0.0)
         if self.rough:

@@ -40,6 +40,7 @@ def run(arguments: list[str] | None = None) -> int:
         _quiet_mujoco()
         command.check()
         check_writable(getattr(command, "json", None))
+        command.warn()
         status = int(command.run())
         _say_warnings()
         return _say_lost(status)

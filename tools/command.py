@@ -19,6 +19,10 @@ class Command(ABC):
         """
         check_numbers(self, "--")
 
+    def warn(self) -> None:
+        """Say what is doubtful, once all is checked and before anything moves."""
+        return None
+
     @abstractmethod
     def run(self) -> int:
         """Do it; returns the exit status."""

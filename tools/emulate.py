@@ -57,11 +57,14 @@ class Emulate(Command):
         parse_hands(address.hand)
         check_writable(self.pty)
 
+    def warn(self) -> None:
+        """Say that the robot's MJCF is doubtful; see `Command.warn`."""
+        if (robot := self._address().robot) != BENCH:
+            doubt_once(load_robot(robot))
+
     def run(self) -> int:
         """Serve; returns the exit status."""
         address = self._address()
-        if address.robot != BENCH:
-            doubt_once(load_robot(address.robot))
         ready = partial(_on_ready, "" if address.robot == BENCH else self.robot)
         try:
             emulate(address, self.pty, self.tcp, on_ready=ready)

@@ -8,6 +8,7 @@ import tyro
 
 from hal.errors import UsageError
 from robots import load_robot
+from sim_twin.wire.address import SCHEME
 from tools.command import Command
 from tools.doubt_once import doubt_once
 from tools.faults import with_faults
@@ -53,9 +54,14 @@ class Common(Command):
         url, robot = self.url, load_robot(self.robot)
         if url is not None:
             check_port(robot, url)
+            if self.noise and not url.startswith(f"{SCHEME}://"):
+                raise UsageError("--noise is of a twin's start pose; leave it or --port away")
         elif self.arm:
             raise UsageError("--arm needs a --port; without one only the twin moves")
-        doubt_once(robot)
+
+    def warn(self) -> None:
+        """Say that the robot's MJCF is doubtful; see `Command.warn`."""
+        doubt_once(load_robot(self.robot))
 
     @property
     def url(self) -> str | None:

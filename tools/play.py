@@ -50,12 +50,12 @@ class Play(TwinOptions, Common):
     def _said(self, row: dict[str, Any]) -> str:
         """Return the line for people about one run."""
         if row["sim_time_s"] <= 0.0:
-            return f"{self.robot} did not play {self.graph!r}: {row['reason']}"
+            return f"{row['robot']} did not play {self.graph!r}: {row['reason']}"
         again = f", {row['retries']} tried again" if row["retries"] else ""
         worked = f"; {load_said(row['peak_load'], row['peak_joint'])}" if row["peak_joint"] else ""
         seconds = row["sim_time_s"] - row["first_motion_s"]
         return (
-            f"{self.robot} played {self.graph!r} for {seconds:.2f} s"
+            f"{row['robot']} played {self.graph!r} for {seconds:.2f} s"
             f"{again}: {row['reason']}{worked}"
         )
 

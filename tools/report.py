@@ -51,6 +51,10 @@ class WalkReport:
     loop: LoopReport = field(default_factory=LoopReport)
 
     def __post_init__(self) -> None:
+        self.begin()
+
+    def begin(self) -> None:
+        """Measure ways from where the robot is now."""
         self._origin = self._end = self._position()
 
     def note_place(self) -> None:

@@ -106,6 +106,7 @@ class Robot(Session):
                 state=state or "true",
                 paced=realtime,
                 delay=delay,
+                noise=noise,
                 seed=seed,
                 world=world,
             )
@@ -212,17 +213,19 @@ class Robot(Session):
             if options.catch is not None:
                 supervisor = build_supervisor(self.description, walker, options.catch)
             end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
-            if self.paced and walker.planner is not None:
-                aside = plan_aside(self.description, options, self.predictor, self.period)
-                walker.planner = self._when_ready(stack.enter_context(aside))
-            self.start_at(walker.gait.file.start, needs_imu=True)
-            if disturb is not None:
-                disturb(self)
             report = WalkReport(
                 self, walker, options, steps, self.predictor.stopwatch, self.seed,
-                Gauges(self.description.contacts), self._feet(), supervisor,
+                Gauges(self.description.contacts), supervisor=supervisor,
             )  # fmt: skip
             try:
+                if self.paced and walker.planner is not None:
+                    aside = plan_aside(self.description, options, self.predictor, self.period)
+                    walker.planner = self._when_ready(stack.enter_context(aside))
+                self.start_at(walker.gait.file.start, needs_imu=True)
+                report.feet = self._feet()
+                if disturb is not None:
+                    disturb(self)
+                report.begin()
                 walking = supervisor or walker
                 until = self._looking(end, report)
                 walked = self.run(walking, until=until, rollouts=stopwatch, needs_imu=True)

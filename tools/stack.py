@@ -21,6 +21,7 @@ from sim_twin.sensors import Sensors
 from sim_twin.twin import Twin
 from sim_twin.world import World
 from tools.build import build_estimator
+from tools.noisy_start import begin_noisily
 from tools.shape import can_estimate
 from tools.truth import Truth
 
@@ -72,6 +73,7 @@ def twin_stack(
     state: State,
     paced: bool,
     delay: float | None,
+    noise: float,
     seed: int,
     world: World | None = None,
 ) -> Stack:
@@ -84,6 +86,7 @@ def twin_stack(
     """
     _check_delay(delay, robot)
     twin = Twin(robot, delay=delay, world=world)
+    twin.reset(noise=noise, seed=seed)
     true = state == "true"
     errors = None if true else ImuErrors(OPENCR, twin.timestep, seed)
     estimator = None if true else build_estimator(robot, OPENCR.lag)
@@ -132,7 +135,7 @@ def wire_stack(
         sensor = servos.board or servos.imu
         estimator = _estimator(robot, twin, state, 0.0 if sensor is None else sensor.lag)
         if twin is not None:
-            twin.reset(noise=noise, seed=seed)
+            begin_noisily(world, twin, noise, seed)
         backend.configure()
     except BaseException:
         backend.disconnect()

@@ -42,16 +42,36 @@ class Stand(TwinOptions, Common):
 
     def run(self) -> int:
         """Stand; returns the exit status."""
-        world = self.world(load_robot(self.robot), self.seed)
-        with self.open_robot(self.seed, world=world) as robot:
+        rows = []
+        for seed in self.all_seeds:
+            rows.append(self._one(seed))
+            console.print(stand_said(rows[-1]), markup=False, soft_wrap=True)
+            if rows[-1]["fell"] and self.disturb() is not None:
+                console.print(fall_said(rows[-1]))
+            if rows[-1]["reason"] == "interrupted":
+                break
+        good = sum(row["reason"] == "done" and not row["fell"] for row in rows)
+        if self.seeds is not None:
+            console.print(f"{good} of {len(rows)} seeds stood")
+        result = rows[0] if self.seeds is None else {"robot": self.robot, "rows": rows}
+        write_json(self.json, "stand", result)
+        if rows[-1]["reason"] == "interrupted":
+            return 130
+        return 0 if good == len(rows) else 1
+
+    def _one(self, seed: int) -> dict[str, Any]:
+        """Stand once; returns what came of it."""
+        world = self.world(load_robot(self.robot), seed)
+        with self.open_robot(seed, world=world) as robot:
             gauge = self._pushed(robot)
             pose = Last(robot)
             with suppress(KeyboardInterrupt):  # the robot has stopped
                 self._stand(robot)
             report = robot.loop
             error = np.degrees(np.abs(pose.position - robot.description.stance))
-            result = {
+            return {
                 "robot": robot.description.name,
+                "seed": seed,
                 "fell": robot.fallen,
                 "reason": report.reason,
                 "sim_time_s": report.sim_time,
@@ -62,13 +82,6 @@ class Stand(TwinOptions, Common):
                 "largest_error_deg": float(error.max()),
                 "largest_error_joint": robot.description.joints.names[int(error.argmax())],
             } | (fall_result(gauge) if gauge is not None else {})
-        console.print(stand_said(result), markup=False, soft_wrap=True)
-        if gauge is not None and result["fell"]:
-            console.print(fall_said(result))
-        write_json(self.json, "stand", result)
-        if report.reason == "interrupted":
-            return 130
-        return 0 if report.reason == "done" and not result["fell"] else 1
 
     def _pushed(self, robot: Robot) -> ImpactGauge | None:
         """Arrange the pushes, if any; return what looks at how a twin falls under them."""

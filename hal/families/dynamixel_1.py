@@ -56,6 +56,7 @@ def _gain(model: str) -> Gain:
 
 DYNAMIXEL_1 = Family(
     name="Dynamixel AX/MX",
+    protocol="dynamixel1",
     dialect=Dynamixel1(COMMON["model_number"], COMMON["firmware_version"], LONGEST_DYNAMIXEL),
     registers=COMMON,
     table=mx_registers,

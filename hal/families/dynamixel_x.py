@@ -61,6 +61,7 @@ def _gain(model: str) -> Gain:
 
 DYNAMIXEL_X = Family(
     name="Dynamixel X",
+    protocol="dynamixel2",
     dialect=Protocol2(),
     registers=REGISTERS,
     table=x_series_registers,

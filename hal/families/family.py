@@ -98,6 +98,7 @@ class Family:
 
     Attributes:
         name: For people.
+        protocol: Name of its protocol in robot.toml.
         dialect: How they are spoken to.
         registers: What all models have at the same place, by name; units are the model's.
         table: Model name to all of its registers.
@@ -128,6 +129,7 @@ class Family:
     """
 
     name: str
+    protocol: str
     dialect: Dialect
     registers: Mapping[str, Register]
     table: Callable[[str], RegisterTable]

@@ -94,6 +94,7 @@ _SCS_STATE = (SCS["present_position"], SCS["present_velocity"], SCS["present_loa
 
 FEETECH_STS = Family(
     name="Feetech STS",
+    protocol="feetech",
     dialect=Feetech(STS["model_number"], STS["firmware_version"], always_sync=True),
     registers=STS,
     table=feetech_registers,
@@ -117,6 +118,7 @@ FEETECH_STS = Family(
 
 FEETECH_SCS = Family(
     name="Feetech SCS",
+    protocol="feetech",
     dialect=Feetech(SCS["model_number"], SCS["firmware_version"], always_sync=False),
     registers=SCS,
     table=feetech_registers,

@@ -49,7 +49,11 @@ def test_a_torque_joint_needs_no_limits(tmp_path: Path) -> None:
 
 
 MISTAKES = {
-    "no limits": ("", "", "joint 'arm_0': turns for ever in the MJCF: give lower and upper"),
+    "no limits": (
+        "",
+        "",
+        "joint 'arm_0': no range in the MJCF, and no lower and upper here: give both",
+    ),
     "more than a turn": (
         "lower = -4, upper = 4",
         "",

@@ -25,6 +25,28 @@ MISTAKES = {
     "no joint": (ARM, "robot.toml", "joint = [", "joint = []\ngone = [", None),
     "a ball joint": (ARM, "model.xml", "<site", TOE.format('type="ball"') + "<site", "ball joint"),
     "a slide": (ARM, "model.xml", "<site", TOE.format('type="slide"') + "<site", "is a slide"),
+    "no name": (ARM, "model.xml", 'name="arm_2" ', "", "joint of body 'arm_link2' has no name"),
+    "a sole elsewhere": (
+        QUADRUPED,
+        "robot.toml",
+        'site = "hind_left_sole"',
+        'site = "imu"',
+        "'imu' is on body 'trunk', not on 'hind_left_link2'",
+    ),
+    "servos of another protocol": (
+        ARM,
+        "robot.toml",
+        "dynamixel2",
+        "feetech",
+        'a XM430-W350 speaks "dynamixel2", and bus \'body\' has protocol "feetech"',
+    ),
+    "a rate that no servo has": (
+        ARM,
+        "robot.toml",
+        "1_000_000",
+        "1_000_001",
+        "baud: a XM430-W350 has no 1000001, but 9600, 57600, 115200, 1000000",
+    ),
     "an unknown hinge": (ARM, "model.xml", "<site", TOE.format("") + "<site", "has no [[joint]]"),
     "actuators": (
         ARM,
@@ -126,6 +148,12 @@ def test_sensors_that_the_mjcf_lacks_are_added(tmp_path: Path) -> None:
 def test_robots_of_the_package_raise_no_doubts_about_feet_and_neighbours() -> None:
     assert doubts(load_robot("op3")) == []
     assert doubts(load_robot("so101")) == []
+
+
+def test_no_floor_is_doubted(tmp_path: Path) -> None:
+    plane = '<geom type="plane" size="0 0 0.05" contype="1" conaffinity="0"/>'
+    folder = changed(tmp_path, QUADRUPED, "model.xml", plane, "")
+    assert "no floor: the robot falls for ever" in doubts(load_robot(folder))[0]
 
 
 def test_zero_armature_points_and_neighbours_are_doubted(tmp_path: Path) -> None:

@@ -74,6 +74,13 @@ def test_ground_is_not_for_an_arm(nothing_opens: None, tmp_path: Path) -> None:
     assert "is fixed" in refusal(["stand", str(folder), "--slope", "5"])
 
 
+def test_ground_takes_a_floor_to_be_made_of(windup: Windup, tmp_path: Path) -> None:
+    model = write_shape(tmp_path / "r", QUADRUPED) / "model.xml"
+    model.write_text(model.read_text().replace('type="plane" size="0 0 0.05"', 'size="0.1"'))
+    ran = windup("stand", tmp_path / "r", "--slope", "5")
+    assert ran.status == 2 and "has no plane to make other ground of" in ran.err
+
+
 def test_the_arm_of_the_package_waves_and_folds_itself(windup: Windup) -> None:
     ran = windup("play", "so101", "wave", "--json", "-")
     assert (ran.status, ran.json["reason"]) == (0, "done"), ran.err

@@ -20,6 +20,10 @@ LINES = {
     "nothing": ("", "give a command, such as `windup robots`; `windup --help` lists all"),
     "positional": ("walk", "walk: give ROBOT (a robot's name"),
     "needed": ("stop op3", "stop: give --port STR (its servo bus; see `windup walk --help`);"),
+    "noisy robot": (
+        "stand op3 --port /dev/ttyUSB9 --arm --noise 1",
+        "--noise is of a twin's start",
+    ),
     "help": ("help", "unknown command 'help' (did you mean --help?)"),
     "armed twin": ("stand op3 --arm", "--arm needs a --port; without one only the twin moves"),
     "choice": ("walk op3 --sampling best", "see `windup walk --help`"),

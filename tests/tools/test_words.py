@@ -1,7 +1,9 @@
 """What is said of a run is true of it."""
 
+import json
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.tools.conftest import Windup
@@ -88,3 +90,20 @@ def test_a_load_beyond_the_stall_torque_is_no_percentage_of_it() -> None:
     assert fall_said(FALL | {"peak_load": 0.85}).endswith("peak load 85 % of stall at l_knee")
     said = fall_said(FALL | {"peak_load": 1.86})
     assert said.endswith("l_knee bore 1.9 x its stall torque, more than it gives by itself")
+
+
+def test_every_seed_of_a_stand_is_a_row(windup: Windup) -> None:
+    ran = windup("stand", "op3", "--seconds", "0.2", "--seeds", "2", "--noise", "3", "--json", "-")
+    rows = json.loads(ran.out)["rows"]
+    assert [row["seed"] for row in rows] == [0, 1]
+    assert ran.err.count("op3 stood for") == 2
+    assert ran.err.splitlines()[-1] == "2 of 2 seeds stood"
+
+
+@pytest.mark.parametrize("port", [None, "twin://op3"])
+def test_a_noisy_start_is_where_a_robot_stands_up_from(port: str | None) -> None:
+    with Robot.open("op3", port=port, noise=3.0, seed=1) as robot:
+        off = np.degrees(robot.backend.read().joints.position - robot.description.stance)
+        assert 1.5 < np.std(off) < 4.5
+        robot.stand(1.0)
+        assert not robot.fallen

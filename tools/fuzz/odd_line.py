@@ -1,6 +1,7 @@
 """Odd command lines: every command, a few options, odd values, results that cannot be written."""
 
 import random
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from tools.fuzz import odd
@@ -67,12 +68,33 @@ def odd_line(dice: random.Random, robot: str, folder: Path) -> list[str]:
     for _ in range(dice.randint(0, OPTIONS)):
         words += _option(dice, command)
     if dice.random() < 0.3:
-        words += ["--port", f"twin://{dice.choice((robot, 'op3', 'bench'))}?{_query(dice)}"]
+        words += ["--port", _port(dice, robot)]
     if dice.random() < 0.3:
         words += [dice.choice(("--json", "--plot")), _target(dice, folder)]
     if dice.random() < 0.1:
         words.insert(dice.randrange(len(words)), odd.word(dice))
-    return [word.replace("\0", "") for word in words]  # no shell can pass one on
+    return _passed_on(words)
+
+
+def any_line(dice: random.Random, options: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return the words of any command, which may run for hours, with any of its `options`.
+
+    Args:
+        dice: What draws.
+        options: Name of every command to its options, as "--speed".
+    """
+    command = dice.choice(sorted(options))
+    words = [command, *dice.choices(odd.ROBOTS, k=dice.randint(0, 2))]
+    for _ in range(dice.randint(0, 3)):
+        option = dice.choice(options[command])
+        values = odd.URLS if option in ("--port", "--url") else odd.VALUES
+        words += [option, *dice.choices(values, k=dice.randint(0, 2))]
+    return _passed_on(words)
+
+
+def _passed_on(words: list[str]) -> list[str]:
+    """Return the words as a shell can pass them on."""
+    return [word.replace("\0", "") for word in words]
 
 
 def _option(dice: random.Random, command: str) -> list[str]:
@@ -85,6 +107,13 @@ def _option(dice: random.Random, command: str) -> list[str]:
     if kind < 0.9:
         return [dice.choice((*words, "--faults", "--state")), odd.word(dice)]
     return [dice.choice(SWITCHES)]
+
+
+def _port(dice: random.Random, robot: str) -> str:
+    """Return a port: odd, or emulated with an odd setting."""
+    if dice.random() < 0.2:
+        return dice.choice(odd.URLS)
+    return f"twin://{dice.choice((robot, 'op3', 'bench'))}?{_query(dice)}"
 
 
 def _query(dice: random.Random) -> str:
