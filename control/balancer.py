@@ -10,24 +10,24 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from control.body import Body
-from control.footfalls import Footfalls
-from control.gait import Gait
-from control.goal_limits import GoalLimits
-from control.planner import Planner, StepRequest
-from control.policy import policy_input
-from control.pose_tracker import PoseTracker
-from control.regulation import RegulationVariable
-from control.shaken import Shaken
-from control.steering import Steering
-from control.step_record import StepRecord, StepStart
-from control.torso_servo import TorsoServo
-from hal.command import JointCommand
-from hal.contacts import ContactSensors
-from hal.controller import Outcomes, RolloutStart
-from hal.errors import StateMissingError
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.control.body import Body
+from windup.control.footfalls import Footfalls
+from windup.control.gait import Gait
+from windup.control.goal_limits import GoalLimits
+from windup.control.planner import Planner, StepRequest
+from windup.control.policy import policy_input
+from windup.control.pose_tracker import PoseTracker
+from windup.control.regulation import RegulationVariable
+from windup.control.shaken import Shaken
+from windup.control.steering import Steering
+from windup.control.step_record import StepRecord, StepStart
+from windup.control.torso_servo import TorsoServo
+from windup.hal.command import JointCommand
+from windup.hal.contacts import ContactSensors
+from windup.hal.controller import Outcomes, RolloutStart
+from windup.hal.errors import StateMissingError
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 IN_FLIGHT = 32  # commands remembered; more than any delay that a robot walks with
 

@@ -9,8 +9,8 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 
-from control.gait import Gait
-from control.gait_file import Balance, Perturbation, Style
+from windup.control.gait import Gait
+from windup.control.gait_file import Balance, Perturbation, Style
 
 STEPS = 18.0  # from one gait to the other
 

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from control.momenta import Momenta
-from hal.controller import Outcomes
-from hal.errors import StateMissingError
-from hal.joints import Array
-from hal.observation import Observation
+from windup.control.momenta import Momenta
+from windup.hal.controller import Outcomes
+from windup.hal.errors import StateMissingError
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
 
 
 class Body:

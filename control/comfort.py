@@ -5,12 +5,12 @@ from typing import Literal
 
 import numpy as np
 
-from control.footing import Footing
-from control.momenta import capture_point
-from control.rotation import heading_between, turn, way_round
-from control.stepping_file import Stepping
-from control.swing import swing_foot
-from hal.joints import Array
+from windup.control.footing import Footing
+from windup.control.momenta import capture_point
+from windup.control.rotation import heading_between, turn, way_round
+from windup.control.stepping_file import Stepping
+from windup.control.swing import swing_foot
+from windup.hal.joints import Array
 
 SHIFT = 0.5
 """Time to bring the centre of mass over one foot, and back, s."""

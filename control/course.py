@@ -5,8 +5,8 @@ from math import copysign, degrees, isfinite, pi, radians, sqrt
 
 import numpy as np
 
-from control.gait_file import Heading, Turn
-from control.guide import WalkCommand
+from windup.control.gait_file import Heading, Turn
+from windup.control.guide import WalkCommand
 
 LEAD = radians(30.0)  # farthest that the wanted heading runs ahead of the body
 

@@ -2,8 +2,8 @@
 
 from math import inf
 
-from hal.config import NotNegative as Gain
-from hal.config import Positive, Record
+from windup.hal.config import NotNegative as Gain
+from windup.hal.config import Positive, Record
 
 
 class Directed(Record, frozen=True, kw_only=True):

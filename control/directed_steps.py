@@ -8,15 +8,15 @@ from typing import Literal
 
 import numpy as np
 
-from control.body import Body
-from control.directed_file import ServoDirected
-from control.footprints import Footprint, between, onto, seen_from
-from control.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
-from control.limb_ik import LimbIk, Pose
-from control.rotation import turn, way_round
-from control.swing import gaussian_progress, lift, smooth_progress
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.control.body import Body
+from windup.control.directed_file import ServoDirected
+from windup.control.footprints import Footprint, between, onto, seen_from
+from windup.control.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
+from windup.control.limb_ik import LimbIk, Pose
+from windup.control.rotation import turn, way_round
+from windup.control.swing import gaussian_progress, lift, smooth_progress
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 Phase = Literal["shift", "swing", "land", "rest"]
 

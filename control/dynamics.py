@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from control.limb_ik import Pose
-from control.momenta import Momenta
-from hal.errors import StateMissingError, UsageError
-from hal.joints import Array
-from hal.observation import Observation
+from windup.control.limb_ik import Pose
+from windup.control.momenta import Momenta
+from windup.hal.errors import StateMissingError, UsageError
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
 
 
 class Dynamics:

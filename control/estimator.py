@@ -11,15 +11,15 @@ integral of the velocity.
 import mujoco
 import numpy as np
 
-from control.foot_load import FootLoad
-from control.fused_attitude import FusedAttitude
-from control.height_filter import HeightFilter
-from control.leg_odometry import FootNoise, leg_odometry
-from control.soles import spin
-from control.tilt_filter import GRAVITY, ImuNoise, TiltFilter
-from hal.errors import StateMissingError
-from hal.joints import Array
-from hal.observation import BaseState, ImuState, Observation
+from windup.control.foot_load import FootLoad
+from windup.control.fused_attitude import FusedAttitude
+from windup.control.height_filter import HeightFilter
+from windup.control.leg_odometry import FootNoise, leg_odometry
+from windup.control.soles import spin
+from windup.control.tilt_filter import GRAVITY, ImuNoise, TiltFilter
+from windup.hal.errors import StateMissingError
+from windup.hal.joints import Array
+from windup.hal.observation import BaseState, ImuState, Observation
 
 STALE = 0.02  # age of an IMU sample, beside the joints', that doubles its noise, s
 LONGEST = 0.1  # longest time bridged with one sample, s
@@ -79,7 +79,7 @@ class BaseEstimator:
         return self._filter.bias
 
     def update(self, observation: Observation, dt: float) -> Observation:
-        """Return `observation` with its base, and with contacts; see `control.loop.Estimator`.
+        """Return `observation` with its base, and with contacts.
 
         Times and ages come from the observation, so that late and lost ticks do no harm.
 

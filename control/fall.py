@@ -11,14 +11,14 @@ from math import atan2, cos, hypot, sin
 
 import numpy as np
 
-from control.body import Body
-from control.momenta import Momenta, capture_point
-from control.rotation import facing, quaternion_matrix
-from control.soles import Soles
-from control.support import SupportRegion
-from hal.errors import StateMissingError
-from hal.joints import Array
-from hal.observation import Observation
+from windup.control.body import Body
+from windup.control.momenta import Momenta, capture_point
+from windup.control.rotation import facing, quaternion_matrix
+from windup.control.soles import Soles
+from windup.control.support import SupportRegion
+from windup.hal.errors import StateMissingError
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
 
 CONFIRM = 0.006
 """How long the capture point has to be out of reach, s: one sample of noise is no fall."""

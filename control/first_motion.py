@@ -9,13 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from control.following import Following
-from control.planted import Planted
-from hal.command import JointCommand
-from hal.controller import Begins, Controller, first_pose_of
-from hal.errors import FirstMotionError
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.control.following import Following
+from windup.control.planted import Planted
+from windup.hal.command import JointCommand
+from windup.hal.controller import Begins, Controller, first_pose_of
+from windup.hal.errors import FirstMotionError
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 PEAK = 1.5
 """The largest speed of a smooth step (3 s^2 - 2 s^3) over its mean."""

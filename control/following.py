@@ -13,9 +13,9 @@ from math import degrees, radians
 
 import numpy as np
 
-from hal.errors import FirstMotionError
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.hal.errors import FirstMotionError
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 TICKS = 2
 """So many ticks in a row a joint has to be behind: a single reading may be wrong."""

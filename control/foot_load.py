@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from control.soles import Soles
-from hal.contacts import ContactSensors
-from hal.joints import Array
+from windup.control.soles import Soles
+from windup.hal.contacts import ContactSensors
+from windup.hal.joints import Array
 
 SKIN = 2e-3  # a point bears less by a factor e for each such height above the lowest one, m
 TOUCH = 3e-3  # a point not higher than this above the lowest one touches, m

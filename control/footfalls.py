@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 import mujoco
 import numpy as np
 
-from control.body import Body
-from hal.contacts import ContactSensors
-from hal.controller import Plane
-from hal.joints import Array
-from hal.observation import Observation
+from windup.control.body import Body
+from windup.hal.contacts import ContactSensors
+from windup.hal.controller import Plane
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
 
 NOISE = 0.004
 """How far a point that touches is from the plane, m."""

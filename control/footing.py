@@ -7,15 +7,22 @@ from math import atan2
 import mujoco
 import numpy as np
 
-from control.body import Body
-from control.limb_ik import LimbIk, Pose
-from control.momenta import Momenta
-from control.rotation import facing, heading_between, quaternion_matrix, turn, turn_about_y, yaw_of
-from control.soles import Soles
-from control.support import SupportRegion
-from hal.errors import StateMissingError
-from hal.joints import Array
-from hal.observation import Observation
+from windup.control.body import Body
+from windup.control.limb_ik import LimbIk, Pose
+from windup.control.momenta import Momenta
+from windup.control.rotation import (
+    facing,
+    heading_between,
+    quaternion_matrix,
+    turn,
+    turn_about_y,
+    yaw_of,
+)
+from windup.control.soles import Soles
+from windup.control.support import SupportRegion
+from windup.hal.errors import StateMissingError
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
 
 DOWN = 0.004
 """A foot is down when its lowest point is not higher than this above the lowest of all, m."""

@@ -8,11 +8,11 @@ from shapely import MultiPoint, Polygon
 from shapely.affinity import rotate, translate
 from shapely.geometry.base import BaseGeometry
 
-from control.footprints import Footprint, between, onto, seen_from
-from control.limb_ik import LimbIk, Pose
-from control.rotation import turn, turn_between
-from hal.errors import UsageError
-from hal.joints import Array
+from windup.control.footprints import Footprint, between, onto, seen_from
+from windup.control.limb_ik import LimbIk, Pose
+from windup.control.rotation import turn, turn_between
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array
 
 CLEAR = 0.004
 """Least distance between the soles, m."""

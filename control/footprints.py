@@ -10,9 +10,9 @@ from typing import Literal
 
 import numpy as np
 
-from hal.config import Positive, Record, load_toml
-from hal.errors import UnknownNameError, UsageError
-from hal.joints import Array
+from windup.hal.config import Positive, Record, load_toml
+from windup.hal.errors import UnknownNameError, UsageError
+from windup.hal.joints import Array
 
 Frame = Literal["stance", "start"]
 

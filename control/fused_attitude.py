@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hal.imu.quaternion import between
-from hal.joints import Array
-from hal.observation import ImuState
+from windup.hal.imu.quaternion import between
+from windup.hal.joints import Array
+from windup.hal.observation import ImuState
 
 LONGEST = 0.05
 """Time over which the change of the rates is carried on at most, s."""

@@ -6,17 +6,17 @@ from pathlib import Path
 
 import numpy as np
 
-from control.gait_checks import check_gait
-from control.gait_file import GaitFile, Perturbation, Pose, State
-from control.pose_graph import FOREVER, PoseGraph, RelativeGraph
-from hal.config import load_toml
-from hal.contacts import ContactSensors
-from hal.errors import ConfigError, UnknownNameError
-from hal.joints import Array, Joints, Mask
-from hal.mirror import other_side
+from windup.control.gait_checks import check_gait
+from windup.control.gait_file import GaitFile, Perturbation, Pose, State
+from windup.control.pose_graph import FOREVER, PoseGraph, RelativeGraph
+from windup.hal.config import load_toml
+from windup.hal.contacts import ContactSensors
+from windup.hal.errors import ConfigError, UnknownNameError
+from windup.hal.joints import Array, Joints, Mask
+from windup.hal.mirror import other_side
 
 Mirroring = Callable[[Array], Array]
-"""Returns the mirror image of joint positions (n,), such as a `hal.mirror.Mirror`."""
+"""Returns the mirror image of joint positions (n,), such as a `windup.hal.mirror.Mirror`."""
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,10 @@ from collections.abc import Iterable
 from itertools import pairwise
 from pathlib import Path
 
-from control.gait_file import GaitFile
-from control.regulation import regulation_variables
-from hal.errors import ConfigError, UnknownNameError
-from hal.joints import Joints
+from windup.control.gait_file import GaitFile
+from windup.control.regulation import regulation_variables
+from windup.hal.errors import ConfigError, UnknownNameError
+from windup.hal.joints import Joints
 
 
 def check_gait(path: Path, file: GaitFile, joints: Joints) -> None:

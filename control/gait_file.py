@@ -1,14 +1,14 @@
 """Gait files: pose graphs, perturbations and their balance as TOML that people write.
 
 Angles are in degrees and times in seconds, as the literature prints them. The records below are
-the format; `control.gait` turns them into arrays.
+the format; `windup.control.gait` turns them into arrays.
 """
 
 from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from hal.config import Count, NotNegative, Part, Positive, Record, Seconds
+from windup.hal.config import Count, NotNegative, Part, Positive, Record, Seconds
 
 Axis = Literal["forward", "lateral"]
 Sampling = Literal["sp", "fl", "lf", "full"]
@@ -220,7 +220,7 @@ class TorsoServo(Record, frozen=True):
 
 
 class Upright(Record, frozen=True):
-    """How a graph that is played keeps its balance, see `control.upright`.
+    """How a graph that is played keeps its balance, see `windup.control.upright`.
 
     Gains by joint: `forward` and `right` in degrees for one degree of the base's lean, the rates in
     degrees for one degree/s. `limit` is the most that comes to a goal, degrees. `states` narrows

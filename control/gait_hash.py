@@ -5,7 +5,7 @@ import tomllib
 from hashlib import sha256
 from pathlib import Path
 
-from hal.small_file import read_small
+from windup.hal.small_file import read_small
 
 LENGTH = 16
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hal.joints import Array, Joints
+from windup.hal.joints import Array, Joints
 
 
 class GoalLimits:

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Protocol
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 
 @dataclass(frozen=True)

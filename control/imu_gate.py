@@ -6,17 +6,17 @@ from typing import Protocol
 
 import numpy as np
 
-from hal.errors import ImuError
-from hal.guard.finding import CHECK
-from hal.guard.gyro_watch import GRAVITY
-from hal.guard.imu_watch import SILENT, ImuWatch
-from hal.observation import ImuState, Observation
+from windup.hal.errors import ImuError
+from windup.hal.guard.finding import CHECK
+from windup.hal.guard.gyro_watch import GRAVITY
+from windup.hal.guard.imu_watch import SILENT, ImuWatch
+from windup.hal.observation import ImuState, Observation
 
 ATTEMPTS = 5
 
 
 class ImuUser(Protocol):
-    """An estimator that uses the IMU, such as `control.estimator.BaseEstimator`."""
+    """An estimator that uses the IMU, such as `windup.control.estimator.BaseEstimator`."""
 
     def reset(self) -> None:
         """Begin anew at the next observation."""
@@ -62,7 +62,7 @@ class ImuGate:
             raise ImuError(f"the IMU has said nothing {since}: nothing has moved; {CHECK}")
 
     def update(self, observation: Observation, dt: float) -> Observation:
-        """Return `observation` with its base; see `control.loop.Estimator`.
+        """Return `observation` with its base; see `windup.control.loop.Estimator`.
 
         Raises:
             ImuError: The IMU cannot be trusted, and the controller needs it.

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from control.gait_file import Incline
-from control.step_record import StepRecord
+from windup.control.gait_file import Incline
+from windup.control.step_record import StepRecord
 
 
 @dataclass

@@ -11,10 +11,10 @@ import msgspec
 import numpy as np
 from msgspec import Meta
 
-from hal.config import Count, Record, check_finite
-from hal.errors import ConfigError
-from hal.joints import Array
-from hal.small_file import read_small
+from windup.hal.config import Count, Record, check_finite
+from windup.hal.errors import ConfigError
+from windup.hal.joints import Array
+from windup.hal.small_file import read_small
 
 
 class LearntModel(Record, frozen=True):

@@ -11,15 +11,15 @@ from typing import Protocol
 
 import numpy as np
 
-from control.body import Body, heading
-from control.footprints import ground_places
-from control.limb_ik import LimbIk, Pose
-from control.rotation import quaternion_matrix, turn, turn_between
-from control.weight import holding_torque
-from hal.command import JointCommand
-from hal.errors import StateMissingError
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.control.body import Body, heading
+from windup.control.footprints import ground_places
+from windup.control.limb_ik import LimbIk, Pose
+from windup.control.rotation import quaternion_matrix, turn, turn_between
+from windup.control.weight import holding_torque
+from windup.hal.command import JointCommand
+from windup.hal.errors import StateMissingError
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 MOST_SHIFT, MOST_TILT = 0.02, 0.1
 """Most that is made up for, m and rad."""

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from control.soles import Soles, spin
-from hal.joints import Array
+from windup.control.soles import Soles, spin
+from windup.hal.joints import Array
 
 ONES = np.ones(3)
 

@@ -7,8 +7,8 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from control.soles import spin
-from hal.joints import Array, Joints
+from windup.control.soles import spin
+from windup.hal.joints import Array, Joints
 
 Indices = npt.NDArray[np.intp]
 

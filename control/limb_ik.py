@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from control.rotation import turn_between
-from hal.errors import UsageError
-from hal.joints import Array
+from windup.control.rotation import turn_between
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array
 
 STEPS = 3
 DAMPING = 1e-3

@@ -10,7 +10,7 @@ from math import sqrt
 import mujoco
 import numpy as np
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 GRAVITY = 9.81
 LEAST_LOAD = 0.3

@@ -10,10 +10,10 @@ from math import atan2, cos, pi
 
 import numpy as np
 
-from control.course import wrapped
-from control.guide import Place, WalkCommand
-from hal.errors import UsageError
-from hal.joints import Array
+from windup.control.course import wrapped
+from windup.control.guide import Place, WalkCommand
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array
 
 BRAKE = 0.4  # speed for each metre that a goal is away, 1/s
 CREEP = 0.03  # slowest approach, m/s

@@ -8,11 +8,11 @@ from shapely import MultiPoint, Point, Polygon, union_all
 from shapely.affinity import rotate, scale, translate
 from shapely.geometry.base import BaseGeometry
 
-from control.footprints import between
-from control.limb_ik import Pose
-from control.rotation import turn, yaw_of
-from hal.errors import UsageError
-from hal.joints import Array
+from windup.control.footprints import between
+from windup.control.limb_ik import Pose
+from windup.control.rotation import turn, yaw_of
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array
 
 FINE = 0.05
 """A sole's outline is turned anew once its heading has changed by so much, rad."""

@@ -14,9 +14,9 @@ from math import cos, exp, sin
 
 import numpy as np
 
-from control.footprints import onto, seen_from
-from control.rotation import way_round
-from hal.joints import Array
+from windup.control.footprints import onto, seen_from
+from windup.control.rotation import way_round
+from windup.hal.joints import Array
 
 
 @dataclass(frozen=True)

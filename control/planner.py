@@ -10,18 +10,18 @@ from typing import Protocol
 
 import numpy as np
 
-from control.body import Body
-from control.gait import Gait
-from control.goal_limits import GoalLimits
-from control.policy import StepPolicy
-from control.pose_tracker import PoseTracker, TrackerState
-from control.regulation import RegulationVariable
-from control.step_model import StepModel
-from control.step_record import StepStart
-from control.torso_servo import TorsoServo
-from hal.contacts import ContactSensors
-from hal.controller import Predictor, RolloutStart
-from hal.joints import Array, Joints, Mask
+from windup.control.body import Body
+from windup.control.gait import Gait
+from windup.control.goal_limits import GoalLimits
+from windup.control.policy import StepPolicy
+from windup.control.pose_tracker import PoseTracker, TrackerState
+from windup.control.regulation import RegulationVariable
+from windup.control.step_model import StepModel
+from windup.control.step_record import StepStart
+from windup.control.torso_servo import TorsoServo
+from windup.hal.contacts import ContactSensors
+from windup.hal.controller import Predictor, RolloutStart
+from windup.hal.joints import Array, Joints, Mask
 
 
 @dataclass(frozen=True)

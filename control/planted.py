@@ -16,9 +16,9 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from control.legs import Legs
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.control.legs import Legs
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 OFF = radians(12.0)
 """A sole that seems tilted by more does not lie on the floor."""

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from control.gait import Gait
-from control.pose_tracker import PoseTracker
-from hal.command import JointCommand
-from hal.contacts import ContactSensors
-from hal.controller import PolicyInput
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.control.gait import Gait
+from windup.control.pose_tracker import PoseTracker
+from windup.hal.command import JointCommand
+from windup.hal.contacts import ContactSensors
+from windup.hal.controller import PolicyInput
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 
 class PoseHolder:

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from control.goal_limits import GoalLimits
-from control.pose_tracker import PoseTracker
-from hal.controller import PolicyInput
-from hal.joints import Array, Mask
-from hal.observation import Observation
+from windup.control.goal_limits import GoalLimits
+from windup.control.pose_tracker import PoseTracker
+from windup.hal.controller import PolicyInput
+from windup.hal.joints import Array, Mask
+from windup.hal.observation import Observation
 
 
 class StepPolicy:

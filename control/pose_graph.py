@@ -14,8 +14,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from hal.errors import ConfigError, UnknownNameError
-from hal.joints import Array, Mask
+from windup.hal.errors import ConfigError, UnknownNameError
+from windup.hal.joints import Array, Mask
 
 FOREVER = np.inf
 

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from control.gait import Gait
-from control.torso_servo import TorsoServo
-from hal.contacts import ContactSensors
-from hal.controller import PolicyInput
-from hal.joints import Array, Mask
+from windup.control.gait import Gait
+from windup.control.torso_servo import TorsoServo
+from windup.hal.contacts import ContactSensors
+from windup.hal.controller import PolicyInput
+from windup.hal.joints import Array, Mask
 
 EPSILON = 1e-9
 Indices = npt.NDArray[np.intp]

@@ -13,9 +13,9 @@ from typing import Literal
 import mujoco
 import numpy as np
 
-from control.tilt_filter import GRAVITY
-from hal.joints import Array
-from hal.observation import Observation
+from windup.control.tilt_filter import GRAVITY
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
 
 Side = Literal["front", "back", "left side", "right side"]
 UNSURE = 2.0

@@ -12,12 +12,12 @@ from math import cos
 
 import numpy as np
 
-from control.fall import FallPredictor
-from hal.command import JointCommand
-from hal.controller import Controller
-from hal.errors import StateMissingError
-from hal.joints import Array, Joints
-from hal.observation import JointState, Observation
+from windup.control.fall import FallPredictor
+from windup.hal.command import JointCommand
+from windup.hal.controller import Controller
+from windup.hal.errors import StateMissingError
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import JointState, Observation
 
 EFFORT = 0.85
 """Share of a joint's largest torque that is asked of it."""

@@ -6,11 +6,11 @@ from math import asin, atan2, degrees
 import mujoco
 import numpy as np
 
-from control.gait_file import Reach
-from hal.contacts import ContactSensors
-from hal.errors import StateMissingError
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.control.gait_file import Reach
+from windup.hal.contacts import ContactSensors
+from windup.hal.errors import StateMissingError
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 
 def lean(observation: Observation) -> tuple[float, float]:

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from control.body import heading
-from hal.controller import Outcomes
-from hal.errors import UnknownNameError
-from hal.joints import Array
+from windup.control.body import heading
+from windup.hal.controller import Outcomes
+from windup.hal.errors import UnknownNameError
+from windup.hal.joints import Array
 
 GRAVITY = 9.81
 AXES = ("forward", "lateral")

@@ -5,7 +5,7 @@ from math import atan2, cos, hypot, sin
 import mujoco
 import numpy as np
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 
 def yaw_of(rotation: Array) -> float:
@@ -14,7 +14,10 @@ def yaw_of(rotation: Array) -> float:
 
 
 def facing(rotation: Array) -> float:
-    """Return where a base with that rotation matrix faces, rad; see `control.body.heading`."""
+    """Return where a base with that rotation matrix faces, rad.
+
+    See `windup.control.body.heading`.
+    """
     return atan2(-rotation[0, 1], rotation[1, 1])
 
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from control.gait import Gait
-from hal.errors import UsageError
-from hal.joints import Array
+from windup.control.gait import Gait
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array
 
 
 @dataclass

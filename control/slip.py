@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from control.gait_file import Slip
-from hal.joints import Array
+from windup.control.gait_file import Slip
+from windup.hal.joints import Array
 
 RUNNING = 2  # steps
 

@@ -7,9 +7,9 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from hal.contacts import ContactSensors
-from hal.errors import UsageError
-from hal.joints import Array
+from windup.hal.contacts import ContactSensors
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array
 
 Indices = npt.NDArray[np.intp]
 

@@ -6,13 +6,13 @@ before the next one begins; what is not true in time is tried again, and given u
 
 import numpy as np
 
-from control.gait import Gait
-from control.reach import Condition
-from control.upright import UprightFeedback
-from hal.command import JointCommand
-from hal.contacts import ContactSensors
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.control.gait import Gait
+from windup.control.reach import Condition
+from windup.control.upright import UprightFeedback
+from windup.hal.command import JointCommand
+from windup.hal.contacts import ContactSensors
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 EPSILON = 1e-9
 

@@ -4,16 +4,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from control.course import Course
-from control.gait import Gait
-from control.guide import Guide, Place, WalkCommand
-from control.incline import InclineControl
-from control.side import SideControl
-from control.slip import SlipControl
-from control.speed import SpeedControl
-from control.step_record import StepRecord, StepStart
-from control.style import Styling
-from hal.joints import Array
+from windup.control.course import Course
+from windup.control.gait import Gait
+from windup.control.guide import Guide, Place, WalkCommand
+from windup.control.incline import InclineControl
+from windup.control.side import SideControl
+from windup.control.slip import SlipControl
+from windup.control.speed import SpeedControl
+from windup.control.step_record import StepRecord, StepStart
+from windup.control.style import Styling
+from windup.hal.joints import Array
 
 QUIET = 3  # steps on the spot before the feet may stay where they are
 STEP_SECONDS = 0.3  # until one has been measured

@@ -14,10 +14,10 @@ import numpy as np
 from shapely import MultiPoint
 from shapely.geometry.base import BaseGeometry
 
-from control.momenta import Momenta, capture_point, desired_cp
-from control.support import SupportRegion, nearest_point
-from hal.errors import UnknownNameError
-from hal.joints import Array
+from windup.control.momenta import Momenta, capture_point, desired_cp
+from windup.control.support import SupportRegion, nearest_point
+from windup.hal.errors import UnknownNameError
+from windup.hal.joints import Array
 
 Damping = tuple[float, float]
 AGAIN: Final = 0.25

@@ -9,7 +9,7 @@ from typing import ClassVar, Literal, Protocol
 
 import numpy as np
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 Reuse = Literal["full", "frozen", "library"]
 

@@ -16,8 +16,8 @@ from typing import Literal
 
 import numpy as np
 
-from control.step_memory import Memory
-from hal.joints import Array, Mask
+from windup.control.step_memory import Memory
+from windup.hal.joints import Array, Mask
 
 Sampling = Literal["sp", "fl", "lf", "full"]
 # Plays steps with scalings (m, r): regulation variables (m, r) and which of the m fell.

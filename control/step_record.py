@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from control.body import Body, heading
-from control.regulation import RegulationVariable, StepEnd
-from hal.contacts import ContactSensors
-from hal.controller import Outcomes
-from hal.joints import Array
-from hal.observation import Observation
+from windup.control.body import Body, heading
+from windup.control.regulation import RegulationVariable, StepEnd
+from windup.hal.contacts import ContactSensors
+from windup.hal.controller import Outcomes
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
 
 
 @dataclass(frozen=True)

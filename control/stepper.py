@@ -13,12 +13,12 @@ from typing import Literal
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
-from control.comfort import STILL, ComfortStep
-from control.footing import Footing
-from control.momenta import capture_point
-from control.no_step import NoStep
-from control.rotation import facing, heading_between, turn
-from control.step_decision import (
+from windup.control.comfort import STILL, ComfortStep
+from windup.control.footing import Footing
+from windup.control.momenta import capture_point
+from windup.control.no_step import NoStep
+from windup.control.rotation import facing, heading_between, turn
+from windup.control.step_decision import (
     Placement,
     StepRule,
     choose,
@@ -27,11 +27,11 @@ from control.step_decision import (
     place,
     trigger_point,
 )
-from control.stepping_file import Stepping
-from control.swing import gaussian_progress
-from hal.command import JointCommand
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.control.stepping_file import Stepping
+from windup.control.swing import gaussian_progress
+from windup.hal.command import JointCommand
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 Phase = Literal["stand", "swing", "land", "comfort"]
 MOST_SHIFT = 0.06

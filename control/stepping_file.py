@@ -4,16 +4,19 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from control.step_decision import Damping, Reach, StepRule, find_rule
-from hal.config import Part, Positive, Record, Seconds
-from hal.joints import Array
+from windup.control.step_decision import Damping, Reach, StepRule, find_rule
+from windup.hal.config import Part, Positive, Record, Seconds
+from windup.hal.joints import Array
 
 Metres = Annotated[float, Meta(ge=0.0, le=100.0)]
 Support = Literal["hull", "capsule"]
 
 
 class ReachTable(Record, frozen=True):
-    """Where a foot may be put, seen from the other one, m; see `control.step_decision.Reach`."""
+    """Where a foot may be put, seen from the other one, m.
+
+    See `windup.control.step_decision.Reach`.
+    """
 
     back: Annotated[float, Meta(le=0.0)]
     front: Metres
@@ -70,7 +73,8 @@ class Stepping(Record, frozen=True):
         trunk: How much the trunk turns backward as the capture point runs away forward, while
             one foot is in the air, rad/m: it keeps room for the hip that swings.
         way: How pushes are met where nobody says it: the name of a rule.
-        rule: Other dampings of the rules, by their names; see `control.step_decision.StepRule`.
+        rule: Other dampings of the rules, by their names; see
+            `windup.control.step_decision.StepRule`.
         patience: How long a robot stands still before it takes a comfort step, s.
         comfort: How far a foot may stand from its nominal place, m.
         rate: Of the loop, Hz; the robot's own by default.

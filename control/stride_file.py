@@ -1,8 +1,8 @@
 """`stride.toml` of a robot: how it walks as the inverted pendulum plans it. SI units."""
 
-from control.pendulum import Pace
-from hal.config import NotNegative as Gain
-from hal.config import Part, Positive, Record
+from windup.control.pendulum import Pace
+from windup.hal.config import NotNegative as Gain
+from windup.hal.config import Part, Positive, Record
 
 
 class Stride(Record, frozen=True, kw_only=True):
@@ -14,7 +14,8 @@ class Stride(Record, frozen=True, kw_only=True):
         single: Time on one foot, s.
         double: Time on both, s.
         lift: How high a foot is lifted, m.
-        early: How much sooner than in the middle of the swing that is; see `control.swing.lift`.
+        early: How much sooner than in the middle of the swing that is; see
+            `windup.control.swing.lift`.
         width: From one foot to the other beside it, m.
         lead: The foot in the air is told where it should be so much later, for servos lag, s.
         quicken: Most that the speed changes from one step to the next, m/s.

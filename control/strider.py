@@ -12,17 +12,17 @@ from typing import Literal
 
 import numpy as np
 
-from control.body import Body
-from control.footprints import between, onto, seen_from
-from control.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
-from control.limb_ik import LimbIk, Pose
-from control.momenta import GRAVITY
-from control.pendulum import Order, Stretch, capture_on_way, future, next_place
-from control.rotation import lying, turn, way_round
-from control.stride_file import Stride
-from control.swing import gaussian_progress, lift
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.control.body import Body
+from windup.control.footprints import between, onto, seen_from
+from windup.control.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
+from windup.control.limb_ik import LimbIk, Pose
+from windup.control.momenta import GRAVITY
+from windup.control.pendulum import Order, Stretch, capture_on_way, future, next_place
+from windup.control.rotation import lying, turn, way_round
+from windup.control.stride_file import Stride
+from windup.control.swing import gaussian_progress, lift
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 Phase = Literal["stand", "shift", "swing", "land", "halt"]
 AHEAD = 3

@@ -5,10 +5,10 @@ from math import inf
 
 import numpy as np
 
-from control.gait import Gait
-from control.gait_file import Style
-from hal.errors import UnknownNameError, UsageError
-from hal.joints import Array
+from windup.control.gait import Gait
+from windup.control.gait_file import Style
+from windup.hal.errors import UnknownNameError, UsageError
+from windup.hal.joints import Array
 
 STEPS = 8.0
 

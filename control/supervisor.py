@@ -9,17 +9,17 @@ from typing import Any, Literal
 
 import numpy as np
 
-from control.balancer import Balancer
-from control.comfort import STILL
-from control.momenta import capture_point
-from control.play import PoseHolder
-from control.rotation import turn
-from control.stepper import Stepper
-from control.stepping_file import CatchTable
-from control.throw import Throw
-from hal.command import JointCommand
-from hal.joints import Array
-from hal.observation import Observation
+from windup.control.balancer import Balancer
+from windup.control.comfort import STILL
+from windup.control.momenta import capture_point
+from windup.control.play import PoseHolder
+from windup.control.rotation import turn
+from windup.control.stepper import Stepper
+from windup.control.stepping_file import CatchTable
+from windup.control.throw import Throw
+from windup.hal.command import JointCommand
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
 
 Holder = Literal["walk", "step", "return"]
 REST = 0.5

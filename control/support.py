@@ -9,7 +9,7 @@ from shapely import MultiPoint, Point
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import nearest_points
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from math import erf, exp, pi, sin, sqrt
 
 import numpy as np
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 WIDTH = 0.08
 """Width of the Gaussian speed profile, as the variance of a step that lasts 1 (section 5.1)."""

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 GRAVITY = 9.81
 

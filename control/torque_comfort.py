@@ -8,12 +8,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from control.comfort import ASKEW
-from control.footprints import Footprint, onto, seen_from
-from control.momenta import capture_point
-from control.support import SupportRegion
-from control.torque_directed import TorqueDirected
-from hal.joints import Array
+from windup.control.comfort import ASKEW
+from windup.control.footprints import Footprint, onto, seen_from
+from windup.control.momenta import capture_point
+from windup.control.support import SupportRegion
+from windup.control.torque_directed import TorqueDirected
+from windup.hal.joints import Array
 
 
 class ComfortWalk(TorqueDirected):

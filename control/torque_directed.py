@@ -10,15 +10,15 @@ from typing import Literal
 
 import numpy as np
 
-from control.directed_file import Directed
-from control.footprints import Footprint, between, onto
-from control.swing import smooth_progress
-from control.torque_motion import PERIOD, TorqueMotion
-from control.whole_body import WholeBody
-from hal.command import JointCommand
-from hal.contacts import ContactSensors
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.control.directed_file import Directed
+from windup.control.footprints import Footprint, between, onto
+from windup.control.swing import smooth_progress
+from windup.control.torque_motion import PERIOD, TorqueMotion
+from windup.control.whole_body import WholeBody
+from windup.hal.command import JointCommand
+from windup.hal.contacts import ContactSensors
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 Phase = Literal["rest", "shift", "swing", "land"]
 PEAK = 5.77

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from control.footprints import ground_places
-from control.rotation import turn, turn_between, yaw_of
-from control.swing import gaussian_progress, lift
-from control.whole_body import Objectives, Plan, WholeBody
-from hal.command import JointCommand
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.control.footprints import ground_places
+from windup.control.rotation import turn, turn_between, yaw_of
+from windup.control.swing import gaussian_progress, lift
+from windup.control.whole_body import Objectives, Plan, WholeBody
+from windup.hal.command import JointCommand
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 PERIOD = 0.005
 """Of the optimisation, s."""

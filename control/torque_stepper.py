@@ -8,11 +8,11 @@ from typing import Literal
 
 import numpy as np
 
-from control.comfort import STILL
-from control.momenta import capture_point
-from control.no_step import NoStep
-from control.rotation import yaw_of
-from control.step_decision import (
+from windup.control.comfort import STILL
+from windup.control.momenta import capture_point
+from windup.control.no_step import NoStep
+from windup.control.rotation import yaw_of
+from windup.control.step_decision import (
     Placement,
     StepRule,
     choose,
@@ -22,15 +22,15 @@ from control.step_decision import (
     place,
     trigger_point,
 )
-from control.stepping_file import Stepping
-from control.support import SupportRegion
-from control.swing import bezier, gaussian_progress
-from control.torque_comfort import TorqueComfort
-from control.torque_motion import PERIOD, Swing, TorqueMotion
-from control.whole_body import WholeBody
-from hal.command import JointCommand
-from hal.joints import Array, Joints
-from hal.observation import Observation
+from windup.control.stepping_file import Stepping
+from windup.control.support import SupportRegion
+from windup.control.swing import bezier, gaussian_progress
+from windup.control.torque_comfort import TorqueComfort
+from windup.control.torque_motion import PERIOD, Swing, TorqueMotion
+from windup.control.whole_body import WholeBody
+from windup.hal.command import JointCommand
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
 
 Phase = Literal["stand", "swing", "land", "comfort"]
 TOUCH = 0.003

@@ -9,10 +9,10 @@ from math import radians
 
 import numpy as np
 
-from control.gait_file import TorsoServo as TorsoServoRecord
-from hal.controller import PolicyInput
-from hal.errors import UsageError
-from hal.joints import Array, Joints
+from windup.control.gait_file import TorsoServo as TorsoServoRecord
+from windup.hal.controller import PolicyInput
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array, Joints
 
 
 @dataclass(frozen=True)

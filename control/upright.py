@@ -7,11 +7,11 @@ ankle gains the stiffness that it lacks to hold the robot up.
 
 import numpy as np
 
-from control.gait_file import Upright
-from control.reach import lean
-from hal.errors import StateMissingError
-from hal.joints import Array, Joints, Mask
-from hal.observation import Observation
+from windup.control.gait_file import Upright
+from windup.control.reach import lean
+from windup.hal.errors import StateMissingError
+from windup.hal.joints import Array, Joints, Mask
+from windup.hal.observation import Observation
 
 
 class UprightFeedback:

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from control.body import Body
-from hal.joints import Array
+from windup.control.body import Body
+from windup.hal.joints import Array
 
 GRAVITY = 9.81
 

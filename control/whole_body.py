@@ -12,10 +12,10 @@ from typing import Final
 import daqp
 import numpy as np
 
-from control.dynamics import Dynamics
-from control.momenta import GRAVITY
-from hal.errors import WindupError
-from hal.joints import Array
+from windup.control.dynamics import Dynamics
+from windup.control.momenta import GRAVITY
+from windup.hal.errors import WindupError
+from windup.hal.joints import Array
 
 EDGES: Final = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 EQUAL: Final = 5

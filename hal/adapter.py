@@ -7,8 +7,8 @@ nothing), so both are measured with a few requests whose answers cannot be taken
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from hal.heartbeat import Heartbeat, no_heartbeat
-from hal.port import BITS, LATENCY, Port
+from windup.hal.heartbeat import Heartbeat, no_heartbeat
+from windup.hal.port import BITS, LATENCY, Port
 
 PATIENCE = 0.06
 """How long an answer is waited for while nothing is known of the adapter, s."""

@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from typing import Protocol, runtime_checkable
 
-from hal.command import JointCommand
-from hal.joints import Joints
-from hal.observation import Observation
-from hal.torque_loss import Loss
-from hal.torque_state import TorqueState
+from windup.hal.command import JointCommand
+from windup.hal.joints import Joints
+from windup.hal.observation import Observation
+from windup.hal.torque_loss import Loss
+from windup.hal.torque_state import TorqueState
 
 
 class Clock(Protocol):

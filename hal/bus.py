@@ -7,16 +7,16 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from hal.adapter import get_to_know
-from hal.errors import HardwareError, NoAnswerError, UsageError
-from hal.exchange import Exchange
-from hal.families import DYNAMIXEL_X, Family
-from hal.heartbeat import Heartbeat
-from hal.joints import Mask
-from hal.port import Port
-from hal.protocols.cyclic import CyclicRead
-from hal.protocols.protocol2 import Span, Status
-from hal.registers import Register
+from windup.hal.adapter import get_to_know
+from windup.hal.errors import HardwareError, NoAnswerError, UsageError
+from windup.hal.exchange import Exchange
+from windup.hal.families import DYNAMIXEL_X, Family
+from windup.hal.heartbeat import Heartbeat
+from windup.hal.joints import Mask
+from windup.hal.port import Port
+from windup.hal.protocols.cyclic import CyclicRead
+from windup.hal.protocols.protocol2 import Span, Status
+from windup.hal.registers import Register
 
 Counts = npt.NDArray[np.int64]
 

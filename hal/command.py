@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hal.joints import Array, Joints
+from windup.hal.joints import Array, Joints
 
 FIELDS = ("position", "velocity", "torque", "stiffness", "damping")
 

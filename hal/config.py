@@ -10,9 +10,9 @@ from typing import Annotated, Any, Final, TypeVar
 import msgspec
 from msgspec import Meta
 
-from hal.errors import ConfigError, suggest
-from hal.missing_keys import missing_keys
-from hal.small_file import read_small
+from windup.hal.errors import ConfigError, suggest
+from windup.hal.missing_keys import missing_keys
+from windup.hal.small_file import read_small
 
 T = TypeVar("T")
 LARGEST: Final = 1e12

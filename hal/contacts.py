@@ -6,9 +6,9 @@ from typing import Literal
 
 import numpy as np
 
-from hal.errors import UnknownNameError
-from hal.joints import Array, Mask
-from hal.mirror import Side, side_of
+from windup.hal.errors import UnknownNameError
+from windup.hal.joints import Array, Mask
+from windup.hal.mirror import Side, side_of
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,9 @@
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
-from hal.command import JointCommand
-from hal.joints import Array, Mask
-from hal.observation import Observation
+from windup.hal.command import JointCommand
+from windup.hal.joints import Array, Mask
+from windup.hal.observation import Observation
 
 Plane = tuple[float, float, float]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hal.joints import Array, Joints, Mask
+from windup.hal.joints import Array, Joints, Mask
 
 Matrix = tuple[tuple[float, float], tuple[float, float]]
 

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from hal.bus import Bus
-from hal.servo_settings import Setting
+from windup.hal.bus import Bus
+from windup.hal.servo_settings import Setting
 
 
 class Differs(NamedTuple):

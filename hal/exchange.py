@@ -6,10 +6,10 @@ from math import inf
 
 import numpy as np
 
-from hal.joints import Mask
-from hal.port import BITS, PLENTY, Port
-from hal.protocols.batched1 import ChainRead
-from hal.protocols.cyclic import CyclicRead
+from windup.hal.joints import Mask
+from windup.hal.port import BITS, PLENTY, Port
+from windup.hal.protocols.batched1 import ChainRead
+from windup.hal.protocols.cyclic import CyclicRead
 
 SLACK = 2e-3
 """What the host and its driver may add to the time on the wire, s."""

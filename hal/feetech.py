@@ -1,8 +1,8 @@
 """What only Feetech's STS servos can do: call the present position the middle."""
 
-from hal.bus import Bus
-from hal.errors import HardwareError, UsageError
-from hal.servos.feetech_registers import MIDDLE
+from windup.hal.bus import Bus
+from windup.hal.errors import HardwareError, UsageError
+from windup.hal.servos.feetech_registers import MIDDLE
 
 CENTRE = 2048
 TOLERANCE = 8

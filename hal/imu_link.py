@@ -1,8 +1,8 @@
 """An IMU on a port of its own, which may be unplugged and plugged in again."""
 
-from hal.errors import PortError
-from hal.imu.source import ImuSource
-from hal.replug import Opener, Replug
+from windup.hal.errors import PortError
+from windup.hal.imu.source import ImuSource
+from windup.hal.replug import Opener, Replug
 
 
 class ImuLink:

@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from hal.coupling import Couplings
-from hal.imu.source import ImuSource
-from hal.joints import Array, Mask
-from hal.observation import ImuState, JointState, Observation
-from hal.servo_link import ServoLink
-from hal.units import Units
+from windup.hal.coupling import Couplings
+from windup.hal.imu.source import ImuSource
+from windup.hal.joints import Array, Mask
+from windup.hal.observation import ImuState, JointState, Observation
+from windup.hal.servo_link import ServoLink
+from windup.hal.units import Units
 
 
 class JointReadings:

@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hal.coupling import Couplings
-from hal.errors import HardwareError
-from hal.heartbeat import Heartbeat
-from hal.joints import Array, Joints, Mask
-from hal.servo_link import ServoLink
-from hal.torque_loss import SILENT, Loss
-from hal.torque_state import TorqueState
+from windup.hal.coupling import Couplings
+from windup.hal.errors import HardwareError
+from windup.hal.heartbeat import Heartbeat
+from windup.hal.joints import Array, Joints, Mask
+from windup.hal.servo_link import ServoLink
+from windup.hal.torque_loss import SILENT, Loss
+from windup.hal.torque_state import TorqueState
 
 BOOT_TIME = 0.5
 """How long a servo that is silent may boot until it can be read as off, s (assumed)."""

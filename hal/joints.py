@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from hal.errors import UnknownNameError
+from windup.hal.errors import UnknownNameError
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]

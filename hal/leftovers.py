@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from hal.errors import TelemetryError
-from hal.telemetry import TelemetryReader
+from windup.hal.errors import TelemetryError
+from windup.hal.telemetry import TelemetryReader
 
 KEPT: Final = 3600.0
 """How long a finished ring is kept, s."""

@@ -6,12 +6,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from hal.bus import Bus
-from hal.families.family import Block, Family
-from hal.imu.opencr import OpenCr
-from hal.protocols.cyclic import CyclicRead
-from hal.protocols.protocol2 import Span
-from hal.servo_model import ServoModel
+from windup.hal.bus import Bus
+from windup.hal.families.family import Block, Family
+from windup.hal.imu.opencr import OpenCr
+from windup.hal.protocols.cyclic import CyclicRead
+from windup.hal.protocols.protocol2 import Span
+from windup.hal.servo_model import ServoModel
 
 HEALTH_EVERY = 10
 """Voltage and temperature are read every so many cycles, and every `CHECK_EVERY`-th time torque."""

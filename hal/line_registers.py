@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from hal.errors import HardwareError
-from hal.joints import Array, Mask
-from hal.registers import Register
-from hal.servo_line import Rows, ServoLine
+from windup.hal.errors import HardwareError
+from windup.hal.joints import Array, Mask
+from windup.hal.registers import Register
+from windup.hal.servo_line import Rows, ServoLine
 
 ATTEMPTS = 8
 BACKOFF = 4e-3

@@ -7,7 +7,7 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 Side = Literal["left", "right"]
 SIDES = (("l_", "r_"), ("left_", "right_"))

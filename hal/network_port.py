@@ -4,8 +4,8 @@ import contextlib
 import socket
 from typing import Any
 
-from hal.port import Port
-from hal.socket_port import RAW
+from windup.hal.port import Port
+from windup.hal.socket_port import RAW
 
 RFC2217 = "rfc2217://"
 """How the URLs of such ports begin."""

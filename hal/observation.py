@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 
 @dataclass(frozen=True, slots=True)

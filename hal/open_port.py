@@ -12,11 +12,11 @@ from urllib.parse import urlsplit
 import serial
 from serial.tools import list_ports
 
-from hal.errors import PortError, UsageError
-from hal.network_port import RFC2217, NetworkPort
-from hal.port import GONE, DevicePort, Port
-from hal.port_access import access_remedy
-from hal.socket_port import RAW, Connection, SocketPort
+from windup.hal.errors import PortError, UsageError
+from windup.hal.network_port import RFC2217, NetworkPort
+from windup.hal.port import GONE, DevicePort, Port
+from windup.hal.port_access import access_remedy
+from windup.hal.socket_port import RAW, Connection, SocketPort
 
 BAUD = 1_000_000
 MEMORY_DEVICES = 1
@@ -82,7 +82,7 @@ def _check_handler(url: str) -> None:
         return
     if scheme == "twin":
         raise UsageError(
-            f"{url}: nobody serves twin:// in this process; `import sim_twin.wire` first, "
+            f"{url}: nobody serves twin:// in this process; `import windup.sim_twin.wire` first, "
             "or use the `windup` command, which does"
         )
     raise UsageError(f"{url}: pyserial knows no {scheme}:// ports")

@@ -9,7 +9,7 @@ with: behind a weak checksum it is believed when a second one agrees.
 
 import numpy as np
 
-from hal.joints import Array, Mask
+from windup.hal.joints import Array, Mask
 
 FASTER = 1.5
 """How much faster than its data sheet says a servo may turn (supply, or driven from outside)."""

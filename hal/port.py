@@ -9,9 +9,9 @@ from typing import Any, Protocol
 
 from serial import SerialException
 
-from hal.backend import Clock
-from hal.clock import WallClock
-from hal.errors import PortError
+from windup.hal.backend import Clock
+from windup.hal.clock import WallClock
+from windup.hal.errors import PortError
 
 GONE = (SerialException, OSError, termios.error)
 """What an adapter that is pulled out raises, depending on what was going on."""
@@ -62,7 +62,7 @@ class Port:
         clock: The wall, or the clock of the world behind the port.
         latency: How long the adapter may hold back bytes that have arrived, s.
         echoes: Does the adapter give back all that is sent? Then reads leave that out.
-        known: Have latency and echo been measured? See `hal.adapter`.
+        known: Have latency and echo been measured? See `windup.hal.adapter`.
         sent: Bytes written so far.
         received: Bytes read so far.
         has_baud: Does its baud rate reach the wire? A plain TCP bridge has one of its own.

@@ -15,7 +15,7 @@ from math import inf
 from numbers import Real
 from typing import Any, Final, ParamSpec, TypeVar, cast, get_args, get_type_hints
 
-from hal.errors import UsageError
+from windup.hal.errors import UsageError
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from hal.errors import UnknownNameError
+from windup.hal.errors import UnknownNameError
 
 Area = Literal["eeprom", "ram"]
 Order = Literal["little", "big"]

@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 
-from hal.errors import PortError, UsageError
-from hal.network_port import NETWORK
-from hal.open_port import stable_url
-from hal.port import Port
+from windup.hal.errors import PortError, UsageError
+from windup.hal.network_port import NETWORK
+from windup.hal.open_port import stable_url
+from windup.hal.port import Port
 
 RETRY = 0.25
 """Time between two attempts, s."""

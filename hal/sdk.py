@@ -16,10 +16,10 @@ from dynamixel_sdk import COMM_RX_CORRUPT, COMM_RX_TIMEOUT, COMM_SUCCESS
 from dynamixel_sdk.port_handler import PortHandler
 from dynamixel_sdk.protocol2_packet_handler import Protocol2PacketHandler
 
-from hal.errors import CorruptAnswerError, NoAnswerError, RefusedError
-from hal.heartbeat import no_heartbeat
-from hal.port import BITS, Port
-from hal.protocols import protocol2
+from windup.hal.errors import CorruptAnswerError, NoAnswerError, RefusedError
+from windup.hal.heartbeat import no_heartbeat
+from windup.hal.port import BITS, Port
+from windup.hal.protocols import protocol2
 
 QUIET = 20e-3
 """Silence, on top of the adapter's latency, after which no late answer is to be expected, s."""

@@ -15,11 +15,11 @@ from dynamixel_sdk.protocol1_packet_handler import Protocol1PacketHandler
 from scservo_sdk import COMM_RX_TIMEOUT
 from scservo_sdk.protocol_packet_handler import protocol_packet_handler
 
-from hal.errors import RefusedError, UsageError
-from hal.port import Port
-from hal.protocols.protocol1 import Instruction
-from hal.registers import Register
-from hal.sdk import ATTEMPTS, Link
+from windup.hal.errors import RefusedError, UsageError
+from windup.hal.port import Port
+from windup.hal.protocols.protocol1 import Instruction
+from windup.hal.registers import Register
+from windup.hal.sdk import ATTEMPTS, Link
 
 REFUSALS = {
     1: "says the goal is beyond its angle limits",

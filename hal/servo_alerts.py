@@ -6,12 +6,12 @@ from contextlib import suppress
 import numpy as np
 import numpy.typing as npt
 
-from hal.errors import PortError
-from hal.families import family_of
-from hal.joints import Joints
-from hal.servo_line import ServoLine
-from hal.servo_link import ServoLink
-from hal.servo_model import ServoMount
+from windup.hal.errors import PortError
+from windup.hal.families import family_of
+from windup.hal.joints import Joints
+from windup.hal.servo_line import ServoLine
+from windup.hal.servo_link import ServoLink
+from windup.hal.servo_model import ServoMount
 
 UNKNOWN = "unknown"
 ERROR_KINDS = ("no answer", "corrupt", "resynchronised", "implausible")

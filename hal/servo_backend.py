@@ -5,33 +5,33 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from hal.backend import Clock
-from hal.bus import Bus
-from hal.clock import WallClock
-from hal.command import JointCommand, shifted_goal
-from hal.coupling import Coupling, Couplings
-from hal.errors import HardwareError, PortError
-from hal.exchange import TURNAROUND
-from hal.heartbeat import Heartbeat, beating, no_heartbeat
-from hal.imu.opencr import OpenCr
-from hal.imu.source import ImuSource
-from hal.imu_link import ImuLink
-from hal.joint_readings import JointReadings
-from hal.joint_torque import JointTorque
-from hal.joints import Array, Joints
-from hal.observation import Observation
-from hal.open_port import open_port
-from hal.port import Port
-from hal.servo_alerts import ServoAlerts, count_errors
-from hal.servo_line import ServoLine
-from hal.servo_link import BusPort, ServoLink
-from hal.servo_model import ServoMount
-from hal.servo_setup import lines_of, names_of, open_links, set_up
-from hal.stop_button import StopButton
-from hal.torque_loss import Loss
-from hal.torque_state import TorqueState
-from hal.units import Units
-from hal.wiring import check_mounts
+from windup.hal.backend import Clock
+from windup.hal.bus import Bus
+from windup.hal.clock import WallClock
+from windup.hal.command import JointCommand, shifted_goal
+from windup.hal.coupling import Coupling, Couplings
+from windup.hal.errors import HardwareError, PortError
+from windup.hal.exchange import TURNAROUND
+from windup.hal.heartbeat import Heartbeat, beating, no_heartbeat
+from windup.hal.imu.opencr import OpenCr
+from windup.hal.imu.source import ImuSource
+from windup.hal.imu_link import ImuLink
+from windup.hal.joint_readings import JointReadings
+from windup.hal.joint_torque import JointTorque
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
+from windup.hal.open_port import open_port
+from windup.hal.port import Port
+from windup.hal.servo_alerts import ServoAlerts, count_errors
+from windup.hal.servo_line import ServoLine
+from windup.hal.servo_link import BusPort, ServoLink
+from windup.hal.servo_model import ServoMount
+from windup.hal.servo_setup import lines_of, names_of, open_links, set_up
+from windup.hal.stop_button import StopButton
+from windup.hal.torque_loss import Loss
+from windup.hal.torque_state import TorqueState
+from windup.hal.units import Units
+from windup.hal.wiring import check_mounts
 
 __all__ = ["BusPort", "ServoBackend"]
 

@@ -6,14 +6,14 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from hal.bus import Bus
-from hal.imu.opencr import OpenCr
-from hal.joints import Array, Mask
-from hal.line_reads import Asked, LineReads, Longer
-from hal.plausibility import Plausibility
-from hal.protocols.cyclic import CyclicWrite
-from hal.servo_model import ServoMount
-from hal.units import gain_groups
+from windup.hal.bus import Bus
+from windup.hal.imu.opencr import OpenCr
+from windup.hal.joints import Array, Mask
+from windup.hal.line_reads import Asked, LineReads, Longer
+from windup.hal.plausibility import Plausibility
+from windup.hal.protocols.cyclic import CyclicWrite
+from windup.hal.servo_model import ServoMount
+from windup.hal.units import gain_groups
 
 LOWEST_OF = 2.0
 """How far back `lowest_supply` looks, s."""

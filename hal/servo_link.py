@@ -6,18 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from hal.backend import Clock
-from hal.bus import Bus
-from hal.errors import PortError
-from hal.joints import Array, Mask
-from hal.port import Port
-from hal.protocols.cyclic import CyclicWrite
-from hal.replug import RETRY, Opener, Replug
-from hal.servo_line import ServoLine
-from hal.servo_torque import ServoTorque
-from hal.torque_check import TorqueCheck
-from hal.torque_loss import UNPLUGGED
-from hal.torque_state import TorqueState
+from windup.hal.backend import Clock
+from windup.hal.bus import Bus
+from windup.hal.errors import PortError
+from windup.hal.joints import Array, Mask
+from windup.hal.port import Port
+from windup.hal.protocols.cyclic import CyclicWrite
+from windup.hal.replug import RETRY, Opener, Replug
+from windup.hal.servo_line import ServoLine
+from windup.hal.servo_torque import ServoTorque
+from windup.hal.torque_check import TorqueCheck
+from windup.hal.torque_loss import UNPLUGGED
+from windup.hal.torque_state import TorqueState
 
 
 @dataclass(frozen=True)

@@ -118,7 +118,7 @@ class ServoModel:
 
         Linear between the rows; outside them in proportion to the voltage, as for a DC motor.
 
-        >>> from hal.servos import servo_model
+        >>> from windup.hal.servos import servo_model
         >>> round(servo_model("XM430-W350").motor(12.0).R, 3)
         7.291
         """

@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from hal.bus import Bus
-from hal.families.family import Family, Want
-from hal.registers import Register
-from hal.servo_model import ServoModel, ServoMount
+from windup.hal.bus import Bus
+from windup.hal.families.family import Family, Want
+from windup.hal.registers import Register
+from windup.hal.servo_model import ServoModel, ServoMount
 
 
 class Setting(NamedTuple):

@@ -5,26 +5,26 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from hal.backend import Clock
-from hal.bus import Bus
-from hal.clock import WallClock
-from hal.errors import UsageError
-from hal.families import family_of
-from hal.guardian.lock import EMULATED, wait_while_guarded
-from hal.imu.opencr import POWER, POWER_UP_TIME, OpenCr
-from hal.imu.source import ImuSource
-from hal.imu_link import ImuLink
-from hal.joints import Joints, Mask
-from hal.plausibility import Plausibility
-from hal.port import Port
-from hal.replug import Opener
-from hal.servo_line import ServoLine
-from hal.servo_link import BusPort, ServoLink
-from hal.servo_model import ServoMount
-from hal.servo_settings import assert_settings
-from hal.setting_words import in_words
-from hal.units import Units
-from hal.wiring import check_servos, row_groups
+from windup.hal.backend import Clock
+from windup.hal.bus import Bus
+from windup.hal.clock import WallClock
+from windup.hal.errors import UsageError
+from windup.hal.families import family_of
+from windup.hal.guardian.lock import EMULATED, wait_while_guarded
+from windup.hal.imu.opencr import POWER, POWER_UP_TIME, OpenCr
+from windup.hal.imu.source import ImuSource
+from windup.hal.imu_link import ImuLink
+from windup.hal.joints import Joints, Mask
+from windup.hal.plausibility import Plausibility
+from windup.hal.port import Port
+from windup.hal.replug import Opener
+from windup.hal.servo_line import ServoLine
+from windup.hal.servo_link import BusPort, ServoLink
+from windup.hal.servo_model import ServoMount
+from windup.hal.servo_settings import assert_settings
+from windup.hal.setting_words import in_words
+from windup.hal.units import Units
+from windup.hal.wiring import check_servos, row_groups
 
 BuildLine = Callable[[Port], ServoLine]
 

@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from hal.errors import HardwareError
-from hal.joints import Array
-from hal.line_registers import ATTEMPTS, LineRegisters
-from hal.plausibility import MARGIN
-from hal.registers import Register
-from hal.servo_line import Rows, ServoLine
-from hal.torque_cause import Suspect, examine
-from hal.torque_loss import SWITCHED_OFF, UNEXPLAINED
-from hal.torque_state import TorqueState
+from windup.hal.errors import HardwareError
+from windup.hal.joints import Array
+from windup.hal.line_registers import ATTEMPTS, LineRegisters
+from windup.hal.plausibility import MARGIN
+from windup.hal.registers import Register
+from windup.hal.servo_line import Rows, ServoLine
+from windup.hal.torque_cause import Suspect, examine
+from windup.hal.torque_loss import SWITCHED_OFF, UNEXPLAINED
+from windup.hal.torque_state import TorqueState
 
 TRIPPED = -1
 """What a Bus Watchdog reads that has fired.

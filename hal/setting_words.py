@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 
-from hal.differs import Differs
-from hal.servo_settings import Setting
+from windup.hal.differs import Differs
+from windup.hal.servo_settings import Setting
 
 MANY = 4
 """More joints than these are counted, not named."""

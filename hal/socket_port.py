@@ -8,8 +8,8 @@ import contextlib
 import socket
 from urllib.parse import urlsplit
 
-from hal.errors import UsageError
-from hal.port import DevicePort
+from windup.hal.errors import UsageError
+from windup.hal.port import DevicePort
 
 RAW = "socket://"
 """How the URLs of such ports begin."""

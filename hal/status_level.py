@@ -4,9 +4,9 @@ Such a servo answers a ping and looks dead to everything else. The level is writ
 which no servo answers whatever its level is, and read back.
 """
 
-from hal.bus import Bus
-from hal.errors import HardwareError, NoAnswerError
-from hal.servo_model import ServoModel
+from windup.hal.bus import Bus
+from windup.hal.errors import HardwareError, NoAnswerError
+from windup.hal.servo_model import ServoModel
 
 REGISTER = "status_return_level"
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from hal.servo_link import ServoLink
+from windup.hal.servo_link import ServoLink
 
 
 class StopButton:

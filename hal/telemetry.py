@@ -16,14 +16,14 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
-from hal.backend import BusHealth
-from hal.command import JointCommand
-from hal.contacts import ContactSensors
-from hal.errors import TelemetryError
-from hal.guard import GuardedBackend
-from hal.observation import Observation
-from hal.telemetry_file import make_ring, read_header
-from hal.telemetry_layout import (
+from windup.hal.backend import BusHealth
+from windup.hal.command import JointCommand
+from windup.hal.contacts import ContactSensors
+from windup.hal.errors import TelemetryError
+from windup.hal.guard import GuardedBackend
+from windup.hal.observation import Observation
+from windup.hal.telemetry_file import make_ring, read_header
+from windup.hal.telemetry_layout import (
     CLOSED,
     ENDED,
     ENDED_AT,

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import msgspec
 
-from hal.errors import TelemetryError
-from hal.telemetry_layout import (
+from windup.hal.errors import TelemetryError
+from windup.hal.telemetry_layout import (
     ALIGNMENT,
     FIXED,
     MAGIC,

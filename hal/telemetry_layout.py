@@ -27,8 +27,8 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from hal.command import FIELDS
-from hal.errors import TelemetryError
+from windup.hal.command import FIELDS
+from windup.hal.errors import TelemetryError
 
 MAGIC = b"WINDUPTR"
 VERSION = 2

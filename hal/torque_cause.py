@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from hal.bus import Bus
-from hal.families import Family
-from hal.servo_line import ServoLine
-from hal.torque_loss import SWITCHED_OFF, UNEXPLAINED, Loss, restarted, shut_down, weakened
+from windup.hal.bus import Bus
+from windup.hal.families import Family
+from windup.hal.servo_line import ServoLine
+from windup.hal.torque_loss import SWITCHED_OFF, UNEXPLAINED, Loss, restarted, shut_down, weakened
 
 UNNAMED = "an error that its manual does not name"
 

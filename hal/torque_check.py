@@ -7,10 +7,10 @@ a shutdown the next one would drive a joint from wherever it hangs.
 import numpy as np
 import numpy.typing as npt
 
-from hal.joints import Array, Mask
-from hal.servo_line import ServoLine
-from hal.torque_cause import Suspect, examine
-from hal.torque_loss import Loss
+from windup.hal.joints import Array, Mask
+from windup.hal.servo_line import ServoLine
+from windup.hal.torque_cause import Suspect, examine
+from windup.hal.torque_loss import Loss
 
 MISSES = 4
 """Answers missed in a row after which a servo may have restarted; of 1 % losses, once in 10^8."""

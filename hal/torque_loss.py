@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from hal.errors import TorqueLostError
+from windup.hal.errors import TorqueLostError
 
 
 class Loss(NamedTuple):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hal.joints import Joints, Mask
+from windup.hal.joints import Joints, Mask
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ from math import pi
 import numpy as np
 import numpy.typing as npt
 
-from hal.families import family_of
-from hal.families.gain import Gain
-from hal.joints import Array
-from hal.servo_model import ServoMount
+from windup.hal.families import family_of
+from windup.hal.families.gain import Gain
+from windup.hal.joints import Array
+from windup.hal.servo_model import ServoMount
 
 Rows = npt.NDArray[np.intp]
 

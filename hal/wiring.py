@@ -6,23 +6,23 @@ from math import degrees
 
 import numpy as np
 
-from hal.bus import Bus
-from hal.coupling import Couplings
-from hal.differs import Differs
-from hal.errors import (
+from windup.hal.bus import Bus
+from windup.hal.coupling import Couplings
+from windup.hal.differs import Differs
+from windup.hal.errors import (
     ConfigError,
     CorruptAnswerError,
     HardwareError,
     NoAnswerError,
     UnknownNameError,
 )
-from hal.families import DYNAMIXEL_X, Family, family_of
-from hal.imu.opencr import OpenCr
-from hal.joints import Joints
-from hal.servo_model import ServoMount
-from hal.servo_settings import Setting, differences, limits
-from hal.status_level import make_answer
-from hal.units import Units
+from windup.hal.families import DYNAMIXEL_X, Family, family_of
+from windup.hal.imu.opencr import OpenCr
+from windup.hal.joints import Joints
+from windup.hal.servo_model import ServoMount
+from windup.hal.servo_settings import Setting, differences, limits
+from windup.hal.status_level import make_answer
+from windup.hal.units import Units
 
 PROTOCOL_1 = "speaks protocol 1: set its Protocol Type (register 13) to 2 with DYNAMIXEL Wizard"
 """What is wrong with a servo of the X series that answers in protocol 1."""

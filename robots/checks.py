@@ -10,14 +10,14 @@ from pathlib import Path
 
 import mujoco
 
-from hal.errors import ConfigError, suggest
-from hal.families import family_of
-from hal.servos import servo_names
-from robots import mjcf
-from robots.couplings import coupling_mistakes
-from robots.limits import travel_mistakes
-from robots.records import Foot, JointEntry, RobotFile
-from robots.structure import mistakes
+from windup.hal.errors import ConfigError, suggest
+from windup.hal.families import family_of
+from windup.hal.servos import servo_names
+from windup.robots import mjcf
+from windup.robots.couplings import coupling_mistakes
+from windup.robots.limits import travel_mistakes
+from windup.robots.records import Foot, JointEntry, RobotFile
+from windup.robots.structure import mistakes
 
 SLACK = 1e-6
 """Rounding that a limit may carry, rad."""

@@ -5,8 +5,8 @@ from collections.abc import Iterable
 import mujoco
 import numpy as np
 
-from robots.couplings import add_couplings
-from robots.records import ACCELEROMETER, GYRO, CouplingEntry, Foot, Imu, RobotFile
+from windup.robots.couplings import add_couplings
+from windup.robots.records import ACCELEROMETER, GYRO, CouplingEntry, Foot, Imu, RobotFile
 
 COM_VELOCITY = "com_velocity"
 SITE = mujoco.mjtObj.mjOBJ_SITE

@@ -10,9 +10,9 @@ from math import radians
 import mujoco
 import numpy as np
 
-from hal.joints import Array
-from robots import mjcf
-from robots.records import CouplingEntry, RobotFile
+from windup.hal.joints import Array
+from windup.robots import mjcf
+from windup.robots.records import CouplingEntry, RobotFile
 
 JOINT = mujoco.mjtObj.mjOBJ_JOINT
 KIND = mujoco.mjtEq.mjEQ_JOINT

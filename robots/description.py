@@ -8,20 +8,20 @@ from pathlib import Path
 import mujoco
 from msgspec.structs import replace
 
-from hal.config import load_toml
-from hal.contacts import ContactSensors
-from hal.errors import UnknownNameError, UsageError
-from hal.guard import HealthLevels, StopPolicy
-from hal.joints import Array, Joint, Joints
-from hal.mirror import Mirror
-from hal.servo_model import ServoMount
-from hal.servos import servo_model
-from robots import mjcf, structure
-from robots.checks import Checks, whole_steps
-from robots.completion import complete, complete_for
-from robots.limits import with_limits
-from robots.mirror import mirror_map
-from robots.records import (
+from windup.hal.config import load_toml
+from windup.hal.contacts import ContactSensors
+from windup.hal.errors import UnknownNameError, UsageError
+from windup.hal.guard import HealthLevels, StopPolicy
+from windup.hal.joints import Array, Joint, Joints
+from windup.hal.mirror import Mirror
+from windup.hal.servo_model import ServoMount
+from windup.hal.servos import servo_model
+from windup.robots import mjcf, structure
+from windup.robots.checks import Checks, whole_steps
+from windup.robots.completion import complete, complete_for
+from windup.robots.limits import with_limits
+from windup.robots.mirror import mirror_map
+from windup.robots.records import (
     Bus,
     CouplingEntry,
     Drive,

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import mujoco
 import numpy as np
 
-from robots.couplings import bring_in_step
-from robots.description import RobotDescription
+from windup.robots.couplings import bring_in_step
+from windup.robots.description import RobotDescription
 
 POINTS = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 DEEP = 1e-3

@@ -5,8 +5,8 @@ from typing import Annotated
 
 from msgspec import Meta
 
-from hal.config import Record
-from hal.guard import Kind
+from windup.hal.config import Record
+from windup.hal.guard import Kind
 
 Amount = Annotated[float, Meta(gt=0.0, le=1000.0)]
 

@@ -6,10 +6,10 @@ from math import isnan, pi
 import mujoco
 from msgspec.structs import replace
 
-from hal.families import family_of
-from hal.servos import servo_model
-from robots import mjcf
-from robots.records import JointEntry
+from windup.hal.families import family_of
+from windup.hal.servos import servo_model
+from windup.robots import mjcf
+from windup.robots.records import JointEntry
 
 TURNS = 255
 """So many turns of its servo either way a joint goes that turns on and on; a servo counts 256."""

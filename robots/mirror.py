@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from hal.errors import ConfigError
-from hal.joints import Array
-from hal.mirror import Mirror, other_side
+from windup.hal.errors import ConfigError
+from windup.hal.joints import Array
+from windup.hal.mirror import Mirror, other_side
 
 
 def mirror_map(names: tuple[str, ...], axes: Array) -> Mirror:

@@ -7,10 +7,10 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from hal.errors import ConfigError
-from hal.joints import Array
-from hal.small_file import MOST
-from robots.mjcf_numbers import wrong_number
+from windup.hal.errors import ConfigError
+from windup.hal.joints import Array
+from windup.hal.small_file import MOST
+from windup.robots.mjcf_numbers import wrong_number
 
 OBJECTS = {
     "body": mujoco.mjtObj.mjOBJ_BODY,

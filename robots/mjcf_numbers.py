@@ -5,7 +5,7 @@ from typing import Any, Final
 import mujoco
 import numpy as np
 
-from hal.config import LARGEST
+from windup.hal.config import LARGEST
 
 KINDS: Final = {"body": "body", "jnt": "joint", "dof": "joint", "geom": "geom", "site": "site"}
 """What the fields of a model begin with, and what people call that."""

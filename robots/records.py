@@ -6,10 +6,10 @@ from typing import Annotated, Literal
 from msgspec import Meta
 from msgspec.structs import replace
 
-from hal.config import Delay, Length, NotNegative, Positive, Record, Tilt
-from hal.guard import StopPolicy
-from hal.mirror import Side, side_of
-from robots.levels import JointLevels
+from windup.hal.config import Delay, Length, NotNegative, Positive, Record, Tilt
+from windup.hal.guard import StopPolicy
+from windup.hal.mirror import Side, side_of
+from windup.robots.levels import JointLevels
 
 GYRO, ACCELEROMETER = "gyro", "accelerometer"
 """Names of the sensors of an IMU that names none."""

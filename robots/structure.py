@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import mujoco
 import numpy as np
 
-from robots import mjcf
-from robots.records import RobotFile
+from windup.robots import mjcf
+from windup.robots.records import RobotFile
 
 Mistake = tuple[str, str]
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)

@@ -5,15 +5,15 @@ from math import floor
 
 import numpy as np
 
-from hal.clock import sleep_until
-from hal.command import JointCommand
-from hal.joints import Joints
-from hal.observation import Observation
-from hal.torque_state import TorqueState
-from sim_twin.imu_errors import ImuErrors
-from sim_twin.sensors import Sensors
-from sim_twin.servo_motor import ServoDrive, TorqueDrive
-from sim_twin.twin import Twin
+from windup.hal.clock import sleep_until
+from windup.hal.command import JointCommand
+from windup.hal.joints import Joints
+from windup.hal.observation import Observation
+from windup.hal.torque_state import TorqueState
+from windup.sim_twin.imu_errors import ImuErrors
+from windup.sim_twin.sensors import Sensors
+from windup.sim_twin.servo_motor import ServoDrive, TorqueDrive
+from windup.sim_twin.twin import Twin
 
 
 class TwinClock:

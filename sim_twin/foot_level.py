@@ -3,8 +3,8 @@
 import mujoco
 import numpy as np
 
-from hal.observation import Observation
-from robots.description import RobotDescription
+from windup.hal.observation import Observation
+from windup.robots.description import RobotDescription
 
 SURE = 0.015
 """Nearer to 0 is 0, of the base's height: a foot that is tilted or sinks in shows as much."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import mujoco
 import numpy as np
 
-from hal.joints import Array
-from sim_twin.twin import Twin
+from windup.hal.joints import Array
+from windup.sim_twin.twin import Twin
 
 HEADS = ("head", "neck")
 """In the names of the bodies that are no torso, and break as it does."""

@@ -5,8 +5,8 @@ from math import pi, radians
 
 import numpy as np
 
-from hal.imu.opencr import ACCELERATION, CUTOFF, GYRO
-from hal.joints import Array
+from windup.hal.imu.opencr import ACCELERATION, CUTOFF, GYRO
+from windup.hal.joints import Array
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from robots import RobotDescription
+from windup.robots import RobotDescription
 
 XM430 = 4.1
 """Stall torque of the servo that the friction was drawn for, N m."""

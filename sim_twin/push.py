@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 
 @dataclass(frozen=True)

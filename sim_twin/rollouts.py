@@ -14,13 +14,13 @@ import numpy as np
 import numpy.typing as npt
 from mujoco.batch import Batch
 
-from hal.controller import BatchPolicy, Outcomes, Plane, PolicyInput, RolloutStart, Stopwatch
-from hal.joints import Array, Mask
-from robots.completion import COM_VELOCITY
-from robots.description import RobotDescription
-from sim_twin.foot_level import FootLevel
-from sim_twin.terrain import Ground
-from sim_twin.world import World, build_model
+from windup.hal.controller import BatchPolicy, Outcomes, Plane, PolicyInput, RolloutStart, Stopwatch
+from windup.hal.joints import Array, Mask
+from windup.robots.completion import COM_VELOCITY
+from windup.robots.description import RobotDescription
+from windup.sim_twin.foot_level import FootLevel
+from windup.sim_twin.terrain import Ground
+from windup.sim_twin.world import World, build_model
 
 KNOWN: Plane = (0.0, 0.0, 0.0)
 STAGE = int(mujoco.mjtStage.mjSTAGE_VEL)

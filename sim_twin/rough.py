@@ -6,7 +6,7 @@ from functools import lru_cache
 import mujoco
 import numpy as np
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 LONG, WIDE = 400, 160  # cells ahead and across
 DEEP = 0.25  # solid ground below the lowest node, m

@@ -3,7 +3,7 @@
 import mujoco
 import numpy as np
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 WILD = 1e5
 """Squared speeds of all joints and the base above which something is going wrong."""

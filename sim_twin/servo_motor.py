@@ -11,10 +11,10 @@ from math import pi
 import mujoco
 import numpy as np
 
-from hal.command import JointCommand, shifted_goal
-from hal.joints import Array
-from hal.servo_model import ServoModel
-from robots.description import RobotDescription
+from windup.hal.command import JointCommand, shifted_goal
+from windup.hal.joints import Array
+from windup.hal.servo_model import ServoModel
+from windup.robots.description import RobotDescription
 
 # Places in a dcmotor's gainprm and a pid's biasprm (MuJoCo 4.0, XMLreference).
 R, K, KP, KD, VMAX = 0, 1, 4, 6, 7

@@ -6,9 +6,9 @@ from math import cos, radians, sin, tan
 import mujoco
 import numpy as np
 
-from hal.errors import UsageError
-from hal.joints import Array
-from sim_twin.rough import RoughGround
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array
+from windup.sim_twin.rough import RoughGround
 
 WIDE = 20.0  # half the width of a tile, m
 DEEP = 0.25  # half its thickness, m

@@ -3,7 +3,7 @@
 import mujoco
 import numpy as np
 
-from robots.description import RobotDescription
+from windup.robots.description import RobotDescription
 
 
 class TouchWatch:

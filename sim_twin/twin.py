@@ -7,16 +7,16 @@ from math import radians
 import mujoco
 import numpy as np
 
-from hal.errors import DivergedError, UnknownNameError, UsageError
-from hal.joints import Array
-from hal.observation import BaseState
-from robots.couplings import bring_in_step
-from robots.description import RobotDescription
-from sim_twin.lowest import lowest_point
-from sim_twin.places import JointPlaces
-from sim_twin.push import Push
-from sim_twin.runaway import WILD, fastest_dof
-from sim_twin.world import World, build_model
+from windup.hal.errors import DivergedError, UnknownNameError, UsageError
+from windup.hal.joints import Array
+from windup.hal.observation import BaseState
+from windup.robots.couplings import bring_in_step
+from windup.robots.description import RobotDescription
+from windup.sim_twin.lowest import lowest_point
+from windup.sim_twin.places import JointPlaces
+from windup.sim_twin.push import Push
+from windup.sim_twin.runaway import WILD, fastest_dof
+from windup.sim_twin.world import World, build_model
 
 STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 LOST = 1e6  # sum of positions that no robot has

@@ -5,12 +5,12 @@ from itertools import product
 
 import mujoco
 
-from robots.completion import COM_VELOCITY
-from robots.description import RobotDescription
-from sim_twin.masses import keep_masses
-from sim_twin.plant import Plant
-from sim_twin.servo_motor import add_actuators
-from sim_twin.terrain import Ground
+from windup.robots.completion import COM_VELOCITY
+from windup.robots.description import RobotDescription
+from windup.sim_twin.masses import keep_masses
+from windup.sim_twin.plant import Plant
+from windup.sim_twin.servo_motor import add_actuators
+from windup.sim_twin.terrain import Ground
 
 
 @dataclass(frozen=True)

@@ -5,12 +5,17 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 
-from hal.errors import HardwareError, PostureError, UsageError, WindupError
-from hal.torque_state import TorqueState
-from tools.interrupts import Asked, check_not_interrupted, counted_signals, forget_interruption
-from tools.output import console
-from tools.stop_request import check_released, how_to_stop
-from tools.stopping import Stoppable
+from windup.hal.errors import HardwareError, PostureError, UsageError, WindupError
+from windup.hal.torque_state import TorqueState
+from windup.tools.interrupts import (
+    Asked,
+    check_not_interrupted,
+    counted_signals,
+    forget_interruption,
+)
+from windup.tools.output import console
+from windup.tools.stop_request import check_released, how_to_stop
+from windup.tools.stopping import Stoppable
 
 
 @dataclass(eq=False)

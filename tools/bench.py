@@ -8,23 +8,23 @@ from typing import Annotated, Any, Literal
 
 import tyro
 
-from hal.ranges import Range
-from tools.bench_balance import measure_balance
-from tools.bench_faults import measure_faults
-from tools.bench_guardian import measure_takeovers
-from tools.bench_jitter import measure_jitter
-from tools.bench_leaks import measure_leaks
-from tools.bench_loop import measure_tick, measure_twin
-from tools.bench_servo import measure_servos
-from tools.bench_starts import measure_starts
-from tools.bench_unplug import measure_unplugs
-from tools.bench_wire import Maker, measure_bus
-from tools.command import Command
-from tools.fuzz.bench import measure_fuzz
-from tools.output import console, write_json
-from tools.quantities import Count, Seed
-from tools.safety.bench import ROBOTS, measure_safety
-from tools.soak_table import fault_table
+from windup.hal.ranges import Range
+from windup.tools.bench_balance import measure_balance
+from windup.tools.bench_faults import measure_faults
+from windup.tools.bench_guardian import measure_takeovers
+from windup.tools.bench_jitter import measure_jitter
+from windup.tools.bench_leaks import measure_leaks
+from windup.tools.bench_loop import measure_tick, measure_twin
+from windup.tools.bench_servo import measure_servos
+from windup.tools.bench_starts import measure_starts
+from windup.tools.bench_unplug import measure_unplugs
+from windup.tools.bench_wire import Maker, measure_bus
+from windup.tools.command import Command
+from windup.tools.fuzz.bench import measure_fuzz
+from windup.tools.output import console, write_json
+from windup.tools.quantities import Count, Seed
+from windup.tools.safety.bench import ROBOTS, measure_safety
+from windup.tools.soak_table import fault_table
 
 What = Literal[
     "tick",

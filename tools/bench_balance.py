@@ -7,13 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from control.planner import StepPlanner, StepRequest
-from hal.errors import WindupError
-from hal.joints import Array
-from sim_twin.rollouts import RolloutPredictor
-from tools.build import build_walk
-from tools.robot import Robot
-from tools.walk_options import WalkOptions
+from windup.control.planner import StepPlanner, StepRequest
+from windup.hal.errors import WindupError
+from windup.hal.joints import Array
+from windup.sim_twin.rollouts import RolloutPredictor
+from windup.tools.build import build_walk
+from windup.tools.robot import Robot
+from windup.tools.walk_options import WalkOptions
 
 ROUNDS = 20
 WARM_UP = 5

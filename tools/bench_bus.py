@@ -19,20 +19,20 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 from dynamixel_sdk import GroupSyncRead, GroupSyncWrite, PortHandler, Protocol2PacketHandler
 
-from hal.command import JointCommand
-from hal.exchange import Exchange
-from hal.joints import Joint, Joints
-from hal.open_port import open_port
-from hal.port import Port
-from hal.protocols import protocol2
-from hal.protocols.batched import BlockRead, BlockWrite
-from hal.protocols.crc16 import crc16
-from hal.protocols.protocol2 import Instruction, Span
-from hal.servo_backend import BusPort, ServoBackend
-from hal.servo_model import ServoMount
-from hal.servos import servo_model
-from tools import bench_bus1
-from tools.bench_bus1 import Vendor
+from windup.hal.command import JointCommand
+from windup.hal.exchange import Exchange
+from windup.hal.joints import Joint, Joints
+from windup.hal.open_port import open_port
+from windup.hal.port import Port
+from windup.hal.protocols import protocol2
+from windup.hal.protocols.batched import BlockRead, BlockWrite
+from windup.hal.protocols.crc16 import crc16
+from windup.hal.protocols.protocol2 import Instruction, Span
+from windup.hal.servo_backend import BusPort, ServoBackend
+from windup.hal.servo_model import ServoMount
+from windup.hal.servos import servo_model
+from windup.tools import bench_bus1
+from windup.tools.bench_bus1 import Vendor
 
 STATE, SIZE = 126, 10
 GOAL = 116
@@ -283,7 +283,7 @@ def _responder() -> Iterator[str]:
     """Serve one pseudo-terminal from a process of its own; yield its path."""
     master, slave = pty.openpty()
     tty.setraw(slave)
-    code = f"from tools.bench_bus import respond; respond({master})"
+    code = f"from windup.tools.bench_bus import respond; respond({master})"
     process = subprocess.Popen([sys.executable, "-c", code], pass_fds=[master])
     try:
         os.read(slave, len(READY))

@@ -1,7 +1,8 @@
 """The bus benchmark of protocol 1: STS beside feetech-servo-sdk, MX beside dynamixel-sdk.
 
 One cycle reads position, velocity and load of n servos and writes n goals: a sync read where the
-maker is Feetech, a bulk read where it is Dynamixel. See `tools.bench_bus` for how it is measured.
+maker is Feetech, a bulk read where it is Dynamixel. See `windup.tools.bench_bus` for how it is
+measured.
 """
 
 import contextlib
@@ -14,17 +15,17 @@ import scservo_sdk
 from dynamixel_sdk import GroupBulkRead, GroupSyncWrite, PortHandler, Protocol1PacketHandler
 from scservo_sdk.protocol_packet_handler import protocol_packet_handler
 
-from hal.command import JointCommand
-from hal.exchange import Exchange
-from hal.families import DYNAMIXEL_1, FEETECH_STS, Family
-from hal.joints import Joint, Joints
-from hal.open_port import open_port
-from hal.port import Port
-from hal.protocols import protocol1
-from hal.protocols.protocol1 import Instruction
-from hal.servo_backend import BusPort, ServoBackend
-from hal.servo_model import ServoMount
-from hal.servos import servo_model
+from windup.hal.command import JointCommand
+from windup.hal.exchange import Exchange
+from windup.hal.families import DYNAMIXEL_1, FEETECH_STS, Family
+from windup.hal.joints import Joint, Joints
+from windup.hal.open_port import open_port
+from windup.hal.port import Port
+from windup.hal.protocols import protocol1
+from windup.hal.protocols.protocol1 import Instruction
+from windup.hal.servo_backend import BusPort, ServoBackend
+from windup.hal.servo_model import ServoMount
+from windup.hal.servos import servo_model
 
 Vendor = Literal["feetech", "dynamixel1"]
 Cycle = Callable[[], None]

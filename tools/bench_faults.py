@@ -5,11 +5,11 @@ from collections.abc import Iterator
 from itertools import product
 from typing import Any, NamedTuple
 
-from hal.errors import UsageError
-from tools.parallel import side_by_side
-from tools.soak import Soak, Tally
-from tools.soak_rig import FAMILIES, SoakRig
-from tools.soak_verdict import KINDS, LATE_ADAPTER, MIX, MIXED, verdict
+from windup.hal.errors import UsageError
+from windup.tools.parallel import side_by_side
+from windup.tools.soak import Soak, Tally
+from windup.tools.soak_rig import FAMILIES, SoakRig
+from windup.tools.soak_verdict import KINDS, LATE_ADAPTER, MIX, MIXED, verdict
 
 RATES = (0.01, 0.05)
 """Of the answers. Everything at once comes at the first alone: at the second few are whole."""

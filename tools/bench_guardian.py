@@ -8,11 +8,11 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
-from hal.errors import WindupError
-from hal.observation import Observation
-from tools.output import console
-from tools.robot import Robot
-from tools.safety.emulated import serve
+from windup.hal.errors import WindupError
+from windup.hal.observation import Observation
+from windup.tools.output import console
+from windup.tools.robot import Robot
+from windup.tools.safety.emulated import serve
 
 STEPS = 400
 """Of one walk; then the robot rests, and walks again."""

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hal.backend import Clock
-from hal.errors import UsageError, WindupError
-from hal.servo_backend import ServoBackend
-from tools.output import console
-from tools.robot import Robot
-from tools.safety.emulated import serve
+from windup.hal.backend import Clock
+from windup.hal.errors import UsageError, WindupError
+from windup.hal.servo_backend import ServoBackend
+from windup.tools.output import console
+from windup.tools.robot import Robot
+from windup.tools.safety.emulated import serve
 
 RATE = 125.0  # Hz
 FACTOR, MARGIN = 2.0, 0.2  # of the C loop's p99.9, and ms beside it, that ours may have

@@ -14,13 +14,13 @@ from typing import Any, Final
 from rich.console import Console
 from rich.progress import Progress
 
-from hal.telemetry_layout import runtime_folder
-from robots import load_robot
-from sim_twin.wire import parse_address
-from sim_twin.wire.emulate import emulate
-from tools.output import console
-from tools.robot import Robot
-from tools.safety.emulated import port_of
+from windup.hal.telemetry_layout import runtime_folder
+from windup.robots import load_robot
+from windup.sim_twin.wire import parse_address
+from windup.sim_twin.wire.emulate import emulate
+from windup.tools.output import console
+from windup.tools.robot import Robot
+from windup.tools.safety.emulated import port_of
 
 RUN: Final = 0.1
 """How long it stands each time, s."""

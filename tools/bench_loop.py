@@ -7,10 +7,10 @@ from typing import Any
 
 import mujoco
 
-from hal.command import JointCommand
-from tools.build import build_walk
-from tools.robot import Robot
-from tools.walk_options import WalkOptions
+from windup.hal.command import JointCommand
+from windup.tools.build import build_walk
+from windup.tools.robot import Robot
+from windup.tools.walk_options import WalkOptions
 
 ROUNDS = 20
 

@@ -5,9 +5,9 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from hal.servo_model import ServoModel
-from robots import load_robot
-from sim_twin.servo_motor import set_servo
+from windup.hal.servo_model import ServoModel
+from windup.robots import load_robot
+from windup.sim_twin.servo_motor import set_servo
 
 STEP = 0.001
 INERTIA = 0.01  # kg m2, of the stand's lever

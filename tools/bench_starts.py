@@ -4,11 +4,11 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-from robots import load_robot
-from tools.parallel import side_by_side
-from tools.starts.faults import FAULTS, Fault
-from tools.starts.postures import Kind, kinds_of
-from tools.starts.trial import CAUGHT_WITHIN, Start, try_start
+from windup.robots import load_robot
+from windup.tools.parallel import side_by_side
+from windup.tools.starts.faults import FAULTS, Fault
+from windup.tools.starts.postures import Kind, kinds_of
+from windup.tools.starts.trial import CAUGHT_WITHIN, Start, try_start
 
 SHARE = 4
 """So many times fewer starts with each fault than without any."""

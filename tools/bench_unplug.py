@@ -16,13 +16,13 @@ from typing import Any
 
 import numpy as np
 
-from hal.command import JointCommand
-from hal.errors import HardwareError, PortError, WindupError
-from hal.servo_backend import ServoBackend
-from robots import load_robot
-from tools.output import console
-from tools.safety.emulated import serve
-from tools.stack import servo_backend
+from windup.hal.command import JointCommand
+from windup.hal.errors import HardwareError, PortError, WindupError
+from windup.hal.servo_backend import ServoBackend
+from windup.robots import load_robot
+from windup.tools.output import console
+from windup.tools.safety.emulated import serve
+from windup.tools.stack import servo_backend
 
 FIRST = 3.0  # s; the robot is armed by then
 OUT = (0.1, 0.6)  # s that the adapter is out

@@ -12,15 +12,15 @@ from typing import Any, Literal
 
 import numpy as np
 
-import sim_twin.wire  # noqa: F401 - registers twin://
-from hal.errors import WindupError
-from hal.exchange import TURNAROUND, Exchange
-from hal.open_port import open_port
-from hal.protocols.batched import BlockRead, BlockWrite
-from hal.protocols.cyclic import CyclicRead, CyclicWrite
-from hal.protocols.protocol2 import Span
-from tools.bench_bus import GOAL, SIZE, STATE, bench_memory, bench_pty, wire_bytes
-from tools.bench_bus1 import MAKERS, Vendor
+import windup.sim_twin.wire  # noqa: F401 - registers twin://
+from windup.hal.errors import WindupError
+from windup.hal.exchange import TURNAROUND, Exchange
+from windup.hal.open_port import open_port
+from windup.hal.protocols.batched import BlockRead, BlockWrite
+from windup.hal.protocols.cyclic import CyclicRead, CyclicWrite
+from windup.hal.protocols.protocol2 import Span
+from windup.tools.bench_bus import GOAL, SIZE, STATE, bench_memory, bench_pty, wire_bytes
+from windup.tools.bench_bus1 import MAKERS, Vendor
 
 Maker = Literal[Vendor, "dynamixel2"]
 
@@ -149,7 +149,7 @@ def _emulator(model: str, servos: int, baud: int) -> Iterator[str]:
 
 def _serve(url: str, path: Path, ready: Connection) -> None:
     """Serve the world of `url` for ever."""
-    from sim_twin.wire import parse_address
-    from sim_twin.wire.emulate import emulate
+    from windup.sim_twin.wire import parse_address
+    from windup.sim_twin.wire.emulate import emulate
 
     emulate(parse_address(url), pty=path, on_ready=lambda _: ready.send(True))

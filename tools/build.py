@@ -5,31 +5,31 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 
-from control.balancer import Balancer
-from control.body import Body
-from control.estimator import BaseEstimator
-from control.foot_load import FootLoad
-from control.footfalls import Footfalls
-from control.gait import Gait
-from control.gait_file import Balance, Sampling
-from control.planner import Planner, StepPlanner
-from control.regulation import RegulationVariable, regulation_variables
-from control.shaken import Shaken
-from control.soles import Soles
-from control.step_memory import Memory
-from control.step_model import StepModel
-from control.tilt_filter import GRAVITY, ImuNoise
-from control.torso_servo import TorsoServo
-from hal.controller import Predictor
-from hal.errors import StateMissingError, UnknownNameError, UsageError
-from hal.ranges import Range, read_number
-from robots import RobotDescription
-from tools.gaits import find_gait
-from tools.shape import can_estimate, check_walks
-from tools.spells import blended
-from tools.steer import steering_of
-from tools.step_models import memory_for
-from tools.walk_options import WalkOptions
+from windup.control.balancer import Balancer
+from windup.control.body import Body
+from windup.control.estimator import BaseEstimator
+from windup.control.foot_load import FootLoad
+from windup.control.footfalls import Footfalls
+from windup.control.gait import Gait
+from windup.control.gait_file import Balance, Sampling
+from windup.control.planner import Planner, StepPlanner
+from windup.control.regulation import RegulationVariable, regulation_variables
+from windup.control.shaken import Shaken
+from windup.control.soles import Soles
+from windup.control.step_memory import Memory
+from windup.control.step_model import StepModel
+from windup.control.tilt_filter import GRAVITY, ImuNoise
+from windup.control.torso_servo import TorsoServo
+from windup.hal.controller import Predictor
+from windup.hal.errors import StateMissingError, UnknownNameError, UsageError
+from windup.hal.ranges import Range, read_number
+from windup.robots import RobotDescription
+from windup.tools.gaits import find_gait
+from windup.tools.shape import can_estimate, check_walks
+from windup.tools.spells import blended
+from windup.tools.steer import steering_of
+from windup.tools.step_models import memory_for
+from windup.tools.walk_options import WalkOptions
 
 TARGET = Range(-1_000.0, 1_000.0)
 

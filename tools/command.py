@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
-from hal.ranges import check_numbers
+from windup.hal.ranges import check_numbers
 
 
 @dataclass(frozen=True)

@@ -6,15 +6,15 @@ from contextlib import suppress
 from functools import partial
 from weakref import WeakMethod
 
-from control.first_motion import FirstMotion
-from hal.clock import WallClock
-from hal.errors import GuardianError, WindupError
-from hal.guard import GuardedBackend
-from hal.guardian.handle import Guardian, guardian_for
-from hal.heartbeat import no_heartbeat
-from hal.servo_backend import ServoBackend
-from robots import RobotDescription
-from tools.idle import IdleKeeper
+from windup.control.first_motion import FirstMotion
+from windup.hal.clock import WallClock
+from windup.hal.errors import GuardianError, WindupError
+from windup.hal.guard import GuardedBackend
+from windup.hal.guardian.handle import Guardian, guardian_for
+from windup.hal.heartbeat import no_heartbeat
+from windup.hal.servo_backend import ServoBackend
+from windup.robots import RobotDescription
+from windup.tools.idle import IdleKeeper
 
 
 class Custody:

@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from hal.errors import TelemetryError
-from hal.guard import HealthLevels, Kind
-from hal.guard.finding import SAYINGS, named
-from hal.joints import Joints
-from hal.telemetry import TelemetryReader, Ticks
-from hal.telemetry_layout import Header
-from robots import RobotDescription
-from tools.replay import findings
-from tools.slowness import PLANS, TICKS, Slowness
+from windup.hal.errors import TelemetryError
+from windup.hal.guard import HealthLevels, Kind
+from windup.hal.guard.finding import SAYINGS, named
+from windup.hal.joints import Joints
+from windup.hal.telemetry import TelemetryReader, Ticks
+from windup.hal.telemetry_layout import Header
+from windup.robots import RobotDescription
+from windup.tools.replay import findings
+from windup.tools.slowness import PLANS, TICKS, Slowness
 
 COUNTERS = ("missed", "plans", "late_plans")
 STANDSTILL = 1.0

@@ -8,24 +8,24 @@ from typing import Any, Protocol
 import mujoco
 import numpy as np
 
-from control.body import Body
-from control.directed_file import Directed, ServoDirected
-from control.directed_steps import DirectedSteps
-from control.footprint_checks import FootprintChecks, outline
-from control.footprints import Footprint, between, ground_places, seen_from
-from control.limb_ik import LimbIk
-from control.soles import Soles
-from control.torque_directed import TorqueDirected
-from hal.controller import Controller
-from hal.errors import UnknownNameError
-from hal.joints import Array
-from hal.observation import Observation
-from robots import RobotDescription
-from tools.build import body_of
-from tools.robot import Robot
-from tools.robot_file import load_beside
-from tools.shape import check_walks
-from tools.stepping import FOOTPRINTS, find_stepping, whole_body_of
+from windup.control.body import Body
+from windup.control.directed_file import Directed, ServoDirected
+from windup.control.directed_steps import DirectedSteps
+from windup.control.footprint_checks import FootprintChecks, outline
+from windup.control.footprints import Footprint, between, ground_places, seen_from
+from windup.control.limb_ik import LimbIk
+from windup.control.soles import Soles
+from windup.control.torque_directed import TorqueDirected
+from windup.hal.controller import Controller
+from windup.hal.errors import UnknownNameError
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
+from windup.robots import RobotDescription
+from windup.tools.build import body_of
+from windup.tools.robot import Robot
+from windup.tools.robot_file import load_beside
+from windup.tools.shape import check_walks
+from windup.tools.stepping import FOOTPRINTS, find_stepping, whole_body_of
 
 
 class DirectedController(Controller, Protocol):

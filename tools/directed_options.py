@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from control.footprints import Footprint
-from robots import load_robot
-from tools.directed import (
+from windup.control.footprints import Footprint
+from windup.robots import load_robot
+from windup.tools.directed import (
     DirectedWalk,
     build_directed,
     loop_rate,
     walk_prints,
 )
-from tools.options import Common
-from tools.output import console, write_json
-from tools.twin_options import TwinOptions
+from windup.tools.options import Common
+from windup.tools.output import console, write_json
+from windup.tools.twin_options import TwinOptions
 
 
 @dataclass(frozen=True, kw_only=True)

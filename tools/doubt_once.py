@@ -4,9 +4,9 @@ import logging
 import shlex
 from pathlib import Path
 
-from robots import RobotDescription
-from robots.description import FOLDER
-from robots.doubts import doubts
+from windup.robots import RobotDescription
+from windup.robots.description import FOLDER
+from windup.robots.doubts import doubts
 
 _looked_at: set[Path] = set()
 

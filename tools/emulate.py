@@ -9,20 +9,20 @@ from typing import Annotated
 
 import tyro
 
-from hal.errors import PortError
-from hal.ranges import Range
-from robots import load_robot
-from sim_twin.wire import Address, parse_address
-from sim_twin.wire.address import BENCH, SCHEME
-from sim_twin.wire.emulate import Emulator, emulate
-from sim_twin.wire.fault_text import parse_rules
-from sim_twin.wire.hand import parse_hands
-from sim_twin.wire.outlet import Outlet
-from tools.command import Command
-from tools.doubt_once import doubt_once
-from tools.output import console
-from tools.quantities import Seed
-from tools.writing import check_writable
+from windup.hal.errors import PortError
+from windup.hal.ranges import Range
+from windup.robots import load_robot
+from windup.sim_twin.wire import Address, parse_address
+from windup.sim_twin.wire.address import BENCH, SCHEME
+from windup.sim_twin.wire.emulate import Emulator, emulate
+from windup.sim_twin.wire.fault_text import parse_rules
+from windup.sim_twin.wire.hand import parse_hands
+from windup.sim_twin.wire.outlet import Outlet
+from windup.tools.command import Command
+from windup.tools.doubt_once import doubt_once
+from windup.tools.output import console
+from windup.tools.quantities import Seed
+from windup.tools.writing import check_writable
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
-from tools.push_edge import Edge
-from tools.stepping import FEET, HOLD
+from windup.tools.push_edge import Edge
+from windup.tools.stepping import FEET, HOLD
 
 Edges = Mapping[float, Edge]
 

@@ -9,24 +9,24 @@ from typing import Annotated, Any
 import numpy as np
 import tyro
 
-from control.body import heading
-from control.loop import Estimator
-from hal.errors import UsageError
-from hal.joints import Array
-from hal.observation import BaseState, Observation
-from robots import load_robot
-from sim_twin.backend import TwinBackend
-from sim_twin.imu_errors import OPENCR, ImuErrors
-from sim_twin.sensors import Sensors
-from tools.build import build_estimator, build_walk
-from tools.command import Command
-from tools.faults import with_faults
-from tools.output import console, write_json
-from tools.quantities import Count, Delay, Impulse, Rate, Seed, Some
-from tools.robot import Robot
-from tools.stack import TWIN, check_port
-from tools.truth import Truth
-from tools.walk_options import WalkOptions
+from windup.control.body import heading
+from windup.control.loop import Estimator
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array
+from windup.hal.observation import BaseState, Observation
+from windup.robots import load_robot
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.imu_errors import OPENCR, ImuErrors
+from windup.sim_twin.sensors import Sensors
+from windup.tools.build import build_estimator, build_walk
+from windup.tools.command import Command
+from windup.tools.faults import with_faults
+from windup.tools.output import console, write_json
+from windup.tools.quantities import Count, Delay, Impulse, Rate, Seed, Some
+from windup.tools.robot import Robot
+from windup.tools.stack import TWIN, check_port
+from windup.tools.truth import Truth
+from windup.tools.walk_options import WalkOptions
 
 ATTITUDE_LIMIT = 1.0  # degrees rms
 VELOCITY_LIMIT = 0.03  # m/s rms

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from sim_twin.impact import ImpactGauge
-from tools.load_gauge import load_said
+from windup.sim_twin.impact import ImpactGauge
+from windup.tools.load_gauge import load_said
 
 
 def fall_result(gauge: ImpactGauge) -> dict[str, Any]:

@@ -2,10 +2,10 @@
 
 from urllib.parse import quote
 
-from hal.errors import UsageError
-from sim_twin.wire import parse_address
-from sim_twin.wire.address import SCHEME
-from sim_twin.wire.faults import Faults
+from windup.hal.errors import UsageError
+from windup.sim_twin.wire import parse_address
+from windup.sim_twin.wire.address import SCHEME
+from windup.sim_twin.wire.faults import Faults
 
 
 def with_faults(port: str | None, faults: str) -> str | None:

@@ -7,13 +7,13 @@ from typing import Annotated
 import numpy as np
 import tyro
 
-from control.footprints import Footprint, read_footprints, write_footprints
-from hal.errors import UsageError
-from hal.ranges import Range
-from robots import load_robot
-from tools.directed import build_checks, feet_of
-from tools.directed_options import DirectedOptions
-from tools.output import print_result
+from windup.control.footprints import Footprint, read_footprints, write_footprints
+from windup.hal.errors import UsageError
+from windup.hal.ranges import Range
+from windup.robots import load_robot
+from windup.tools.directed import build_checks, feet_of
+from windup.tools.directed_options import DirectedOptions
+from windup.tools.output import print_result
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,8 +7,8 @@ import numpy as np
 from shapely import Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 
-from hal.errors import UsageError
-from hal.ranges import Range, read_number
+from windup.hal.errors import UsageError
+from windup.hal.ranges import Range, read_number
 
 NEAR: Final = Range(-1_000.0, 1_000.0, "m")
 FORMS: Final = (

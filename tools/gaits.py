@@ -3,10 +3,10 @@
 import os
 from pathlib import Path
 
-from control.gait import Gait, load_gait
-from hal.errors import UnknownNameError
-from hal.joints import Array
-from robots import RobotDescription
+from windup.control.gait import Gait, load_gait
+from windup.hal.errors import UnknownNameError
+from windup.hal.joints import Array
+from windup.robots import RobotDescription
 
 
 def find_gait(robot: RobotDescription, name: str) -> Gait:

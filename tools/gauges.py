@@ -5,9 +5,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from hal.contacts import ContactSensors
-from hal.joints import Mask
-from hal.observation import Observation
+from windup.hal.contacts import ContactSensors
+from windup.hal.joints import Mask
+from windup.hal.observation import Observation
 
 SHORTEST_FLIGHT = 0.02  # s; less is a foot that chatters on the ground
 GRAVITY = 9.81

@@ -11,14 +11,14 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from hal.errors import TelemetryError, UsageError
-from hal.telemetry import TelemetryReader
-from hal.telemetry_layout import ring_path
-from robots import RobotDescription, load_robot
-from tools.command import Command
-from tools.diagnosis import Diagnosis, Limits
-from tools.faults import with_faults
-from tools.output import console, write_json
+from windup.hal.errors import TelemetryError, UsageError
+from windup.hal.telemetry import TelemetryReader
+from windup.hal.telemetry_layout import ring_path
+from windup.robots import RobotDescription, load_robot
+from windup.tools.command import Command
+from windup.tools.diagnosis import Diagnosis, Limits
+from windup.tools.faults import with_faults
+from windup.tools.output import console, write_json
 
 INTERVAL = 0.5
 """From one look to the next, s."""

@@ -9,10 +9,10 @@ import logging
 import threading
 from collections.abc import Callable
 
-from hal.errors import WindupError
-from hal.guard import GuardedBackend
-from tools.interrupts import note_interruption
-from tools.stop_request import pressed_button
+from windup.hal.errors import WindupError
+from windup.hal.guard import GuardedBackend
+from windup.tools.interrupts import note_interruption
+from windup.tools.stop_request import pressed_button
 
 LEAVE = 0.2
 """What an interrupted program is given to end by itself, s."""

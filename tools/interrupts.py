@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from threading import current_thread, main_thread
 from typing import Any
 
-from hal.errors import UsageError
+from windup.hal.errors import UsageError
 
 WORDS = {
     signal.SIGTSTP: "Ctrl-Z",

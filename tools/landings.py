@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
-from control.footing import Footing
-from control.no_step import NoStep
-from control.rotation import yaw_of
-from hal.joints import Array
-from hal.observation import Observation
-from tools.robot import Robot
+from windup.control.footing import Footing
+from windup.control.no_step import NoStep
+from windup.control.rotation import yaw_of
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
+from windup.tools.robot import Robot
 
 OFF = 0.05
 """A foot that touches again has stepped when it had been off the ground for so long, s."""

@@ -2,14 +2,14 @@
 
 from pathlib import Path
 
-from control.gait_hash import gait_hash
-from control.learnt_models import LearntModels
-from control.planner import StepPlanner
-from hal.errors import UsageError
-from tools.gaits import gait_path
-from tools.report import WalkReport
-from tools.walk_options import WalkOptions
-from tools.writing import check_writable, writing
+from windup.control.gait_hash import gait_hash
+from windup.control.learnt_models import LearntModels
+from windup.control.planner import StepPlanner
+from windup.hal.errors import UsageError
+from windup.tools.gaits import gait_path
+from windup.tools.report import WalkReport
+from windup.tools.walk_options import WalkOptions
+from windup.tools.writing import check_writable, writing
 
 
 def check_learning(options: WalkOptions, *, alone: bool) -> None:

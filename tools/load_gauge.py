@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hal.joints import Joints
-from hal.observation import Observation
+from windup.hal.joints import Joints
+from windup.hal.observation import Observation
 
 HIGH = 0.5  # share of the stall torque that a geared servo bears for a moment only
 

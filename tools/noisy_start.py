@@ -1,8 +1,8 @@
 """An emulated robot that begins beside its stance, in the hands that hold it."""
 
-import sim_twin.wire as wire
-from sim_twin.twin import Twin
-from sim_twin.wire.twin_shaft import TwinPhysics
+import windup.sim_twin.wire as wire
+from windup.sim_twin.twin import Twin
+from windup.sim_twin.wire.twin_shaft import TwinPhysics
 
 
 def begin_noisily(world: str, twin: Twin, noise: float, seed: int) -> None:

@@ -4,14 +4,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from hal.errors import UsageError
-from hal.guard import GuardedBackend
-from hal.observation import BaseState
-from hal.ranges import numbers_checked
-from robots import RobotDescription
-from sim_twin.push import Push
-from sim_twin.twin import Twin
-from tools.stack import Stack
+from windup.hal.errors import UsageError
+from windup.hal.guard import GuardedBackend
+from windup.hal.observation import BaseState
+from windup.hal.ranges import numbers_checked
+from windup.robots import RobotDescription
+from windup.sim_twin.push import Push
+from windup.sim_twin.twin import Twin
+from windup.tools.stack import Stack
 
 
 @dataclass(eq=False)

@@ -6,15 +6,15 @@ from typing import Annotated, Any
 
 import tyro
 
-from hal.errors import UsageError
-from robots import load_robot
-from sim_twin.wire.address import SCHEME
-from tools.command import Command
-from tools.doubt_once import doubt_once
-from tools.faults import with_faults
-from tools.quantities import Noise, Rate, Seed, Seeds
-from tools.robot import Robot
-from tools.stack import State, check_port
+from windup.hal.errors import UsageError
+from windup.robots import load_robot
+from windup.sim_twin.wire.address import SCHEME
+from windup.tools.command import Command
+from windup.tools.doubt_once import doubt_once
+from windup.tools.faults import with_faults
+from windup.tools.quantities import Noise, Rate, Seed, Seeds
+from windup.tools.robot import Robot
+from windup.tools.stack import State, check_port
 
 
 @dataclass(frozen=True, kw_only=True)

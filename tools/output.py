@@ -9,10 +9,10 @@ from typing import IO, Any, cast
 import numpy as np
 from rich.console import Console
 
-from hal.errors import WindupError
-from tools.run_notes import NOTES
-from tools.streams import StandardError, drop_unwritten
-from tools.writing import STANDARD_OUTPUT, check_writable, writing
+from windup.hal.errors import WindupError
+from windup.tools.run_notes import NOTES
+from windup.tools.streams import StandardError, drop_unwritten
+from windup.tools.writing import STANDARD_OUTPUT, check_writable, writing
 
 SCHEMA = 1
 console = Console(file=cast(IO[str], StandardError()), highlight=False)

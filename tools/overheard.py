@@ -11,7 +11,7 @@ from threading import current_thread, main_thread
 from typing import Any, Protocol
 from weakref import WeakSet
 
-from tools.interrupts import WORDS
+from windup.tools.interrupts import WORDS
 
 
 class Listener(Protocol):

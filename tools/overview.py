@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Final
 
-from tools.command_table import Entry
+from windup.tools.command_table import Entry
 
 HEAD: Final = """\
 usage: windup COMMAND ...       `windup COMMAND --help` lists its options

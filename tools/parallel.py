@@ -19,8 +19,8 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from hal.errors import WindupError
-from tools.output import console
+from windup.hal.errors import WindupError
+from windup.tools.output import console
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")

@@ -7,8 +7,8 @@ from typing import Any, get_args, get_type_hints
 
 import tyro
 
-from hal.ranges import SHOWN
-from tools.near_word import near_word
+from windup.hal.ranges import SHOWN
+from windup.tools.near_word import near_word
 
 WORDS = {"FLOAT FLOAT": "two numbers", "FLOAT": "a number", "INT": "a whole number", "|": " or "}
 

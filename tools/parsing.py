@@ -7,9 +7,9 @@ from typing import Any
 
 import tyro
 
-from hal.errors import UsageError
-from tools.parse_errors import mistake
-from tools.writing import STANDARD_OUTPUT, check_writable, writing
+from windup.hal.errors import UsageError
+from windup.tools.parse_errors import mistake
+from windup.tools.writing import STANDARD_OUTPUT, check_writable, writing
 
 
 def parse_options(name: str, kind: type, words: list[str]) -> Any:

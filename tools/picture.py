@@ -4,8 +4,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
 
-from hal.errors import UsageError
-from tools.writing import check_writable, writing
+from windup.hal.errors import UsageError
+from windup.tools.writing import check_writable, writing
 
 SUFFIXES: Final = (".png", ".pdf", ".svg", ".jpg", ".jpeg", ".webp")
 """How the names of picture files end."""

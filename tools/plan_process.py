@@ -13,17 +13,18 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from control.planner import StepRequest
-from hal.controller import Stopwatch
-from hal.errors import PlannerError
-from hal.joints import Array
-from robots import RobotDescription
-from sim_twin.rollouts import RolloutPredictor
-from tools.plan_worker import LARGEST, Answer, Question, Task
-from tools.walk_options import WalkOptions
+from windup.control.planner import StepRequest
+from windup.hal.controller import Stopwatch
+from windup.hal.errors import PlannerError
+from windup.hal.joints import Array
+from windup.robots import RobotDescription
+from windup.sim_twin.rollouts import RolloutPredictor
+from windup.tools.plan_worker import LARGEST, Answer, Question, Task
+from windup.tools.walk_options import WalkOptions
 
 PATIENCE = 60.0
 """For the process to be built, on a machine that is busy, s."""
+PROGRAM = "from windup.tools.plan_worker import main; main()"
 GOODBYE = 2.0
 """For the process to end by itself, s."""
 
@@ -179,7 +180,7 @@ def _start(descriptor: int) -> subprocess.Popen[bytes]:
     home = str(Path(__file__).resolve().parent.parent)
     path = os.pathsep.join([home, *filter(None, [os.environ.get("PYTHONPATH")])])
     return subprocess.Popen(
-        [sys.executable, "-c", "from tools.plan_worker import main; main()", str(descriptor)],
+        [sys.executable, "-c", PROGRAM, str(descriptor)],
         pass_fds=(descriptor,),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,

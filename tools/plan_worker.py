@@ -1,4 +1,4 @@
-"""The process that plans steps for a loop on the wall's time; `tools.plan_process` starts it.
+"""The process that plans steps for a loop on the wall's time; `plan_process` starts it.
 
 It is a program of its own, not a spawn of multiprocessing, so that a script which runs a robot
 needs no `if __name__ == "__main__"`. Each message is one pickle on a socket that keeps
@@ -15,18 +15,18 @@ import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from control.balancer import Balancer
-from control.planner import StepPlanner, StepRequest
-from hal.controller import Stopwatch
-from hal.errors import WindupError
-from hal.joints import Array
-from robots import load_robot
-from sim_twin.backend import TwinBackend
-from sim_twin.rollouts import RolloutPredictor
-from sim_twin.terrain import Ground
-from sim_twin.twin import Twin
-from tools.build import build_walk
-from tools.walk_options import WalkOptions
+from windup.control.balancer import Balancer
+from windup.control.planner import StepPlanner, StepRequest
+from windup.hal.controller import Stopwatch
+from windup.hal.errors import WindupError
+from windup.hal.joints import Array
+from windup.robots import load_robot
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.rollouts import RolloutPredictor
+from windup.sim_twin.terrain import Ground
+from windup.sim_twin.twin import Twin
+from windup.tools.build import build_walk
+from windup.tools.walk_options import WalkOptions
 
 LARGEST = 1 << 17
 """More than any message, bytes."""

@@ -6,14 +6,14 @@ from typing import Annotated, Any
 
 import tyro
 
-from control.staged import StagedPlayer
-from robots import load_robot
-from tools.gaits import find_gait
-from tools.load_gauge import load_said
-from tools.options import Common
-from tools.output import console, write_json
-from tools.quantities import Duration
-from tools.twin_options import TwinOptions
+from windup.control.staged import StagedPlayer
+from windup.robots import load_robot
+from windup.tools.gaits import find_gait
+from windup.tools.load_gauge import load_said
+from windup.tools.options import Common
+from windup.tools.output import console, write_json
+from windup.tools.quantities import Duration
+from windup.tools.twin_options import TwinOptions
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from hal.contacts import ContactSensors
-from hal.observation import Observation
-from tools.picture import load_pyplot, save_picture
-from tools.report import WalkReport
+from windup.hal.contacts import ContactSensors
+from windup.hal.observation import Observation
+from windup.tools.picture import load_pyplot, save_picture
+from windup.tools.report import WalkReport
 
 TRACE = 0.02  # s between samples of path and contacts
 

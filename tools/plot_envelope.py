@@ -3,7 +3,7 @@
 from math import pi
 from pathlib import Path
 
-from tools.picture import load_pyplot, save_picture
+from windup.tools.picture import load_pyplot, save_picture
 
 
 def plot_envelope(

@@ -6,14 +6,14 @@ from functools import cached_property
 import mujoco
 import numpy as np
 
-from control.fall import FallPredictor
-from control.protection import FallWay, Protected
-from control.soles import Soles
-from hal.controller import Controller
-from hal.joints import Array, Mask
-from robots import RobotDescription
-from robots.records import Shares
-from tools.build import body_of
+from windup.control.fall import FallPredictor
+from windup.control.protection import FallWay, Protected
+from windup.control.soles import Soles
+from windup.hal.controller import Controller
+from windup.hal.joints import Array, Mask
+from windup.robots import RobotDescription
+from windup.robots.records import Shares
+from windup.tools.build import body_of
 
 
 @dataclass

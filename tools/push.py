@@ -8,27 +8,27 @@ from typing import Annotated, Any, Literal
 import numpy as np
 import tyro
 
-from control.stepping_file import Support
-from hal.errors import UsageError
-from hal.ranges import Range
-from robots import load_robot
-from sim_twin.impact import ImpactGauge
-from tools.fall_report import fall_result, fall_said
-from tools.forbid import forbidden
-from tools.landings import landings_said
-from tools.options import Common
-from tools.output import console, write_json
-from tools.picture import check_picture
-from tools.push_edge import LIGHT, Search
-from tools.push_envelope import Envelope
-from tools.push_trial import PushPlan, push_robot
-from tools.push_walk import push_walking, walking_said
-from tools.quantities import Degrees, Delay, Duration, Height, Jobs, Seconds, Some, Speed
-from tools.robot import Robot
-from tools.shape import check_walks
-from tools.stepping import WAYS, check_way, find_stepping, stepping_stance
-from tools.twin_options import WorldOptions
-from tools.walk_options import WalkOptions
+from windup.control.stepping_file import Support
+from windup.hal.errors import UsageError
+from windup.hal.ranges import Range
+from windup.robots import load_robot
+from windup.sim_twin.impact import ImpactGauge
+from windup.tools.fall_report import fall_result, fall_said
+from windup.tools.forbid import forbidden
+from windup.tools.landings import landings_said
+from windup.tools.options import Common
+from windup.tools.output import console, write_json
+from windup.tools.picture import check_picture
+from windup.tools.push_edge import LIGHT, Search
+from windup.tools.push_envelope import Envelope
+from windup.tools.push_trial import PushPlan, push_robot
+from windup.tools.push_walk import push_walking, walking_said
+from windup.tools.quantities import Degrees, Delay, Duration, Height, Jobs, Seconds, Some, Speed
+from windup.tools.robot import Robot
+from windup.tools.shape import check_walks
+from windup.tools.stepping import WAYS, check_way, find_stepping, stepping_stance
+from windup.tools.twin_options import WorldOptions
+from windup.tools.walk_options import WalkOptions
 
 Strength = Annotated[float, Range(0.0, 10_000.0, "N s")]
 

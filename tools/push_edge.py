@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from itertools import takewhile
 from typing import Any
 
-from tools.push_trial import PushPlan
+from windup.tools.push_trial import PushPlan
 
 COARSE, FINE = 0.4, 0.05
 """Steps of the impulse of a light robot: of the grid, and from the last success, N s."""

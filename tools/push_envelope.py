@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from tools.envelope_tables import largest_table, summarise, summary_table
-from tools.output import console, write_json
-from tools.parallel import side_by_side
-from tools.plot_envelope import plot_envelope
-from tools.push_edge import Edge, Search, find_edge
-from tools.run_notes import NOTES
+from windup.tools.envelope_tables import largest_table, summarise, summary_table
+from windup.tools.output import console, write_json
+from windup.tools.parallel import side_by_side
+from windup.tools.plot_envelope import plot_envelope
+from windup.tools.push_edge import Edge, Search, find_edge
+from windup.tools.run_notes import NOTES
 
 
 @dataclass(frozen=True)

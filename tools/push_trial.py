@@ -7,21 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from control.play import PoseHolder
-from control.rotation import turn
-from control.stepper import Stepper
-from control.stepping_file import Support
-from control.torque_stepper import TorqueStepper
-from hal.controller import Controller
-from hal.errors import UsageError
-from hal.joints import Array
-from hal.observation import Observation
-from sim_twin.push import Push
-from sim_twin.touch import TouchWatch
-from tools.forbid import forbidden
-from tools.landings import Landings
-from tools.robot import Robot
-from tools.stepping import build_stepper, footing_of, stepping_stance
+from windup.control.play import PoseHolder
+from windup.control.rotation import turn
+from windup.control.stepper import Stepper
+from windup.control.stepping_file import Support
+from windup.control.torque_stepper import TorqueStepper
+from windup.hal.controller import Controller
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
+from windup.sim_twin.push import Push
+from windup.sim_twin.touch import TouchWatch
+from windup.tools.forbid import forbidden
+from windup.tools.landings import Landings
+from windup.tools.robot import Robot
+from windup.tools.stepping import build_stepper, footing_of, stepping_stance
 
 STEPPERS = (Stepper, TorqueStepper)
 STILL = 0.05
@@ -40,7 +40,7 @@ class PushPlan:
     """What is done to a robot that stands.
 
     Attributes:
-        way: How it meets the push; one of `tools.stepping.WAYS`.
+        way: How it meets the push; one of `windup.tools.stepping.WAYS`.
         impulse: N s.
         directions: Of one push after the other, degrees.
         duration: Of a push, s.
@@ -50,7 +50,7 @@ class PushPlan:
         body: Which body is pushed; the torso by default.
         stance: Name of the pose that it stands in; that of its stepping by default.
         support: What its soles are taken to support; that of its stepping by default.
-        forbid: Ground where no foot may come down; see `tools.forbid`.
+        forbid: Ground where no foot may come down; see `windup.tools.forbid`.
     """
 
     way: str

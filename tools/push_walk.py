@@ -3,11 +3,11 @@
 from math import ceil
 from typing import Any
 
-from control.play import PoseHolder
-from sim_twin.touch import TouchWatch
-from tools.push_trial import LANDING, PushPlan, arrange
-from tools.robot import Robot
-from tools.walk_options import WalkOptions
+from windup.control.play import PoseHolder
+from windup.sim_twin.touch import TouchWatch
+from windup.tools.push_trial import LANDING, PushPlan, arrange
+from windup.tools.robot import Robot
+from windup.tools.walk_options import WalkOptions
 
 QUICK = 0.2
 """No step takes less time, s."""

@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING
 import pytest
 
 if TYPE_CHECKING:
-    from tools.servo_bus import ServoBus
+    from windup.tools.servo_bus import ServoBus
 
 
 @pytest.fixture
 def servo_bus() -> "Iterator[Callable[..., ServoBus]]":
     """Make a robot's emulated servo bus: ``servo_bus("op3", seed=1)``; see `ServoBus`."""
-    from tools.servo_bus import ServoBus  # not before a test asks: it takes a second
+    from windup.tools.servo_bus import ServoBus  # not before a test asks: it takes a second
 
     made: list[ServoBus] = []
 
@@ -38,7 +38,7 @@ def servo_bus() -> "Iterator[Callable[..., ServoBus]]":
 @pytest.fixture
 def servo_replay() -> "Iterator[Callable[[str | Path], ServoBus]]":
     """Make a bus that answers from a trace: ``servo_replay("walk.trace")``."""
-    from tools.servo_bus import ServoBus
+    from windup.tools.servo_bus import ServoBus
 
     made: list[ServoBus] = []
 

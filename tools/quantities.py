@@ -6,7 +6,7 @@ and is checked where that is known.
 
 from typing import Annotated
 
-from hal.ranges import Range
+from windup.hal.ranges import Range
 
 LONGEST = 1e7  # s, four months
 

@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from hal.families import Family
-from hal.port import BITS, Port
-from hal.protocols import protocol1, protocol2
-from hal.protocols.protocol2 import Status
+from windup.hal.families import Family
+from windup.hal.port import BITS, Port
+from windup.hal.protocols import protocol1, protocol2
+from windup.hal.protocols.protocol2 import Status
 
 TIME = 5e-3
 """What a servo may take to answer, with its return delay, s."""

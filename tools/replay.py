@@ -4,14 +4,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hal.command import FIELDS, JointCommand
-from hal.guard import HealthLevels, HealthWatch
-from hal.guard.finding import Finding
-from hal.guard.imu_watch import ImuWatch
-from hal.joints import Joints
-from hal.observation import ImuState, JointState, Observation
-from hal.telemetry import Ticks
-from hal.telemetry_layout import Header
+from windup.hal.command import FIELDS, JointCommand
+from windup.hal.guard import HealthLevels, HealthWatch
+from windup.hal.guard.finding import Finding
+from windup.hal.guard.imu_watch import ImuWatch
+from windup.hal.joints import Joints
+from windup.hal.observation import ImuState, JointState, Observation
+from windup.hal.telemetry import Ticks
+from windup.hal.telemetry_layout import Header
 
 JOINTS = ("position", "velocity", "torque", "voltage", "temperature", "age", "health_age")
 

@@ -5,19 +5,19 @@ from typing import Any
 
 import numpy as np
 
-from control.balancer import Balancer
-from control.loop import LoopReport
-from control.navigation import PathFollower, PointFollower
-from control.planner import StepPlanner
-from control.supervisor import Supervisor
-from hal.controller import Stopwatch
-from hal.joints import Array
-from hal.observation import Observation
-from sim_twin.clearance import FootClearance
-from tools.gauges import Gauges
-from tools.session import Session
-from tools.walk_options import WalkOptions
-from tools.walk_said import walk_said
+from windup.control.balancer import Balancer
+from windup.control.loop import LoopReport
+from windup.control.navigation import PathFollower, PointFollower
+from windup.control.planner import StepPlanner
+from windup.control.supervisor import Supervisor
+from windup.hal.controller import Stopwatch
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
+from windup.sim_twin.clearance import FootClearance
+from windup.tools.gauges import Gauges
+from windup.tools.session import Session
+from windup.tools.walk_options import WalkOptions
+from windup.tools.walk_said import walk_said
 
 SETTLED = 10  # steps left out of the mean speed
 

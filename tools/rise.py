@@ -6,19 +6,19 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-import sim_twin.wire as wire
-from control.play import PoseHolder
-from control.reach import lean
-from hal.errors import UsageError
-from hal.observation import Observation
-from robots import load_robot
-from sim_twin.wire.twin_shaft import TwinPhysics
-from tools.gaits import find_gait
-from tools.options import Common
-from tools.output import console, write_json
-from tools.quantities import Some
-from tools.robot import Robot
-from tools.twin_options import TwinOptions
+import windup.sim_twin.wire as wire
+from windup.control.play import PoseHolder
+from windup.control.reach import lean
+from windup.hal.errors import UsageError
+from windup.hal.observation import Observation
+from windup.robots import load_robot
+from windup.sim_twin.wire.twin_shaft import TwinPhysics
+from windup.tools.gaits import find_gait
+from windup.tools.options import Common
+from windup.tools.output import console, write_json
+from windup.tools.quantities import Some
+from windup.tools.robot import Robot
+from windup.tools.twin_options import TwinOptions
 
 Side = Literal["front", "back"]
 LOOK = 0.5  # s that it takes to know on which side one lies

@@ -9,33 +9,33 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from typing import Self
 
-from control.loop import LoopReport, Until
-from control.play import GraphPlayer, PoseHolder
-from control.staged import StagedPlayer
-from hal.controller import Stopwatch
-from hal.errors import UnknownNameError
-from hal.joints import Array
-from hal.observation import Observation
-from hal.ranges import check_numbers, numbers_checked
-from robots import load_robot
-from sim_twin.clearance import FootClearance
-from sim_twin.rollouts import RolloutPredictor
-from sim_twin.wire.world import RealClock
-from sim_twin.world import World
-from tools.build import build_walk
-from tools.doubt_once import doubt_once
-from tools.gaits import find_gait
-from tools.gauges import Gauges
-from tools.interrupts import RunInterruptedError
-from tools.load_gauge import LoadGauge
-from tools.plan_process import ProcessPlanner, plan_aside
-from tools.quantities import Count, Delay, Noise, Rate, Seconds, Seed, Speed
-from tools.report import WalkReport
-from tools.session import Session
-from tools.stack import State, twin_stack, wire_stack
-from tools.supervise import build_supervisor
-from tools.walk_end import OnStep, WalkEnd
-from tools.walk_options import WalkOptions
+from windup.control.loop import LoopReport, Until
+from windup.control.play import GraphPlayer, PoseHolder
+from windup.control.staged import StagedPlayer
+from windup.hal.controller import Stopwatch
+from windup.hal.errors import UnknownNameError
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
+from windup.hal.ranges import check_numbers, numbers_checked
+from windup.robots import load_robot
+from windup.sim_twin.clearance import FootClearance
+from windup.sim_twin.rollouts import RolloutPredictor
+from windup.sim_twin.wire.world import RealClock
+from windup.sim_twin.world import World
+from windup.tools.build import build_walk
+from windup.tools.doubt_once import doubt_once
+from windup.tools.gaits import find_gait
+from windup.tools.gauges import Gauges
+from windup.tools.interrupts import RunInterruptedError
+from windup.tools.load_gauge import LoadGauge
+from windup.tools.plan_process import ProcessPlanner, plan_aside
+from windup.tools.quantities import Count, Delay, Noise, Rate, Seconds, Seed, Speed
+from windup.tools.report import WalkReport
+from windup.tools.session import Session
+from windup.tools.stack import State, twin_stack, wire_stack
+from windup.tools.supervise import build_supervisor
+from windup.tools.walk_end import OnStep, WalkEnd
+from windup.tools.walk_options import WalkOptions
 
 START_SECONDS = 1.0
 PLAY_SECONDS = 5.0

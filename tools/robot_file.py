@@ -2,9 +2,9 @@
 
 from typing import TypeVar
 
-from hal.config import load_toml
-from hal.errors import UsageError
-from robots import RobotDescription, load_robot, robot_names
+from windup.hal.config import load_toml
+from windup.hal.errors import UsageError
+from windup.robots import RobotDescription, load_robot, robot_names
 
 T = TypeVar("T")
 

@@ -7,10 +7,10 @@ from typing import Annotated, Any
 import tyro
 from rich.table import Table
 
-from robots import load_robot, robot_names
-from robots.doubts import doubts
-from tools.command import Command
-from tools.output import console, write_json
+from windup.robots import load_robot, robot_names
+from windup.robots.doubts import doubts
+from windup.tools.command import Command
+from windup.tools.output import console, write_json
 
 
 @dataclass(frozen=True)

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
-from control.gait import Gait
-from control.guide import Guide
-from control.navigation import Agility, PathFollower, PointFollower, circle, square
-from hal.errors import UsageError
-from hal.joints import Array
-from hal.ranges import Range, read_number
-from hal.small_file import read_small
-from robots import RobotDescription
+from windup.control.gait import Gait
+from windup.control.guide import Guide
+from windup.control.navigation import Agility, PathFollower, PointFollower, circle, square
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array
+from windup.hal.ranges import Range, read_number
+from windup.hal.small_file import read_small
+from windup.robots import RobotDescription
 
 MOST = 10_000
 """Points of a path."""

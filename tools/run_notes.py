@@ -10,10 +10,10 @@ from contextlib import contextmanager
 from copy import deepcopy
 from typing import Any
 
-from hal.backend import BusHealth
-from hal.errors import OutputError, UsageError
-from hal.guard.finding import Finding
-from tools.slowness import Slowness
+from windup.hal.backend import BusHealth
+from windup.hal.errors import OutputError, UsageError
+from windup.hal.guard.finding import Finding
+from windup.tools.slowness import Slowness
 
 Row = dict[str, Any]
 

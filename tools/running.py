@@ -3,7 +3,7 @@
 import threading
 from types import TracebackType
 
-from hal.errors import UsageError
+from windup.hal.errors import UsageError
 
 PATIENCE = 3.0
 """What a run may take to see that it shall end, and to stop its robot, s."""

@@ -7,18 +7,18 @@ from typing import Annotated
 import tyro
 from rich.progress import BarColumn, Progress, TextColumn
 
-from hal.errors import UsageError
-from hal.families import FAMILIES
-from hal.open_port import open_port
-from hal.ranges import Range
-from robots import load_robot
-from sim_twin.wire import parse_address
-from sim_twin.wire.address import SCHEME
-from tools.command import Command
-from tools.faults import with_faults
-from tools.output import console, write_json
-from tools.scan_said import complaints, narrow_lines, table
-from tools.survey import Survey, places
+from windup.hal.errors import UsageError
+from windup.hal.families import FAMILIES
+from windup.hal.open_port import open_port
+from windup.hal.ranges import Range
+from windup.robots import load_robot
+from windup.sim_twin.wire import parse_address
+from windup.sim_twin.wire.address import SCHEME
+from windup.tools.command import Command
+from windup.tools.faults import with_faults
+from windup.tools.output import console, write_json
+from windup.tools.scan_said import complaints, narrow_lines, table
+from windup.tools.survey import Survey, places
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,9 +5,9 @@ from typing import Any, Final
 
 from rich.table import Table
 
-from hal.wiring import PROTOCOL_1
-from tools.raw_answers import Strange
-from tools.survey import Survey
+from windup.hal.wiring import PROTOCOL_1
+from windup.tools.raw_answers import Strange
+from windup.tools.survey import Survey
 
 WIDE: Final = 78
 """Columns of a terminal that the whole table needs."""

@@ -15,18 +15,18 @@ from urllib.parse import urlencode
 
 import serial
 
-from hal.backend import Clock
-from hal.errors import UsageError
-from hal.open_port import open_port
-from hal.port import Port
-from sim_twin.wire import build_world, drop_world, parse_address, put_world
-from sim_twin.wire.device import Device
-from sim_twin.wire.faults import Faults
-from sim_twin.wire.hand import Swing
-from sim_twin.wire.tape import check_played, tape_world
-from sim_twin.wire.trace import Checker, Recorder, Tap
-from sim_twin.wire.world import VirtualClock, World
-from tools.robot import Robot
+from windup.hal.backend import Clock
+from windup.hal.errors import UsageError
+from windup.hal.open_port import open_port
+from windup.hal.port import Port
+from windup.sim_twin.wire import build_world, drop_world, parse_address, put_world
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.faults import Faults
+from windup.sim_twin.wire.hand import Swing
+from windup.sim_twin.wire.tape import check_played, tape_world
+from windup.sim_twin.wire.trace import Checker, Recorder, Tap
+from windup.sim_twin.wire.world import VirtualClock, World
+from windup.tools.robot import Robot
 
 _numbers = count(1)
 

@@ -7,30 +7,30 @@ from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
 
-from control.estimator import BaseEstimator
-from control.imu_gate import ImuGate
-from control.loop import Estimator, LoopReport, Until, run_loop
-from control.play import PoseHolder
-from hal.clock import punctual
-from hal.controller import Controller, Stopwatch
-from hal.errors import ControllerError, TelemetryError, WindupError
-from hal.guard.finding import Finding
-from hal.guard.imu_watch import ImuWatch
-from hal.leftovers import remove_leftovers
-from hal.observation import Observation
-from hal.ranges import numbers_checked
-from hal.telemetry import TelemetryWriter
-from hal.telemetry_layout import ring_path
-from sim_twin.backend import TwinClock
-from sim_twin.wire.world import VirtualClock
-from tools.armed import Armed
-from tools.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
-from tools.protect import Protection
-from tools.run_notes import NOTES
-from tools.slowness import Slowness
-from tools.stack import look_with
-from tools.stop_request import stop_requests
-from tools.stopping import INTERRUPTED, LAY
+from windup.control.estimator import BaseEstimator
+from windup.control.imu_gate import ImuGate
+from windup.control.loop import Estimator, LoopReport, Until, run_loop
+from windup.control.play import PoseHolder
+from windup.hal.clock import punctual
+from windup.hal.controller import Controller, Stopwatch
+from windup.hal.errors import ControllerError, TelemetryError, WindupError
+from windup.hal.guard.finding import Finding
+from windup.hal.guard.imu_watch import ImuWatch
+from windup.hal.leftovers import remove_leftovers
+from windup.hal.observation import Observation
+from windup.hal.ranges import numbers_checked
+from windup.hal.telemetry import TelemetryWriter
+from windup.hal.telemetry_layout import ring_path
+from windup.sim_twin.backend import TwinClock
+from windup.sim_twin.wire.world import VirtualClock
+from windup.tools.armed import Armed
+from windup.tools.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
+from windup.tools.protect import Protection
+from windup.tools.run_notes import NOTES
+from windup.tools.slowness import Slowness
+from windup.tools.stack import look_with
+from windup.tools.stop_request import stop_requests
+from windup.tools.stopping import INTERRUPTED, LAY
 
 REST_SECONDS = 1.5
 # Called once a tick with the observation.

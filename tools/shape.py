@@ -1,7 +1,7 @@
 """What the shape of a robot lets it do: whoever is fixed, or has no two feet, cannot walk."""
 
-from hal.errors import UsageError
-from robots import RobotDescription
+from windup.hal.errors import UsageError
+from windup.robots import RobotDescription
 
 
 def check_walks(robot: RobotDescription, what: str = "walk") -> None:

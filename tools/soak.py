@@ -8,10 +8,10 @@ from typing import Final
 
 import numpy as np
 
-from hal.joints import Array, Mask
-from hal.plausibility import FASTER, MARGIN
-from sim_twin.wire.fault_rule import ANSWERS, SECONDS, make_rule
-from tools.soak_rig import SoakRig
+from windup.hal.joints import Array, Mask
+from windup.hal.plausibility import FASTER, MARGIN
+from windup.sim_twin.wire.fault_rule import ANSWERS, SECONDS, make_rule
+from windup.tools.soak_rig import SoakRig
 
 PERIOD = 0.008  # s between two cycles, as in a loop of 125 Hz
 BREAKDOWNS: Final = ("dead", "reset", "brown_out", "overload", "unplug")

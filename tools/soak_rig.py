@@ -6,17 +6,17 @@ from typing import Final, Self
 
 import numpy as np
 
-import sim_twin.wire as wire
-from hal.joints import Array, Joint, Joints, Mask
-from hal.observation import Observation
-from hal.open_port import open_port
-from hal.port import LATENCY, Port
-from hal.servo_backend import BusPort, ServoBackend
-from hal.servo_model import ServoMount
-from hal.servos import servo_model
-from sim_twin.wire.faults import Faults
-from sim_twin.wire.shaft import InertiaShaft
-from sim_twin.wire.world import Bench
+import windup.sim_twin.wire as wire
+from windup.hal.joints import Array, Joint, Joints, Mask
+from windup.hal.observation import Observation
+from windup.hal.open_port import open_port
+from windup.hal.port import LATENCY, Port
+from windup.hal.servo_backend import BusPort, ServoBackend
+from windup.hal.servo_model import ServoMount
+from windup.hal.servos import servo_model
+from windup.sim_twin.wire.faults import Faults
+from windup.sim_twin.wire.shaft import InertiaShaft
+from windup.sim_twin.wire.world import Bench
 
 # What people call a family, and the servo that stands for it.
 FAMILIES: Final = {

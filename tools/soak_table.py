@@ -4,8 +4,8 @@ from typing import Any
 
 from rich.table import Table
 
-from tools.soak_rig import FAMILIES
-from tools.soak_verdict import KINDS
+from windup.tools.soak_rig import FAMILIES
+from windup.tools.soak_verdict import KINDS
 
 
 def fault_table(cells: list[dict[str, Any]]) -> Table:

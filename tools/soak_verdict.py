@@ -3,9 +3,9 @@
 from math import sqrt
 from typing import Any, Final
 
-from sim_twin.wire.fault_rule import ANSWERS, REQUESTS
-from tools.soak import Tally
-from tools.soak_rig import FAMILIES
+from windup.sim_twin.wire.fault_rule import ANSWERS, REQUESTS
+from windup.tools.soak import Tally
+from windup.tools.soak_rig import FAMILIES
 
 LATE_ADAPTER: Final = "late_adapter"
 """An adapter that holds everything back, by 16 ms from the start, without saying so."""

@@ -3,14 +3,14 @@
 from dataclasses import replace
 from pathlib import Path
 
-from control.blend import blend_name, with_blend
-from control.gait import Gait
-from control.style import Spell
-from hal.errors import UsageError
-from hal.ranges import Range, read_number
-from robots import RobotDescription
-from tools.gaits import find_gait
-from tools.walk_options import WalkOptions
+from windup.control.blend import blend_name, with_blend
+from windup.control.gait import Gait
+from windup.control.style import Spell
+from windup.hal.errors import UsageError
+from windup.hal.ranges import Range, read_number
+from windup.robots import RobotDescription
+from windup.tools.gaits import find_gait
+from windup.tools.walk_options import WalkOptions
 
 AMOUNT = Range(-1_000.0, 1_000.0)
 

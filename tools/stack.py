@@ -6,24 +6,24 @@ from itertools import count
 from pathlib import Path
 from typing import Literal
 
-import sim_twin.wire as wire
-from control.loop import Estimator
-from hal.errors import UsageError
-from hal.guard import GuardedBackend, HealthWatch, SafetyLimits
-from hal.imu.bno08x_rvc import Bno08xRvc
-from hal.imu.opencr import OpenCr
-from hal.servo_backend import BusPort, ServoBackend
-from hal.torque_state import TorqueState
-from robots import RobotDescription
-from sim_twin.backend import TwinBackend
-from sim_twin.imu_errors import OPENCR, ImuErrors
-from sim_twin.sensors import Sensors
-from sim_twin.twin import Twin
-from sim_twin.world import World
-from tools.build import build_estimator
-from tools.noisy_start import begin_noisily
-from tools.shape import can_estimate
-from tools.truth import Truth
+import windup.sim_twin.wire as wire
+from windup.control.loop import Estimator
+from windup.hal.errors import UsageError
+from windup.hal.guard import GuardedBackend, HealthWatch, SafetyLimits
+from windup.hal.imu.bno08x_rvc import Bno08xRvc
+from windup.hal.imu.opencr import OpenCr
+from windup.hal.servo_backend import BusPort, ServoBackend
+from windup.hal.torque_state import TorqueState
+from windup.robots import RobotDescription
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.imu_errors import OPENCR, ImuErrors
+from windup.sim_twin.sensors import Sensors
+from windup.sim_twin.twin import Twin
+from windup.sim_twin.world import World
+from windup.tools.build import build_estimator
+from windup.tools.noisy_start import begin_noisily
+from windup.tools.shape import can_estimate
+from windup.tools.truth import Truth
 
 State = Literal["true", "estimated"]
 TWIN = "twin://"

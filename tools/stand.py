@@ -6,16 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from control.play import PoseHolder
-from hal.observation import Observation
-from robots import load_robot
-from sim_twin.impact import ImpactGauge
-from tools.fall_report import fall_result, fall_said
-from tools.options import Common
-from tools.output import console, write_json
-from tools.quantities import Duration
-from tools.robot import Robot
-from tools.twin_options import TwinOptions
+from windup.control.play import PoseHolder
+from windup.hal.observation import Observation
+from windup.robots import load_robot
+from windup.sim_twin.impact import ImpactGauge
+from windup.tools.fall_report import fall_result, fall_said
+from windup.tools.options import Common
+from windup.tools.output import console, write_json
+from windup.tools.quantities import Duration
+from windup.tools.robot import Robot
+from windup.tools.twin_options import TwinOptions
 
 
 class Last:

@@ -5,17 +5,17 @@ from math import degrees
 
 import numpy as np
 
-from control.first_motion import Approach, FirstMotion
-from control.legs import legs_of
-from control.planted import Planted
-from control.posture import Posture, PostureSense
-from hal.controller import Controller
-from hal.errors import PostureError
-from hal.observation import Observation
-from hal.servo_backend import ServoBackend
-from robots import RobotDescription
-from tools.protect import leg_joints, spread
-from tools.stack import Stack
+from windup.control.first_motion import Approach, FirstMotion
+from windup.control.legs import legs_of
+from windup.control.planted import Planted
+from windup.control.posture import Posture, PostureSense
+from windup.hal.controller import Controller
+from windup.hal.errors import PostureError
+from windup.hal.observation import Observation
+from windup.hal.servo_backend import ServoBackend
+from windup.robots import RobotDescription
+from windup.tools.protect import leg_joints, spread
+from windup.tools.stack import Stack
 
 LOOK = 0.3
 """How long the accelerometer is averaged, s."""

@@ -2,21 +2,21 @@
 
 from math import radians
 
-from control.course import Course
-from control.gait import Gait
-from control.guide import Steady, WalkCommand
-from control.incline import InclineControl
-from control.regulation import RegulationVariable
-from control.side import SideControl
-from control.slip import SlipControl
-from control.speed import SpeedControl
-from control.steering import Steering
-from control.style import Styling
-from hal.errors import UsageError
-from robots import RobotDescription
-from tools.route import guide_of
-from tools.spells import styles_of_walk
-from tools.walk_options import WalkOptions
+from windup.control.course import Course
+from windup.control.gait import Gait
+from windup.control.guide import Steady, WalkCommand
+from windup.control.incline import InclineControl
+from windup.control.regulation import RegulationVariable
+from windup.control.side import SideControl
+from windup.control.slip import SlipControl
+from windup.control.speed import SpeedControl
+from windup.control.steering import Steering
+from windup.control.style import Styling
+from windup.hal.errors import UsageError
+from windup.robots import RobotDescription
+from windup.tools.route import guide_of
+from windup.tools.spells import styles_of_walk
+from windup.tools.walk_options import WalkOptions
 
 
 def steering_of(

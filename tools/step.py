@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from control.footprints import Footprint, Frame, StepRecord, footprint
-from robots import load_robot
-from tools.directed import feet_of
-from tools.directed_options import DirectedOptions
-from tools.quantities import Degrees, Duration, Metres
+from windup.control.footprints import Footprint, Frame, StepRecord, footprint
+from windup.robots import load_robot
+from windup.tools.directed import feet_of
+from windup.tools.directed_options import DirectedOptions
+from windup.tools.quantities import Degrees, Duration, Metres
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,13 +2,13 @@
 
 import os
 
-from control.gait_hash import gait_hash
-from control.learnt_models import LearntModels
-from control.regulation import RegulationVariable
-from control.step_memory import Memory, memory_of
-from robots import RobotDescription
-from tools.gaits import gait_path
-from tools.walk_options import WalkOptions
+from windup.control.gait_hash import gait_hash
+from windup.control.learnt_models import LearntModels
+from windup.control.regulation import RegulationVariable
+from windup.control.step_memory import Memory, memory_of
+from windup.robots import RobotDescription
+from windup.tools.gaits import gait_path
+from windup.tools.walk_options import WalkOptions
 
 SUFFIX = ".models.json"
 

@@ -7,26 +7,26 @@ import msgspec
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
-from control.directed_file import Directed
-from control.dynamics import Dynamics
-from control.footing import Footing
-from control.footprints import Footprint
-from control.no_step import NoStep
-from control.play import PoseHolder
-from control.soles import Soles
-from control.step_decision import RULES
-from control.stepper import Stepper
-from control.stepping_file import Stepping, Support
-from control.torque_comfort import ComfortWalk, TorqueComfort
-from control.torque_stepper import TorqueStepper
-from control.whole_body import WholeBody
-from hal.controller import Controller
-from hal.errors import UnknownNameError
-from hal.joints import Array
-from robots import RobotDescription
-from tools.build import body_of
-from tools.robot_file import load_beside
-from tools.shape import check_walks
+from windup.control.directed_file import Directed
+from windup.control.dynamics import Dynamics
+from windup.control.footing import Footing
+from windup.control.footprints import Footprint
+from windup.control.no_step import NoStep
+from windup.control.play import PoseHolder
+from windup.control.soles import Soles
+from windup.control.step_decision import RULES
+from windup.control.stepper import Stepper
+from windup.control.stepping_file import Stepping, Support
+from windup.control.torque_comfort import ComfortWalk, TorqueComfort
+from windup.control.torque_stepper import TorqueStepper
+from windup.control.whole_body import WholeBody
+from windup.hal.controller import Controller
+from windup.hal.errors import UnknownNameError
+from windup.hal.joints import Array
+from windup.robots import RobotDescription
+from windup.tools.build import body_of
+from windup.tools.robot_file import load_beside
+from windup.tools.shape import check_walks
 
 STEPPING: Final = "stepping.toml"
 FOOTPRINTS: Final = "footprints.toml"
@@ -89,7 +89,7 @@ def build_stepper(
         robot: The robot.
         way: Which way.
         stance: The pose.
-        forbid: Ground where no foot may come down; see `control.no_step.NoStep`.
+        forbid: Ground where no foot may come down; see `windup.control.no_step.NoStep`.
         support: What the soles are taken to support; what its stepping says by default.
         delay: From a state being measured to a command for it acting, s; where torques are.
 

@@ -6,13 +6,13 @@ from typing import Annotated
 
 import tyro
 
-from hal.joints import Mask
-from hal.torque_state import TorqueState
-from robots import RobotDescription, load_robot
-from tools.command import Command
-from tools.faults import with_faults
-from tools.output import console, write_json
-from tools.stack import check_port, limp
+from windup.hal.joints import Mask
+from windup.hal.torque_state import TorqueState
+from windup.robots import RobotDescription, load_robot
+from windup.tools.command import Command
+from windup.tools.faults import with_faults
+from windup.tools.output import console, write_json
+from windup.tools.stack import check_port, limp
 
 
 @dataclass(frozen=True, kw_only=True)

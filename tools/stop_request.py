@@ -3,10 +3,10 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from hal.backend import Backend
-from hal.errors import UsageError
-from hal.servo_backend import ServoBackend
-from tools.stop_keys import keyboard, stop_keys
+from windup.hal.backend import Backend
+from windup.hal.errors import UsageError
+from windup.hal.servo_backend import ServoBackend
+from windup.tools.stop_keys import keyboard, stop_keys
 
 
 def pressed_button(backend: Backend) -> str | None:

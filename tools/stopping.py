@@ -8,16 +8,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from weakref import WeakSet
 
-from control.loop import LoopReport
-from hal.errors import UnhealthyError, UsageError, WindupError
-from hal.guard import StopPolicy
-from tools.custody import Custody
-from tools.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
-from tools.on_stack import OnStack
-from tools.output import console
-from tools.overheard import forget, overhear
-from tools.running import Running
-from tools.start import Start
+from windup.control.loop import LoopReport
+from windup.hal.errors import UnhealthyError, UsageError, WindupError
+from windup.hal.guard import StopPolicy
+from windup.tools.custody import Custody
+from windup.tools.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
+from windup.tools.on_stack import OnStack
+from windup.tools.output import console
+from windup.tools.overheard import forget, overhear
+from windup.tools.running import Running
+from windup.tools.start import Start
 
 INTERRUPTED = "interrupted"
 """The reason of a run that somebody ended."""

@@ -5,13 +5,13 @@ from typing import Annotated, Any
 
 import tyro
 
-from robots import load_robot
-from tools.options import Common
-from tools.output import console, write_json
-from tools.quantities import Degrees, Duration, Speed
-from tools.shape import check_walks
-from tools.striding import Leg, build_strider, check_legs, find_stride, read_leg, stride
-from tools.twin_options import TwinOptions
+from windup.robots import load_robot
+from windup.tools.options import Common
+from windup.tools.output import console, write_json
+from windup.tools.quantities import Degrees, Duration, Speed
+from windup.tools.shape import check_walks
+from windup.tools.striding import Leg, build_strider, check_legs, find_stride, read_leg, stride
+from windup.tools.twin_options import TwinOptions
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,20 +9,20 @@ from typing import Any, Final
 
 import numpy as np
 
-from control.body import heading
-from control.pendulum import Order
-from control.stride_file import Stride
-from control.strider import Strider
-from hal.errors import UnknownNameError, UsageError
-from hal.joints import Array
-from hal.observation import BaseState, Observation
-from hal.ranges import Range, read_number
-from robots import RobotDescription
-from tools.build import body_of
-from tools.directed import limbs_of
-from tools.robot import Robot
-from tools.robot_file import load_beside
-from tools.shape import check_walks
+from windup.control.body import heading
+from windup.control.pendulum import Order
+from windup.control.stride_file import Stride
+from windup.control.strider import Strider
+from windup.hal.errors import UnknownNameError, UsageError
+from windup.hal.joints import Array
+from windup.hal.observation import BaseState, Observation
+from windup.hal.ranges import Range, read_number
+from windup.robots import RobotDescription
+from windup.tools.build import body_of
+from windup.tools.directed import limbs_of
+from windup.tools.robot import Robot
+from windup.tools.robot_file import load_beside
+from windup.tools.shape import check_walks
 
 FILE: Final = "stride.toml"
 RAMP = 2.0

@@ -1,11 +1,11 @@
 """Putting together a walk that the stepper catches."""
 
-from control.balancer import Balancer
-from control.stepper import Stepper
-from control.supervisor import Supervisor
-from hal.errors import UsageError
-from robots import RobotDescription
-from tools.stepping import STEPPING, build_stepper, find_stepping, stepping_stance
+from windup.control.balancer import Balancer
+from windup.control.stepper import Stepper
+from windup.control.supervisor import Supervisor
+from windup.hal.errors import UsageError
+from windup.robots import RobotDescription
+from windup.tools.stepping import STEPPING, build_stepper, find_stepping, stepping_stance
 
 
 def build_supervisor(robot: RobotDescription, walker: Balancer, way: str) -> Supervisor:

@@ -4,14 +4,14 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from hal.bus import FIRST, Bus, Found
-from hal.errors import CorruptAnswerError, HardwareError
-from hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FAMILIES, Family
-from hal.imu.opencr import MODEL_NUMBER as OPENCR
-from hal.imu.opencr import VOLTAGE
-from hal.port import Port
-from hal.registers import Register
-from tools.raw_answers import Strange, is_echo, strange_answers
+from windup.hal.bus import FIRST, Bus, Found
+from windup.hal.errors import CorruptAnswerError, HardwareError
+from windup.hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FAMILIES, Family
+from windup.hal.imu.opencr import MODEL_NUMBER as OPENCR
+from windup.hal.imu.opencr import VOLTAGE
+from windup.hal.port import Port
+from windup.hal.registers import Register
+from windup.tools.raw_answers import Strange, is_echo, strange_answers
 
 ANSWER_BYTES: Final = {True: 27, False: 14}
 """What a scan reads of one servo in protocol 1, where it is pinged, read, pinged and read, and in

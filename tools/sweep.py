@@ -9,15 +9,15 @@ from typing import Annotated
 
 import tyro
 
-from hal.errors import UsageError
-from tools.command import Command
-from tools.output import console
-from tools.parallel import side_by_side
-from tools.quantities import Count, Jobs, Seed, Seeds
-from tools.sweep_grid import Axis, parse_axis, points
-from tools.sweep_run import Run, check_line, play
-from tools.sweep_table import Row, Table, open_table
-from tools.writing import check_writable, writing
+from windup.hal.errors import UsageError
+from windup.tools.command import Command
+from windup.tools.output import console
+from windup.tools.parallel import side_by_side
+from windup.tools.quantities import Count, Jobs, Seed, Seeds
+from windup.tools.sweep_grid import Axis, parse_axis, points
+from windup.tools.sweep_run import Run, check_line, play
+from windup.tools.sweep_table import Row, Table, open_table
+from windup.tools.writing import check_writable, writing
 
 MOST = 1_000_000
 """Runs of one sweep."""

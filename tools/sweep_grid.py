@@ -5,8 +5,8 @@ from itertools import product
 
 import numpy as np
 
-from hal.errors import UsageError
-from hal.ranges import Range, read_number
+from windup.hal.errors import UsageError
+from windup.hal.ranges import Range, read_number
 
 COUNT = Range(2, 10_000)
 SYNTAX = "write name=v1,v2,.. or name=low:high:count"

@@ -11,13 +11,13 @@ from typing import Any, get_args, get_type_hints
 
 import tyro
 
-from hal.errors import UnknownNameError, UsageError, WindupError
-from hal.ranges import check_numbers
-from tools.cli import parse
-from tools.output import plain
-from tools.parse_errors import gist
-from tools.sweep_grid import Axis, Point
-from tools.sweep_table import Row, typed
+from windup.hal.errors import UnknownNameError, UsageError, WindupError
+from windup.hal.ranges import check_numbers
+from windup.tools.cli import parse
+from windup.tools.output import plain
+from windup.tools.parse_errors import gist
+from windup.tools.sweep_grid import Axis, Point
+from windup.tools.sweep_table import Row, typed
 
 OURS = ("seed", "seeds", "json", "plot")  # what the sweep itself gives a command
 YES, NO = ("true", "yes", "on", "1"), ("false", "no", "off", "0")

@@ -8,7 +8,7 @@ from pathlib import Path
 from time import monotonic
 from typing import Any, Protocol
 
-from hal.errors import UsageError
+from windup.hal.errors import UsageError
 
 Row = dict[str, Any]
 KEY = ("command", "seed")  # columns that every row has

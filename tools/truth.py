@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, replace
 
-from hal.observation import Observation
-from sim_twin.sensors import Sensors
+from windup.hal.observation import Observation
+from windup.sim_twin.sensors import Sensors
 
 
 @dataclass

@@ -5,15 +5,15 @@ from dataclasses import dataclass, replace
 from math import radians
 from typing import Annotated
 
-from hal.errors import UsageError
-from hal.ranges import Range
-from robots import RobotDescription
-from sim_twin.plant import Plant
-from sim_twin.terrain import Ground
-from sim_twin.world import World
-from tools.command import Command
-from tools.quantities import Degrees, Impulse, Seconds, Seed, Speed
-from tools.robot import Robot
+from windup.hal.errors import UsageError
+from windup.hal.ranges import Range
+from windup.robots import RobotDescription
+from windup.sim_twin.plant import Plant
+from windup.sim_twin.terrain import Ground
+from windup.sim_twin.world import World
+from windup.tools.command import Command
+from windup.tools.quantities import Degrees, Impulse, Seconds, Seed, Speed
+from windup.tools.robot import Robot
 
 Slope = Annotated[float, Range(-30.0, 30.0, "degrees")]
 Stairs = Annotated[float, Range(-0.3, 0.3, "m")]

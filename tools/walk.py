@@ -10,23 +10,23 @@ from typing import Any, Literal
 import numpy as np
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
-from hal.errors import UsageError
-from robots import load_robot
-from tools.build import build_walk
-from tools.interrupts import RunInterruptedError
-from tools.learnt_file import check_learning, keep_learnt
-from tools.options import Common
-from tools.output import console, write_json
-from tools.picture import check_picture
-from tools.plot import Trace, plot_walk
-from tools.quantities import Count, Delay, Metres, Seconds, Speed, TurnRate
-from tools.report import WalkReport, summary
-from tools.robot import Robot
-from tools.run_notes import NOTES
-from tools.stepping import find_stepping
-from tools.twin_options import TwinOptions
-from tools.walk_options import WalkOptions
-from tools.walk_said import summary_said
+from windup.hal.errors import UsageError
+from windup.robots import load_robot
+from windup.tools.build import build_walk
+from windup.tools.interrupts import RunInterruptedError
+from windup.tools.learnt_file import check_learning, keep_learnt
+from windup.tools.options import Common
+from windup.tools.output import console, write_json
+from windup.tools.picture import check_picture
+from windup.tools.plot import Trace, plot_walk
+from windup.tools.quantities import Count, Delay, Metres, Seconds, Speed, TurnRate
+from windup.tools.report import WalkReport, summary
+from windup.tools.robot import Robot
+from windup.tools.run_notes import NOTES
+from windup.tools.stepping import find_stepping
+from windup.tools.twin_options import TwinOptions
+from windup.tools.walk_options import WalkOptions
+from windup.tools.walk_said import summary_said
 
 STEPS = 80
 GOAL_STEPS = 1000

@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from control.balancer import Balancer
-from control.guide import Steady, WalkCommand
-from control.navigation import PathFollower, PointFollower
-from hal.errors import UsageError
-from hal.observation import Observation
+from windup.control.balancer import Balancer
+from windup.control.guide import Steady, WalkCommand
+from windup.control.navigation import PathFollower, PointFollower
+from windup.hal.errors import UsageError
+from windup.hal.observation import Observation
 
 # Called at the end of a step with its number and its speed, m/s.
 OnStep = Callable[[int, float], None]

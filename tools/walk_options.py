@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from control.gait_file import Sampling
-from control.guide import Guide
-from control.step_memory import Reuse
-from tools.quantities import Metres, Speed, TurnRate
+from windup.control.gait_file import Sampling
+from windup.control.guide import Guide
+from windup.control.step_memory import Reuse
+from windup.tools.quantities import Metres, Speed, TurnRate
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from hal.errors import OutputError, UsageError
+from windup.hal.errors import OutputError, UsageError
 
 STANDARD_OUTPUT = Path("-")
 

@@ -1,10 +1,10 @@
 """Families of servos: what differs between makes, one object each."""
 
-from hal.errors import UnknownNameError
-from hal.families.dynamixel_1 import DYNAMIXEL_1
-from hal.families.dynamixel_x import DYNAMIXEL_X
-from hal.families.family import Block, Family, Want
-from hal.families.feetech import FEETECH_SCS, FEETECH_STS
+from windup.hal.errors import UnknownNameError
+from windup.hal.families.dynamixel_1 import DYNAMIXEL_1
+from windup.hal.families.dynamixel_x import DYNAMIXEL_X
+from windup.hal.families.family import Block, Family, Want
+from windup.hal.families.feetech import FEETECH_SCS, FEETECH_STS
 
 FAMILIES = (DYNAMIXEL_X, DYNAMIXEL_1, FEETECH_STS, FEETECH_SCS)
 

@@ -1,11 +1,11 @@
 """Dynamixel AX and MX under protocol 1, mixed on a bus as Poppy and Darwin have them."""
 
-from hal.families.dialect import Dynamixel1
-from hal.families.family import Block, Family, Mark, Want
-from hal.families.gain import Gain, slope_pair, slope_steps
-from hal.protocols.protocol1 import LONGEST_DYNAMIXEL
-from hal.servo_model import ServoModel
-from hal.servos.mx_registers import (
+from windup.hal.families.dialect import Dynamixel1
+from windup.hal.families.family import Block, Family, Mark, Want
+from windup.hal.families.gain import Gain, slope_pair, slope_steps
+from windup.hal.protocols.protocol1 import LONGEST_DYNAMIXEL
+from windup.hal.servo_model import ServoModel
+from windup.hal.servos.mx_registers import (
     BAUD_CODES,
     COMMON,
     FAST_CODES,

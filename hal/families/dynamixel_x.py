@@ -1,11 +1,11 @@
 """Dynamixel X: protocol 2, little-endian, two's complement, a watchdog."""
 
-from hal.families.dialect import Protocol2
-from hal.families.family import Block, Family, Mark, Want
-from hal.families.gain import Gain
-from hal.registers import Register
-from hal.servo_model import ServoModel
-from hal.servos.x_series_registers import (
+from windup.hal.families.dialect import Protocol2
+from windup.hal.families.family import Block, Family, Mark, Want
+from windup.hal.families.gain import Gain
+from windup.hal.registers import Register
+from windup.hal.servo_model import ServoModel
+from windup.hal.servos.x_series_registers import (
     BAUD_CODES,
     COMMON,
     HARDWARE_ERRORS,

@@ -12,13 +12,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from hal.errors import UsageError
-from hal.families.dialect import Dialect
-from hal.families.gain import Gain
-from hal.families.usual import Usual, protective_limits
-from hal.protocols.protocol2 import Span
-from hal.registers import Register, RegisterTable
-from hal.servo_model import ServoModel
+from windup.hal.errors import UsageError
+from windup.hal.families.dialect import Dialect
+from windup.hal.families.gain import Gain
+from windup.hal.families.usual import Usual, protective_limits
+from windup.hal.protocols.protocol2 import Span
+from windup.hal.registers import Register, RegisterTable
+from windup.hal.servo_model import ServoModel
 
 
 class Want(NamedTuple):

@@ -4,12 +4,12 @@ Gains and limits live in the EEPROM area behind the lock. While the lock is 1 a 
 until the power goes, so the loop may change gains without wearing anything.
 """
 
-from hal.families.dialect import Feetech
-from hal.families.family import Block, Family, Mark, Want
-from hal.families.gain import Gain
-from hal.families.usual import Usual, protective_limits
-from hal.servo_model import ServoModel
-from hal.servos.feetech_registers import (
+from windup.hal.families.dialect import Feetech
+from windup.hal.families.family import Block, Family, Mark, Want
+from windup.hal.families.gain import Gain
+from windup.hal.families.usual import Usual, protective_limits
+from windup.hal.servo_model import ServoModel
+from windup.hal.servos.feetech_registers import (
     BAUD_CODES,
     HARDWARE_ERRORS,
     MULTI_TURN,

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hal.joints import Array
-from hal.registers import Register
+from windup.hal.joints import Array
+from windup.hal.registers import Register
 
 
 @dataclass(frozen=True, eq=False)

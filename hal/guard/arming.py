@@ -1,7 +1,7 @@
 """Before and after torque comes on: is everybody well, and has everybody answered lately?"""
 
-from hal.backend import Backend, HealthReader
-from hal.guard.watch import HealthWatch
+from windup.hal.backend import Backend, HealthReader
+from windup.hal.guard.watch import HealthWatch
 
 ATTEMPTS = 10
 

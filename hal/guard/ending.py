@@ -1,8 +1,8 @@
 """How it is said that torque is not off after a stop."""
 
-from hal.errors import TorqueOnError, TorqueUnknownError
-from hal.joints import Joints
-from hal.torque_state import TorqueState
+from windup.hal.errors import TorqueOnError, TorqueUnknownError
+from windup.hal.joints import Joints
+from windup.hal.torque_state import TorqueState
 
 
 def check_off(state: TorqueState, joints: Joints) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from hal.guard.levels import Kind
+from windup.hal.guard.levels import Kind
 
 FEW = 3
 """So many joints are named; more are counted."""

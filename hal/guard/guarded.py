@@ -8,18 +8,18 @@ from threading import RLock
 
 import numpy as np
 
-from hal.backend import Backend, Clock, Rearmable
-from hal.command import FIELDS, JointCommand
-from hal.errors import GuardianError, PortError, UnsafeCommandError
-from hal.guard.arming import check_health, read_afresh
-from hal.guard.ending import check_off
-from hal.guard.limits import SafetyLimits, StopPolicy
-from hal.guard.presence import Presence
-from hal.guard.watch import HealthWatch
-from hal.heartbeat import no_heartbeat
-from hal.joints import Array, Joints
-from hal.observation import Observation
-from hal.torque_state import TorqueState
+from windup.hal.backend import Backend, Clock, Rearmable
+from windup.hal.command import FIELDS, JointCommand
+from windup.hal.errors import GuardianError, PortError, UnsafeCommandError
+from windup.hal.guard.arming import check_health, read_afresh
+from windup.hal.guard.ending import check_off
+from windup.hal.guard.limits import SafetyLimits, StopPolicy
+from windup.hal.guard.presence import Presence
+from windup.hal.guard.watch import HealthWatch
+from windup.hal.heartbeat import no_heartbeat
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
+from windup.hal.torque_state import TorqueState
 
 CROUCH_SECONDS = 1.5
 TICK = 0.008

@@ -14,8 +14,8 @@ from math import acos, exp, pi, sqrt
 
 import numpy as np
 
-from hal.guard.finding import AGAIN, Saying
-from hal.joints import Array
+from windup.hal.guard.finding import AGAIN, Saying
+from windup.hal.joints import Array
 
 JUMP = 0.7
 """From one sample to the next, rates of a body at rest that change by more are doubted, unless the

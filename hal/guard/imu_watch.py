@@ -11,11 +11,11 @@ from math import isfinite, nan
 
 import numpy as np
 
-from hal.guard.finding import AGAIN, CHECK, Finding, Saying
-from hal.guard.gyro_watch import LONGEST, NEXT, GyroWatch, Verdict
-from hal.guard.stuck_axis import StuckAxis
-from hal.joints import Array
-from hal.observation import ImuState, Observation
+from windup.hal.guard.finding import AGAIN, CHECK, Finding, Saying
+from windup.hal.guard.gyro_watch import LONGEST, NEXT, GyroWatch, Verdict
+from windup.hal.guard.stuck_axis import StuckAxis
+from windup.hal.joints import Array
+from windup.hal.observation import ImuState, Observation
 
 SILENT = 0.25
 """Age of the newest sample, s."""

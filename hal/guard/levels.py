@@ -6,8 +6,8 @@ from enum import IntEnum
 
 import numpy as np
 
-from hal.joints import Array
-from hal.servo_model import OwnLimits, ServoModel, ServoMount
+from windup.hal.joints import Array
+from windup.hal.servo_model import OwnLimits, ServoModel, ServoMount
 
 COOLER = (15.0, 8.0)
 """Warning and stop below the temperature at which a servo switches off, degrees C. An XM430 at
@@ -80,7 +80,7 @@ class HealthLevels:
 def defaults(servo: ServoModel, supply: float) -> dict[Kind, tuple[float, float]]:
     """Return warning and stop of each kind from the servo's own limits.
 
-    >>> from hal.servos import servo_model
+    >>> from windup.hal.servos import servo_model
     >>> defaults(servo_model("XM430-W350"), 12.0)[Kind.TEMPERATURE]
     (65.0, 72.0)
     """

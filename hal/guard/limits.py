@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from hal.joints import Array, Joints
+from windup.hal.joints import Array, Joints
 
 StopPolicy = Literal["hold", "crouch", "limp"]
 """What "stop" means: hold the present pose, crouch and switch torque off, or switch it off."""

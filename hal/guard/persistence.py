@@ -9,8 +9,8 @@ connector, are only warned of.
 
 import numpy as np
 
-from hal.guard.levels import HealthLevels, Kind
-from hal.joints import Array, Mask
+from windup.hal.guard.levels import HealthLevels, Kind
+from windup.hal.joints import Array, Mask
 
 DWELL = ({Kind.TEMPERATURE: 1.0, Kind.SUPPLY_LOW: 5.0, Kind.SUPPLY_HIGH: 5.0},
          {Kind.TEMPERATURE: 1.0, Kind.SUPPLY_LOW: np.inf, Kind.SUPPLY_HIGH: np.inf})  # fmt: skip

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from hal.backend import Backend, TorqueWatched
-from hal.errors import PortError, StaleStateError
-from hal.joints import Array
-from hal.torque_loss import SILENT, torque_lost
+from windup.hal.backend import Backend, TorqueWatched
+from windup.hal.errors import PortError, StaleStateError
+from windup.hal.joints import Array
+from windup.hal.torque_loss import SILENT, torque_lost
 
 LOOKS = 5
 """Times that a joint that was silent is read again before a stop takes it for dead."""

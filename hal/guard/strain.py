@@ -4,9 +4,9 @@ from math import exp
 
 import numpy as np
 
-from hal.command import JointCommand
-from hal.joints import Array
-from hal.observation import JointState
+from windup.hal.command import JointCommand
+from windup.hal.joints import Array
+from windup.hal.observation import JointState
 
 MEMORY = 1.0
 """Time constant of the mean torque, s."""

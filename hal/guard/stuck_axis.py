@@ -7,7 +7,7 @@ of its range.
 
 from collections.abc import Sequence
 
-from hal.guard.finding import AGAIN, Saying
+from windup.hal.guard.finding import AGAIN, Saying
 
 FAST = 0.7
 """A slower rate may be repeated: a body at rest reads zero again and again, rad/s."""

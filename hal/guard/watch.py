@@ -8,14 +8,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hal.command import JointCommand
-from hal.errors import UnhealthyError
-from hal.guard.finding import SAYINGS, Finding
-from hal.guard.levels import HealthLevels, Kind
-from hal.guard.persistence import SIGNS, Persistence
-from hal.guard.strain import Strain
-from hal.joints import Array, Joints, Mask
-from hal.observation import JointState, Observation
+from windup.hal.command import JointCommand
+from windup.hal.errors import UnhealthyError
+from windup.hal.guard.finding import SAYINGS, Finding
+from windup.hal.guard.levels import HealthLevels, Kind
+from windup.hal.guard.persistence import SIGNS, Persistence
+from windup.hal.guard.strain import Strain
+from windup.hal.joints import Array, Joints, Mask
+from windup.hal.observation import JointState, Observation
 
 PERIOD = 0.03
 """From one look to the next, s: nothing that is judged is faster, and a look costs some 30 us."""

@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from hal.errors import UsageError
-from hal.guard.levels import HealthLevels, Kind
-from hal.guardian.order import Charge
-from hal.joints import Array
-from hal.network_port import NETWORK
-from hal.open_port import stable_url
-from hal.port import DevicePort
-from hal.servo_backend import ServoBackend
-from hal.servo_link import ServoLink
+from windup.hal.errors import UsageError
+from windup.hal.guard.levels import HealthLevels, Kind
+from windup.hal.guardian.order import Charge
+from windup.hal.joints import Array
+from windup.hal.network_port import NETWORK
+from windup.hal.open_port import stable_url
+from windup.hal.port import DevicePort
+from windup.hal.servo_backend import ServoBackend
+from windup.hal.servo_link import ServoLink
 
 
 def charges_of(

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hal.guard.guarded import CROUCH_SECONDS
-from hal.guardian.remote_bus import RemoteBus
+from windup.hal.guard.guarded import CROUCH_SECONDS
+from windup.hal.guardian.remote_bus import RemoteBus
 
 PERIOD = 0.02
 """Between two goals, s."""

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Sequence
 
-from hal.guardian.remote_bus import RemoteBus
+from windup.hal.guardian.remote_bus import RemoteBus
 
 PERIOD = 0.2
 """Between two looks at heat and supply, s."""

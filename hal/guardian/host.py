@@ -5,7 +5,7 @@ import select
 import signal
 from contextlib import suppress
 
-from hal.guardian.traceback_signal import WHERE
+from windup.hal.guardian.traceback_signal import WHERE
 
 TRACEBACK_TIME = 0.02
 """What the host gets for printing where it hangs, s."""

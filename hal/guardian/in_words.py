@@ -2,7 +2,7 @@
 
 import errno
 
-from hal.errors import WindupError
+from windup.hal.errors import WindupError
 
 
 def in_words(error: Exception) -> str:

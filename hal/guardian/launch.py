@@ -5,7 +5,7 @@ import subprocess
 import sys
 from collections.abc import Sequence
 
-BODY = "from hal.guardian.process import main; main()"
+BODY = "from windup.hal.guardian.process import main; main()"
 STANDARD_ERROR = 2
 
 

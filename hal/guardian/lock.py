@@ -14,10 +14,10 @@ from pathlib import Path
 
 import msgspec
 
-from hal.errors import PortError
-from hal.guardian.in_words import in_words
-from hal.open_port import stable_url
-from hal.telemetry_layout import runtime_folder
+from windup.hal.errors import PortError
+from windup.hal.guardian.in_words import in_words
+from windup.hal.open_port import stable_url
+from windup.hal.telemetry_layout import runtime_folder
 
 LOOK_AGAIN = 0.05
 """Between two looks at a lock that somebody holds, s."""

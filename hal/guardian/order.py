@@ -2,7 +2,7 @@
 
 import msgspec
 
-from hal.guard.limits import StopPolicy
+from windup.hal.guard.limits import StopPolicy
 
 READY = b"r"
 """Guardian to host: the first heartbeat has arrived; torque may come on."""

@@ -4,17 +4,17 @@ from contextlib import suppress
 
 import numpy as np
 
-from hal.bus import Bus
-from hal.errors import HardwareError
-from hal.families import family_of
-from hal.guardian.in_words import in_words
-from hal.guardian.order import Charge
-from hal.joints import Array, Mask
-from hal.open_port import open_port
-from hal.servo_line import ServoLine
-from hal.servo_model import ServoMount
-from hal.servo_torque import ServoTorque
-from hal.servos import servo_model
+from windup.hal.bus import Bus
+from windup.hal.errors import HardwareError
+from windup.hal.families import family_of
+from windup.hal.guardian.in_words import in_words
+from windup.hal.guardian.order import Charge
+from windup.hal.joints import Array, Mask
+from windup.hal.open_port import open_port
+from windup.hal.servo_line import ServoLine
+from windup.hal.servo_model import ServoMount
+from windup.hal.servo_torque import ServoTorque
+from windup.hal.servos import servo_model
 
 UNLIMITED = (np.inf, -np.inf)
 """Levels of a servo that has none."""

@@ -4,14 +4,14 @@ import os
 import time
 from contextlib import suppress
 
-from hal.guardian.crouch import crouch
-from hal.guardian.held import hold
-from hal.guardian.host import Host
-from hal.guardian.in_words import in_words
-from hal.guardian.lock import Note, write_note
-from hal.guardian.order import Order
-from hal.guardian.remote_bus import RemoteBus
-from hal.guardian.words import Say
+from windup.hal.guardian.crouch import crouch
+from windup.hal.guardian.held import hold
+from windup.hal.guardian.host import Host
+from windup.hal.guardian.in_words import in_words
+from windup.hal.guardian.lock import Note, write_note
+from windup.hal.guardian.order import Order
+from windup.hal.guardian.remote_bus import RemoteBus
+from windup.hal.guardian.words import Say
 
 PAUSES = 2e-3, 1.0
 """Between two attempts, s: the first, and the longest."""

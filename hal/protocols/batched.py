@@ -3,7 +3,8 @@
 A read is laid out once: which bytes of the expected stream are constant, which vary, how far each
 stands from the end of its frame. A cycle then costs a handful of numpy calls whatever the number
 of servos. Anything that does not fit the layout to the byte (a stuffed, missing or broken reply)
-goes to the resynchronising parser of `hal.protocols.protocol2`, which keeps the good replies.
+goes to the resynchronising parser of `windup.hal.protocols.protocol2`, which keeps the good
+replies.
 """
 
 from collections.abc import Sequence
@@ -11,10 +12,10 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from hal.protocols import protocol2
-from hal.protocols.crc16 import distance_table
-from hal.protocols.cyclic import Bytes, CyclicRead, Index
-from hal.protocols.protocol2 import Span, Status
+from windup.hal.protocols import protocol2
+from windup.hal.protocols.crc16 import distance_table
+from windup.hal.protocols.cyclic import Bytes, CyclicRead, Index
+from windup.hal.protocols.protocol2 import Span, Status
 
 FAST_HEAD = protocol2.HEADER + bytes([protocol2.BROADCAST])
 """How the answer to a fast sync read begins."""

@@ -1,7 +1,7 @@
 """The cyclic codec of protocol 1: all checksums of a cycle at once, all goals in one frame.
 
-In the manner of `hal.protocols.batched`. A whole frame, header and checksum included, sums to
-0xFD modulo 256, so one `add.reduceat` over bytes checks every reply.
+In the manner of `windup.hal.protocols.batched`. A whole frame, header and checksum included, sums
+to 0xFD modulo 256, so one `add.reduceat` over bytes checks every reply.
 """
 
 from collections.abc import Sequence
@@ -9,10 +9,10 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from hal.protocols import protocol1
-from hal.protocols.cyclic import Bytes, CyclicRead, Index
-from hal.protocols.protocol2 import Span, Status
-from hal.registers import Register
+from windup.hal.protocols import protocol1
+from windup.hal.protocols.cyclic import Bytes, CyclicRead, Index
+from windup.hal.protocols.protocol2 import Span, Status
+from windup.hal.registers import Register
 
 FRAME_SUM = 0xFD
 """Sum of the bytes of any whole frame, modulo 256."""

@@ -7,9 +7,9 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from hal.joints import Mask
-from hal.protocols.protocol2 import Span, Status
-from hal.protocols.turns import in_turn, newest
+from windup.hal.joints import Mask
+from windup.hal.protocols.protocol2 import Span, Status
+from windup.hal.protocols.turns import in_turn, newest
 
 NOBODY = -1
 """The id of a reply that is not what anybody was asked for."""

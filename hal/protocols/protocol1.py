@@ -12,7 +12,7 @@ has a good checksum: whoever knows what he asked for should say so (`sizes`).
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from enum import IntEnum
 
-from hal.protocols.protocol2 import Span, Status
+from windup.hal.protocols.protocol2 import Span, Status
 
 HEADER = b"\xff\xff"
 BROADCAST = 0xFE

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from enum import IntEnum
 from typing import NamedTuple
 
-from hal.protocols.crc16 import crc16
+from windup.hal.protocols.crc16 import crc16
 
 HEADER = b"\xff\xff\xfd\x00"
 BROADCAST = 0xFE

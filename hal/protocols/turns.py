@@ -11,7 +11,7 @@ somebody has sent each of them in a turn of his own.
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
-from hal.protocols.protocol2 import Status
+from windup.hal.protocols.protocol2 import Status
 
 
 def newest(

@@ -1,10 +1,10 @@
 """All servos that Windup knows, by the name printed on them."""
 
-from hal.errors import UnknownNameError
-from hal.servo_model import ServoModel
-from hal.servos.feetech import FEETECH
-from hal.servos.mx import MX
-from hal.servos.x_series import X_SERIES
+from windup.hal.errors import UnknownNameError
+from windup.hal.servo_model import ServoModel
+from windup.hal.servos.feetech import FEETECH
+from windup.hal.servos.mx import MX
+from windup.hal.servos.x_series import X_SERIES
 
 _MODELS = {model.name: model for model in (*X_SERIES, *MX, *FEETECH)}
 

@@ -13,8 +13,8 @@ Feetech's own SDK and LeRobot: only those on which both agree are here.
 from dataclasses import replace
 from math import pi
 
-from hal.errors import UnknownNameError
-from hal.registers import Register, RegisterTable
+from windup.hal.errors import UnknownNameError
+from windup.hal.registers import Register, RegisterTable
 
 COUNT = 2.0 * pi / 4096
 """rad of one count of an STS."""

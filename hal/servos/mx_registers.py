@@ -7,8 +7,8 @@ current and 4.5 mA a count; it stands so far behind the position that the cyclic
 
 from math import pi
 
-from hal.errors import UnknownNameError
-from hal.registers import Register, RegisterTable
+from windup.hal.errors import UnknownNameError
+from windup.hal.registers import Register, RegisterTable
 
 COUNT = 2.0 * pi / 4096
 """rad of one count of an MX."""

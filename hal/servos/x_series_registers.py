@@ -7,8 +7,8 @@ but present LOAD in 0.1 % on XL430, 2XL430, XC430 and 2XC430, which measure no c
 
 from math import pi
 
-from hal.errors import UnknownNameError
-from hal.registers import Register, RegisterTable
+from windup.hal.errors import UnknownNameError
+from windup.hal.registers import Register, RegisterTable
 
 COUNT = 2.0 * pi / 4096
 """rad of one encoder count."""

@@ -2,10 +2,10 @@
 
 import serial
 
-from sim_twin.wire.address import Address, parse_address
-from sim_twin.wire.build import build_world
-from sim_twin.wire.world import World
-from sim_twin.wire.worlds import drop_world, find_world, put_world
+from windup.sim_twin.wire.address import Address, parse_address
+from windup.sim_twin.wire.build import build_world
+from windup.sim_twin.wire.world import World
+from windup.sim_twin.wire.worlds import drop_world, find_world, put_world
 
 if __name__ not in serial.protocol_handler_packages:
     serial.protocol_handler_packages.append(__name__)

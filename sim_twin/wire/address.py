@@ -9,11 +9,11 @@ from dataclasses import dataclass, fields, replace
 from typing import Annotated, Any
 from urllib.parse import parse_qsl, urlsplit
 
-from hal.errors import UsageError, suggest
-from hal.ranges import Range, check_numbers
-from sim_twin.wire.fault_rule import LAST_ID
-from sim_twin.wire.fault_text import parse_rules
-from sim_twin.wire.hand import parse_hands
+from windup.hal.errors import UsageError, suggest
+from windup.hal.ranges import Range, check_numbers
+from windup.sim_twin.wire.fault_rule import LAST_ID
+from windup.sim_twin.wire.fault_text import parse_rules
+from windup.sim_twin.wire.hand import parse_hands
 
 SCHEME = "twin"
 BENCH = "bench"

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable
 from typing import Final
 
-from sim_twin.wire.inbox import Burst
+from windup.sim_twin.wire.inbox import Burst
 
 EPSILON: Final = 1e-9
 """Overlaps that are shorter are none, s."""

@@ -5,9 +5,9 @@ import random
 from dataclasses import dataclass
 from functools import partial
 
-from sim_twin.wire.bus import Bus
-from sim_twin.wire.inbox import Burst
-from sim_twin.wire.spoilt import spoil
+from windup.sim_twin.wire.bus import Bus
+from windup.sim_twin.wire.inbox import Burst
+from windup.sim_twin.wire.spoilt import spoil
 
 
 @dataclass

@@ -8,7 +8,7 @@ Configuration(60) says so.
 from collections.abc import Callable
 from typing import Final
 
-from sim_twin.wire.register_file import EEPROM_END, Item, RegisterFile
+from windup.sim_twin.wire.register_file import EEPROM_END, Item, RegisterFile
 
 STORE: Final = b"\x01CTRL"
 RESTORE: Final = b"\x02CTRL"

@@ -3,31 +3,31 @@
 import math
 from dataclasses import replace
 
-from hal.errors import UsageError
-from hal.imu.bno08x_rvc import Bno08xRvc
-from hal.imu.opencr import OpenCr as Board
-from hal.servo_model import ServoMount
-from hal.servos import servo_model
-from robots import RobotDescription, load_robot
-from sim_twin.twin import Twin
-from sim_twin.wire.address import BENCH, Address, parse_servos
-from sim_twin.wire.bus import Bus, Language
-from sim_twin.wire.device import Device
-from sim_twin.wire.families import PROTOCOLS, full_name, make_language, make_servo
-from sim_twin.wire.faults import Faults
-from sim_twin.wire.grips import bench_grips, robot_grips
-from sim_twin.wire.hand import parse_hands
-from sim_twin.wire.imu import ImuSource, RestingImu
-from sim_twin.wire.imu_faults import FaultyImu
-from sim_twin.wire.opencr import OpenCr
-from sim_twin.wire.rvc import BAUD as RVC_BAUD
-from sim_twin.wire.rvc import Mute, start_rvc
-from sim_twin.wire.schedule import Schedule
-from sim_twin.wire.shaft import InertiaShaft, Shaft
-from sim_twin.wire.timing import Timing
-from sim_twin.wire.twin_shaft import TwinImu, TwinPhysics, TwinShaft
-from sim_twin.wire.world import Bench, Physics, World
-from sim_twin.world import World as Surroundings
+from windup.hal.errors import UsageError
+from windup.hal.imu.bno08x_rvc import Bno08xRvc
+from windup.hal.imu.opencr import OpenCr as Board
+from windup.hal.servo_model import ServoMount
+from windup.hal.servos import servo_model
+from windup.robots import RobotDescription, load_robot
+from windup.sim_twin.twin import Twin
+from windup.sim_twin.wire.address import BENCH, Address, parse_servos
+from windup.sim_twin.wire.bus import Bus, Language
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.families import PROTOCOLS, full_name, make_language, make_servo
+from windup.sim_twin.wire.faults import Faults
+from windup.sim_twin.wire.grips import bench_grips, robot_grips
+from windup.sim_twin.wire.hand import parse_hands
+from windup.sim_twin.wire.imu import ImuSource, RestingImu
+from windup.sim_twin.wire.imu_faults import FaultyImu
+from windup.sim_twin.wire.opencr import OpenCr
+from windup.sim_twin.wire.rvc import BAUD as RVC_BAUD
+from windup.sim_twin.wire.rvc import Mute, start_rvc
+from windup.sim_twin.wire.schedule import Schedule
+from windup.sim_twin.wire.shaft import InertiaShaft, Shaft
+from windup.sim_twin.wire.timing import Timing
+from windup.sim_twin.wire.twin_shaft import TwinImu, TwinPhysics, TwinShaft
+from windup.sim_twin.wire.world import Bench, Physics, World
+from windup.sim_twin.world import World as Surroundings
 
 NOMINAL = 12.0  # V, for servos that stand so much
 IMU = "imu"  # name of the port of an IMU

@@ -10,13 +10,13 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Protocol
 
-from sim_twin.wire.air import Air
-from sim_twin.wire.device import Device
-from sim_twin.wire.heard import Heard
-from sim_twin.wire.imu_faults import FaultyImu
-from sim_twin.wire.inbox import Burst, Inbox
-from sim_twin.wire.schedule import Schedule
-from sim_twin.wire.timing import Timing
+from windup.sim_twin.wire.air import Air
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.heard import Heard
+from windup.sim_twin.wire.imu_faults import FaultyImu
+from windup.sim_twin.wire.inbox import Burst, Inbox
+from windup.sim_twin.wire.schedule import Schedule
+from windup.sim_twin.wire.timing import Timing
 
 BITS = 10  # start, eight, stop
 FORGET = 0.1  # s; a frame that has been interrupted for longer is forgotten

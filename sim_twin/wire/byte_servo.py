@@ -3,9 +3,9 @@
 import math
 from abc import ABC, abstractmethod
 
-from sim_twin.wire.byte_table import ByteTable, Writes
-from sim_twin.wire.health import AMBIENT, warmed
-from sim_twin.wire.motor_loop import MotorLoop
+from windup.sim_twin.wire.byte_table import ByteTable, Writes
+from windup.sim_twin.wire.health import AMBIENT, warmed
+from windup.sim_twin.wire.motor_loop import MotorLoop
 
 BOOT_SECONDS = 0.3  # silence after a reset, assumed
 RETURN_DELAY_UNIT = 2e-6  # s

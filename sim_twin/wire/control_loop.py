@@ -1,18 +1,18 @@
 """The control loops of an X-series servo: goals to what its shaft is told.
 
-Position modes are a voltage-limited P law (see `hal.servo_model`), velocity mode a PI law on a
-ramped goal, current and PWM mode a torque and a voltage. The I, D and feed-forward gains of the
-position loop are kept but have no effect: the manual folds its sampling period into them.
+Position modes are a voltage-limited P law (see `windup.hal.servo_model`), velocity mode a PI law
+on a ramped goal, current and PWM mode a torque and a voltage. The I, D and feed-forward gains of
+the position loop are kept but have no effect: the manual folds its sampling period into them.
 """
 
 import math
 
-from hal.servo_model import ServoModel
-from sim_twin.wire.encoder import Encoder
-from sim_twin.wire.profile import Profile
-from sim_twin.wire.register_file import RegisterFile
-from sim_twin.wire.shaft import Shaft
-from sim_twin.wire.x_series import (
+from windup.hal.servo_model import ServoModel
+from windup.sim_twin.wire.encoder import Encoder
+from windup.sim_twin.wire.profile import Profile
+from windup.sim_twin.wire.register_file import RegisterFile
+from windup.sim_twin.wire.shaft import Shaft
+from windup.sim_twin.wire.x_series import (
     ACCELERATION_UNIT,
     COUNTS_PER_RAD,
     CURRENT,

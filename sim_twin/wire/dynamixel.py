@@ -1,18 +1,18 @@
 """Dynamixels on one bus, of which each speaks the protocol that its Protocol Type(13) says.
 
-AX and old MX servos know protocol 1 alone; `sim_twin.wire.families` puts them on a bus of their
-own.
+AX and old MX servos know protocol 1 alone; `windup.sim_twin.wire.families` puts them on a bus of
+their own.
 """
 
 from collections.abc import Sequence
 from typing import Final
 
-from sim_twin.wire.bus import Bus
-from sim_twin.wire.device import Device
-from sim_twin.wire.dynamixel2 import Dynamixel2
-from sim_twin.wire.frames1 import Frame1, Frame1Error
-from sim_twin.wire.heard import Heard
-from sim_twin.wire.protocol1 import DYNAMIXEL1, Protocol1
+from windup.sim_twin.wire.bus import Bus
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.dynamixel2 import Dynamixel2
+from windup.sim_twin.wire.frames1 import Frame1, Frame1Error
+from windup.sim_twin.wire.heard import Heard
+from windup.sim_twin.wire.protocol1 import DYNAMIXEL1, Protocol1
 
 OLD: Final = 1
 

@@ -9,10 +9,10 @@ import math
 import struct
 from typing import Final
 
-from hal.servo_model import ServoModel
-from sim_twin.wire.byte_servo import ByteServo, magnitude
-from sim_twin.wire.byte_table import Writes
-from sim_twin.wire.dynamixel1_tables import (
+from windup.hal.servo_model import ServoModel
+from windup.sim_twin.wire.byte_servo import ByteServo, magnitude
+from windup.sim_twin.wire.byte_table import Writes
+from windup.sim_twin.wire.dynamixel1_tables import (
     ACCELERATION_UNIT,
     BAUDS,
     CURRENT_UNIT,
@@ -20,9 +20,9 @@ from sim_twin.wire.dynamixel1_tables import (
     EEPROM_END,
     Dynamixel1Model,
 )
-from sim_twin.wire.health import OVERLOAD_LEVEL, OVERLOAD_TIME
-from sim_twin.wire.motor_loop import MotorLoop
-from sim_twin.wire.shaft import Shaft
+from windup.sim_twin.wire.health import OVERLOAD_LEVEL, OVERLOAD_TIME
+from windup.sim_twin.wire.motor_loop import MotorLoop
+from windup.sim_twin.wire.shaft import Shaft
 
 # Bits of the error byte.
 INPUT_VOLTAGE, ANGLE_LIMIT, OVERHEATING, RANGE = 0x01, 0x02, 0x04, 0x08

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from math import pi
 from typing import Final
 
-from sim_twin.wire.byte_table import TWOS, ByteTable, Field
+from windup.sim_twin.wire.byte_table import TWOS, ByteTable, Field
 
 EEPROM_END = 24
 RPM = 2.0 * pi / 60.0  # rad/s

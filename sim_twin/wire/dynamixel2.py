@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
-from sim_twin.wire.bus import Bus
-from sim_twin.wire.device import Device
-from sim_twin.wire.frames import (
+from windup.sim_twin.wire.bus import Bus
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.frames import (
     BROADCAST,
     HEADER,
     ID_AT,
@@ -19,9 +19,9 @@ from sim_twin.wire.frames import (
     encode_status,
     seal,
 )
-from sim_twin.wire.heard import Heard
-from sim_twin.wire.register_file import BAD_CRC, BAD_INSTRUCTION, BAD_LENGTH, EEPROM_END, OK
-from sim_twin.wire.turns import READS, Round, Turn, answering, take_turns
+from windup.sim_twin.wire.heard import Heard
+from windup.sim_twin.wire.register_file import BAD_CRC, BAD_INSTRUCTION, BAD_LENGTH, EEPROM_END, OK
+from windup.sim_twin.wire.turns import READS, Round, Turn, answering, take_turns
 
 PING, READ, WRITE, REG_WRITE, ACTION = 0x01, 0x02, 0x03, 0x04, 0x05
 FACTORY_RESET, REBOOT, CLEAR, BACKUP = 0x06, 0x08, 0x10, 0x20

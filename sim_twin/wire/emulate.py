@@ -16,16 +16,16 @@ from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
 
-from hal.errors import UsageError
-from hal.port import SELECTABLE
-from sim_twin.wire.address import Address
-from sim_twin.wire.build import build_world
-from sim_twin.wire.fault_rule import Rule
-from sim_twin.wire.fault_text import parse_rules
-from sim_twin.wire.journal import Event, Journal, Watcher
-from sim_twin.wire.link import Link, Pty, Tcp, free_port
-from sim_twin.wire.outlet import Outlet
-from sim_twin.wire.world import World
+from windup.hal.errors import UsageError
+from windup.hal.port import SELECTABLE
+from windup.sim_twin.wire.address import Address
+from windup.sim_twin.wire.build import build_world
+from windup.sim_twin.wire.fault_rule import Rule
+from windup.sim_twin.wire.fault_text import parse_rules
+from windup.sim_twin.wire.journal import Event, Journal, Watcher
+from windup.sim_twin.wire.link import Link, Pty, Tcp, free_port
+from windup.sim_twin.wire.outlet import Outlet
+from windup.sim_twin.wire.world import World
 
 CHUNK = 4096
 AHEAD = 0.002  # s by which replies may be worked out before their time

@@ -2,8 +2,8 @@
 
 from typing import Final
 
-from sim_twin.wire.register_file import RegisterFile
-from sim_twin.wire.x_series import CENTRE, COUNTS, COUNTS_PER_RAD, POSITION
+from windup.sim_twin.wire.register_file import RegisterFile
+from windup.sim_twin.wire.x_series import CENTRE, COUNTS, COUNTS_PER_RAD, POSITION
 
 REVERSE: Final = 0x01  # bit of the drive mode
 HOMING_MOST: Final = 1024  # counts; position mode ignores a larger homing offset (e-Manual)

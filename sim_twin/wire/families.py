@@ -2,17 +2,17 @@
 
 from typing import Final
 
-from hal.errors import UnknownNameError, UsageError
-from hal.servos import servo_model
-from sim_twin.wire import dynamixel1_tables, feetech_tables, x_series
-from sim_twin.wire.bus import Language
-from sim_twin.wire.device import Device
-from sim_twin.wire.dynamixel import Dynamixel
-from sim_twin.wire.dynamixel1_servo import Dynamixel1Servo
-from sim_twin.wire.feetech_servo import FeetechServo
-from sim_twin.wire.protocol1 import DYNAMIXEL1, FEETECH, Protocol1
-from sim_twin.wire.servo import Servo
-from sim_twin.wire.shaft import Shaft
+from windup.hal.errors import UnknownNameError, UsageError
+from windup.hal.servos import servo_model
+from windup.sim_twin.wire import dynamixel1_tables, feetech_tables, x_series
+from windup.sim_twin.wire.bus import Language
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.dynamixel import Dynamixel
+from windup.sim_twin.wire.dynamixel1_servo import Dynamixel1Servo
+from windup.sim_twin.wire.feetech_servo import FeetechServo
+from windup.sim_twin.wire.protocol1 import DYNAMIXEL1, FEETECH, Protocol1
+from windup.sim_twin.wire.servo import Servo
+from windup.sim_twin.wire.shaft import Shaft
 
 PROTOCOLS: Final = {
     **dict.fromkeys(x_series.MODELS, "dynamixel2"),

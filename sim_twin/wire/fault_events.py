@@ -5,11 +5,11 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Final, Protocol
 
-from sim_twin.wire.bus import Bus
-from sim_twin.wire.device import Device
-from sim_twin.wire.fault_rule import Rule
-from sim_twin.wire.opencr import USER_BUTTON, OpenCr
-from sim_twin.wire.schedule import Schedule
+from windup.sim_twin.wire.bus import Bus
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.fault_rule import Rule
+from windup.sim_twin.wire.opencr import USER_BUTTON, OpenCr
+from windup.sim_twin.wire.schedule import Schedule
 
 EVERYBODY = -1
 OF_BUS: Final = frozenset(("unplug", "brown_out"))

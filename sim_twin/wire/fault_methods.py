@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from typing import Self, TypedDict, Unpack
 
-from sim_twin.wire.fault_rule import Rule, Times, make_rule
+from windup.sim_twin.wire.fault_rule import Rule, Times, make_rule
 
 
 class When(TypedDict, total=False):

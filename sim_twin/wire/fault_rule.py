@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from hal.errors import UsageError, suggest
-from hal.ranges import Range, check_number
+from windup.hal.errors import UsageError, suggest
+from windup.hal.ranges import Range, check_number
 
 # What befalls an answer on its way, and the seconds that some of them take by default.
 ANSWERS: Final = {

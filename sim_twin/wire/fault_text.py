@@ -2,8 +2,8 @@
 
 from typing import Final
 
-from hal.errors import UsageError, suggest
-from sim_twin.wire.fault_rule import EVENTS, EXTRA, LAST_ID, Rule, check_kind, make_rule
+from windup.hal.errors import UsageError, suggest
+from windup.sim_twin.wire.fault_rule import EVENTS, EXTRA, LAST_ID, Rule, check_kind, make_rule
 
 KEYS: Final = ("rate", "at", "ids", "bus", "seconds", *EXTRA)
 EXAMPLE = "'drop:0.01,late:0.02:seconds=0.003:ids=1-6,unplug:at=2.5:seconds=0.5'"

@@ -8,10 +8,10 @@ from functools import partial
 from typing import NamedTuple, Self
 from weakref import ReferenceType, ref
 
-from hal.errors import UsageError
-from sim_twin.wire.answer_faults import Fate, Sender
-from sim_twin.wire.bus import Bus
-from sim_twin.wire.fault_events import (
+from windup.hal.errors import UsageError
+from windup.sim_twin.wire.answer_faults import Fate, Sender
+from windup.sim_twin.wire.bus import Bus
+from windup.sim_twin.wire.fault_events import (
     EVERYBODY,
     OF_IMU,
     SILENCING,
@@ -19,9 +19,9 @@ from sim_twin.wire.fault_events import (
     befall,
     victims,
 )
-from sim_twin.wire.fault_methods import FaultMethods
-from sim_twin.wire.fault_rule import EVENTS, KINDS, REQUESTS, Rule
-from sim_twin.wire.fault_text import parse_rules
+from windup.sim_twin.wire.fault_methods import FaultMethods
+from windup.sim_twin.wire.fault_rule import EVENTS, KINDS, REQUESTS, Rule
+from windup.sim_twin.wire.fault_text import parse_rules
 
 REMEMBERED = 10_000  # hits
 

@@ -11,18 +11,18 @@ give it in 0.1 % and for that mode, and who tried it as a time in position mode 
 import math
 import struct
 
-from hal.servo_model import ServoModel
-from sim_twin.wire.byte_servo import ByteServo, magnitude
-from sim_twin.wire.byte_table import Writes
-from sim_twin.wire.feetech_tables import (
+from windup.hal.servo_model import ServoModel
+from windup.sim_twin.wire.byte_servo import ByteServo, magnitude
+from windup.sim_twin.wire.byte_table import Writes
+from windup.sim_twin.wire.feetech_tables import (
     ACCELERATION_STEP,
     BAUDS,
     CURRENT_UNIT,
     SPEED_STEP,
     FeetechModel,
 )
-from sim_twin.wire.motor_loop import MotorLoop
-from sim_twin.wire.shaft import Shaft
+from windup.sim_twin.wire.motor_loop import MotorLoop
+from windup.sim_twin.wire.shaft import Shaft
 
 # Bits of the status register, which is also the error byte.
 VOLTAGE, ENCODER, TEMPERATURE, CURRENT, ANGLE, OVERLOAD = 0x01, 0x02, 0x04, 0x08, 0x10, 0x20

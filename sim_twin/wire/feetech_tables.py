@@ -8,7 +8,7 @@ the tables leave open are marked.
 from dataclasses import dataclass
 from typing import Final
 
-from sim_twin.wire.byte_table import ByteTable, Field
+from windup.sim_twin.wire.byte_table import ByteTable, Field
 
 EEPROM_END = 40
 CURRENT_UNIT = 6.5e-3  # A

@@ -1,13 +1,13 @@
 """The firmware of an X-series servo: what writes, time and faults do to it."""
 
-from hal.servo_model import ServoModel
-from sim_twin.wire.backup import Backup
-from sim_twin.wire.control_loop import POSITION_MODES, ControlLoop
-from sim_twin.wire.health import Health
-from sim_twin.wire.present import Present
-from sim_twin.wire.register_file import BAD_ACCESS, BAD_LIMIT, BAD_RANGE, OK, Item
-from sim_twin.wire.shaft import Shaft
-from sim_twin.wire.x_series import CURRENT, POSITION, PWM, VELOCITY, WATCHDOG_UNIT, Model
+from windup.hal.servo_model import ServoModel
+from windup.sim_twin.wire.backup import Backup
+from windup.sim_twin.wire.control_loop import POSITION_MODES, ControlLoop
+from windup.sim_twin.wire.health import Health
+from windup.sim_twin.wire.present import Present
+from windup.sim_twin.wire.register_file import BAD_ACCESS, BAD_LIMIT, BAD_RANGE, OK, Item
+from windup.sim_twin.wire.shaft import Shaft
+from windup.sim_twin.wire.x_series import CURRENT, POSITION, PWM, VELOCITY, WATCHDOG_UNIT, Model
 
 ALERT = 0x80  # in the error byte of a status: look at Hardware Error Status
 TORQUE_BY_GOAL = 0x08  # bit of the drive mode

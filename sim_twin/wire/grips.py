@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from functools import partial
 
-from robots import RobotDescription
-from sim_twin.wire.device import Device
-from sim_twin.wire.hand import Grip
-from sim_twin.wire.shaft import InertiaShaft, Shaft
-from sim_twin.wire.twin_shaft import TwinPhysics, TwinShaft
+from windup.robots import RobotDescription
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.hand import Grip
+from windup.sim_twin.wire.shaft import InertiaShaft, Shaft
+from windup.sim_twin.wire.twin_shaft import TwinPhysics, TwinShaft
 
 Hung = Mapping[str, Sequence[Device]]
 

@@ -5,9 +5,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
-from hal.errors import UsageError
-from hal.ranges import Range, read_number
-from sim_twin.wire.device import Device
+from windup.hal.errors import UsageError
+from windup.hal.ranges import Range, read_number
+from windup.sim_twin.wire.device import Device
 
 DEGREES: Final = Range(-360.0, 360.0, "degrees")
 SECONDS: Final = Range(0.01, 3600.0, "s")

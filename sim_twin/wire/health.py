@@ -7,7 +7,7 @@ assumptions of the right order: a stalled XM430 overheats within about a minute.
 import math
 from dataclasses import dataclass, field
 
-from sim_twin.wire.control_loop import ControlLoop
+from windup.sim_twin.wire.control_loop import ControlLoop
 
 INPUT_VOLTAGE, OVERHEATING, ENCODER, ELECTRICAL, OVERLOAD = 0x01, 0x04, 0x08, 0x10, 0x20
 

@@ -4,7 +4,7 @@ from typing import Protocol
 
 import numpy as np
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 GRAVITY = 9.80665  # m/s2
 

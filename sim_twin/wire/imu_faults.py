@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from hal.joints import Array
-from sim_twin.wire.imu import ImuSource
-from sim_twin.wire.schedule import Schedule
+from windup.hal.joints import Array
+from windup.sim_twin.wire.imu import ImuSource
+from windup.sim_twin.wire.schedule import Schedule
 
 
 class FaultyImu:

@@ -4,7 +4,7 @@ import time as wall
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 
-from sim_twin.wire.world import World
+from windup.sim_twin.wire.world import World
 
 Journal = Callable[[float, int], None]
 

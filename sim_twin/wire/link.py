@@ -11,7 +11,7 @@ import tty
 from pathlib import Path
 from typing import Protocol
 
-from hal.errors import UsageError
+from windup.hal.errors import UsageError
 
 TCGETS2 = 0x802C542A
 TERMIOS2 = struct.Struct("4I20B2I")  # the last two: input and output speed, baud

@@ -7,9 +7,9 @@ takes to saturate. I and D gains, dead bands and punch are kept in registers but
 
 import math
 
-from hal.servo_model import ServoModel
-from sim_twin.wire.profile import Profile
-from sim_twin.wire.shaft import Shaft
+from windup.hal.servo_model import ServoModel
+from windup.sim_twin.wire.profile import Profile
+from windup.sim_twin.wire.shaft import Shaft
 
 
 class MotorLoop:

@@ -8,8 +8,8 @@ bits in Hardware Error Status(70).
 from collections.abc import Iterable
 from typing import Final
 
-from sim_twin.wire.health import INPUT_VOLTAGE, OVERHEATING, OVERLOAD
-from sim_twin.wire.register_file import (
+from windup.sim_twin.wire.health import INPUT_VOLTAGE, OVERHEATING, OVERLOAD
+from windup.sim_twin.wire.register_file import (
     BAD_ACCESS,
     BAD_CRC,
     BAD_INSTRUCTION,

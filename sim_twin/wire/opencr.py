@@ -11,10 +11,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from hal.joints import Array
-from sim_twin.wire.device import Device
-from sim_twin.wire.imu import GRAVITY, ImuSource
-from sim_twin.wire.register_file import (
+from windup.hal.joints import Array
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.imu import GRAVITY, ImuSource
+from windup.sim_twin.wire.register_file import (
     BAD_ACCESS,
     BAD_INSTRUCTION,
     BAD_RANGE,
@@ -22,7 +22,7 @@ from sim_twin.wire.register_file import (
     Item,
     RegisterFile,
 )
-from sim_twin.wire.x_series import BAUD_RATES
+from windup.sim_twin.wire.x_series import BAUD_RATES
 
 GYRO_UNIT = math.radians(2000.0 / 32800.0)  # rad/s a count
 ACCELERATION_UNIT = 2.0 / 32768.0 * GRAVITY  # m/s2 a count

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final
 
-from sim_twin.wire.bus import BITS, Bus
-from sim_twin.wire.link import Link
+from windup.sim_twin.wire.bus import BITS, Bus
+from windup.sim_twin.wire.link import Link
 
 CHUNK_TIME = 0.0006  # s of bytes that go out together in the middle of an answer
 WAITING: Final = 65_536  # bytes of a program that wait for the wire; more are lost

@@ -5,12 +5,12 @@ from typing import cast
 
 import serial
 
-from hal.backend import Clock
-from hal.errors import WindupError
-from sim_twin.wire.address import parse_address
-from sim_twin.wire.bus import Bus
-from sim_twin.wire.world import RealClock, World
-from sim_twin.wire.worlds import Running, enter, leave
+from windup.hal.backend import Clock
+from windup.hal.errors import WindupError
+from windup.sim_twin.wire.address import parse_address
+from windup.sim_twin.wire.bus import Bus
+from windup.sim_twin.wire.world import RealClock, World
+from windup.sim_twin.wire.worlds import Running, enter, leave
 
 PATIENCE = 60.0  # s of virtual time without an answer, in a read without a time-out
 

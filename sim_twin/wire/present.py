@@ -2,8 +2,8 @@
 
 import struct
 
-from sim_twin.wire.control_loop import POSITION_MODES, ControlLoop
-from sim_twin.wire.x_series import PRESENT, PWM_FULL, VELOCITY, VELOCITY_UNIT
+from windup.sim_twin.wire.control_loop import POSITION_MODES, ControlLoop
+from windup.sim_twin.wire.x_series import PRESENT, PWM_FULL, VELOCITY, VELOCITY_UNIT
 
 IN_POSITION, IN_PROGRESS, NOT_FOLLOWING = 0x01, 0x02, 0x08  # bits of Moving Status
 TICKS = 0x7FFF  # of Realtime Tick, ms, which begins anew behind that

@@ -4,9 +4,9 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Final, NamedTuple
 
-from sim_twin.wire.bus import BITS, Bus
-from sim_twin.wire.device import Device
-from sim_twin.wire.frames1 import (
+from windup.sim_twin.wire.bus import BITS, Bus
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.frames1 import (
     BROADCAST,
     ID_AT,
     LENGTH_AT,
@@ -17,9 +17,9 @@ from sim_twin.wire.frames1 import (
     encode,
     seal,
 )
-from sim_twin.wire.heard import Heard
-from sim_twin.wire.register_file import EEPROM_END
-from sim_twin.wire.turns import READS, Round, Turn, take_turns
+from windup.sim_twin.wire.heard import Heard
+from windup.sim_twin.wire.register_file import EEPROM_END
+from windup.sim_twin.wire.turns import READS, Round, Turn, take_turns
 
 PING, READ, WRITE, REG_WRITE, ACTION, RESET, REBOOT = 0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x08
 SYNC_READ, SYNC_WRITE, BULK_READ = 0x82, 0x83, 0x92

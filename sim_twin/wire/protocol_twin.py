@@ -1,6 +1,6 @@
 """pyserial finds the handler of ``twin://`` in a module of this name."""
 
-from sim_twin.wire.port import TwinSerial
+from windup.sim_twin.wire.port import TwinSerial
 
 
 def serial_class_for_url(url: str) -> tuple[str, type[TwinSerial]]:

@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Final
 
-from hal.joints import Array
-from sim_twin.wire.bus import Bus
-from sim_twin.wire.device import Device
-from sim_twin.wire.heard import Heard
-from sim_twin.wire.imu import GRAVITY, ImuSource
+from windup.hal.joints import Array
+from windup.sim_twin.wire.bus import Bus
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.heard import Heard
+from windup.sim_twin.wire.imu import GRAVITY, ImuSource
 
 HEADER: Final = b"\xaa\xaa"
 BAUD: Final = 115_200

@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
-from hal.servo_model import ServoModel
-from sim_twin.wire.backup import RESTORE, STORE
-from sim_twin.wire.firmware import Firmware
-from sim_twin.wire.health import OVERLOAD
-from sim_twin.wire.old_errors import old_error
-from sim_twin.wire.present import MOTION
-from sim_twin.wire.register_file import (
+from windup.hal.servo_model import ServoModel
+from windup.sim_twin.wire.backup import RESTORE, STORE
+from windup.sim_twin.wire.firmware import Firmware
+from windup.sim_twin.wire.health import OVERLOAD
+from windup.sim_twin.wire.old_errors import old_error
+from windup.sim_twin.wire.present import MOTION
+from windup.sim_twin.wire.register_file import (
     BAD_ACCESS,
     BAD_INSTRUCTION,
     BAD_RANGE,
@@ -16,8 +16,8 @@ from sim_twin.wire.register_file import (
     OK,
     Item,
 )
-from sim_twin.wire.shaft import Shaft
-from sim_twin.wire.x_series import BAUD_RATES, PRESENT, Model
+from windup.sim_twin.wire.shaft import Shaft
+from windup.sim_twin.wire.x_series import BAUD_RATES, PRESENT, Model
 
 BOOT_SECONDS = 0.3  # silence after a reboot, assumed
 

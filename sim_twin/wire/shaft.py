@@ -3,7 +3,7 @@
 import math
 from typing import Protocol
 
-from hal.servo_model import Motor
+from windup.hal.servo_model import Motor
 
 
 class Shaft(Protocol):

@@ -9,7 +9,7 @@ MOST = 3  # bytes that an answer is too long, or too short
 
 
 class Layout(Protocol):
-    """Where a protocol's frames have what; see `sim_twin.wire.bus.Language`."""
+    """Where a protocol's frames have what; see `windup.sim_twin.wire.bus.Language`."""
 
     id_at: int
     length_at: int

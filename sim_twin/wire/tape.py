@@ -5,14 +5,14 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from sim_twin.wire.bus import BITS, Bus
-from sim_twin.wire.device import Device
-from sim_twin.wire.heard import Heard
-from sim_twin.wire.inbox import Burst
-from sim_twin.wire.schedule import Schedule
-from sim_twin.wire.shaft import InertiaShaft
-from sim_twin.wire.trace import FROM_HOST, TO_HOST, Line, TraceError, difference, read_trace
-from sim_twin.wire.world import Bench, World
+from windup.sim_twin.wire.bus import BITS, Bus
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.heard import Heard
+from windup.sim_twin.wire.inbox import Burst
+from windup.sim_twin.wire.schedule import Schedule
+from windup.sim_twin.wire.shaft import InertiaShaft
+from windup.sim_twin.wire.trace import FROM_HOST, TO_HOST, Line, TraceError, difference, read_trace
+from windup.sim_twin.wire.world import Bench, World
 
 
 @dataclass

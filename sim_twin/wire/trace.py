@@ -10,8 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from sim_twin.wire.inbox import Burst
-from sim_twin.wire.world import World
+from windup.sim_twin.wire.inbox import Burst
+from windup.sim_twin.wire.world import World
 
 HEADER = "# windup trace 1: time s, bus, direction, baud, held s, bytes"
 SAME_TIME = 1e-6  # s

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from typing import NamedTuple
 
-from sim_twin.wire.bus import BITS, Bus
-from sim_twin.wire.device import Device
+from windup.sim_twin.wire.bus import BITS, Bus
+from windup.sim_twin.wire.device import Device
 
 Encode = Callable[[int, int, bytes], bytes]
 PIECE = 4  # answers that are worked out together

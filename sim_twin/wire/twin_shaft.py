@@ -19,11 +19,11 @@ from weakref import WeakMethod
 
 import numpy as np
 
-from hal.joints import Array, Mask
-from hal.servo_model import ServoMount
-from sim_twin.imu_errors import LowPass
-from sim_twin.servo_motor import KD, KP, VMAX
-from sim_twin.twin import Twin
+from windup.hal.joints import Array, Mask
+from windup.hal.servo_model import ServoMount
+from windup.sim_twin.imu_errors import LowPass
+from windup.sim_twin.servo_motor import KD, KP, VMAX
+from windup.sim_twin.twin import Twin
 
 FAR = 1e6  # rad
 SOFT = 1e-6  # N m/rad

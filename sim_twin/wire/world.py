@@ -4,14 +4,14 @@ import time as wall
 from collections.abc import Sequence
 from typing import Protocol
 
-from hal.errors import UnknownNameError
-from sim_twin.wire.bus import Bus
-from sim_twin.wire.device import Device
-from sim_twin.wire.faults import Faults
-from sim_twin.wire.hand import Grip, Hand, Swing
-from sim_twin.wire.opencr import OpenCr
-from sim_twin.wire.schedule import Schedule
-from sim_twin.wire.shaft import InertiaShaft
+from windup.hal.errors import UnknownNameError
+from windup.sim_twin.wire.bus import Bus
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.faults import Faults
+from windup.sim_twin.wire.hand import Grip, Hand, Swing
+from windup.sim_twin.wire.opencr import OpenCr
+from windup.sim_twin.wire.schedule import Schedule
+from windup.sim_twin.wire.shaft import InertiaShaft
 
 WATCH_PERIOD = 0.010  # s between two looks at watchdogs and health
 EPSILON = 1e-9  # s; steps that are due to the bit

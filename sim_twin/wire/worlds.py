@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass, replace
 
-from hal.errors import UnknownNameError, UsageError
-from sim_twin.wire.address import Address
-from sim_twin.wire.build import build_world
-from sim_twin.wire.world import RealClock, VirtualClock, WireClock, World
+from windup.hal.errors import UnknownNameError, UsageError
+from windup.sim_twin.wire.address import Address
+from windup.sim_twin.wire.build import build_world
+from windup.sim_twin.wire.world import RealClock, VirtualClock, WireClock, World
 
 
 @dataclass

@@ -7,8 +7,8 @@ import math
 from dataclasses import dataclass, field
 from typing import Final
 
-from hal.errors import UnknownNameError
-from sim_twin.wire.register_file import Indirect, Item, RegisterFile
+from windup.hal.errors import UnknownNameError
+from windup.sim_twin.wire.register_file import Indirect, Item, RegisterFile
 
 COUNTS: Final = 4096  # a turn
 CENTRE: Final = 2048  # counts at horn angle 0

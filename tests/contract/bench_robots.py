@@ -7,18 +7,18 @@ from typing import Final
 
 import numpy as np
 
-from hal.coupling import Coupling, Couplings
-from hal.joints import Joint, Joints
-from hal.servo_backend import BusPort, ServoBackend
-from hal.servo_model import ServoMount
-from hal.servos import servo_model
-from sim_twin.wire import put_world
-from sim_twin.wire.bus import Bus
-from sim_twin.wire.device import Device
-from sim_twin.wire.families import PROTOCOLS, make_language, make_servo
-from sim_twin.wire.schedule import Schedule
-from sim_twin.wire.shaft import InertiaShaft
-from sim_twin.wire.world import Bench, World
+from windup.hal.coupling import Coupling, Couplings
+from windup.hal.joints import Joint, Joints
+from windup.hal.servo_backend import BusPort, ServoBackend
+from windup.hal.servo_model import ServoMount
+from windup.hal.servos import servo_model
+from windup.sim_twin.wire import put_world
+from windup.sim_twin.wire.bus import Bus
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.families import PROTOCOLS, make_language, make_servo
+from windup.sim_twin.wire.schedule import Schedule
+from windup.sim_twin.wire.shaft import InertiaShaft
+from windup.sim_twin.wire.world import Bench, World
 
 BAUD = 1_000_000
 REACH = 1.0  # rad, of every joint, both ways

@@ -6,12 +6,12 @@ import msgspec
 import numpy as np
 import pytest
 
-from control.blend import blend_name, with_blend
-from control.gait import Gait
-from control.style import Spell, Styling
-from hal.errors import ConfigError
-from robots import load_robot
-from tools.gaits import find_gait
+from windup.control.blend import blend_name, with_blend
+from windup.control.gait import Gait
+from windup.control.style import Spell, Styling
+from windup.hal.errors import ConfigError
+from windup.robots import load_robot
+from windup.tools.gaits import find_gait
 
 
 @pytest.fixture(scope="module")

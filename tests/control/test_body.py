@@ -4,10 +4,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from control.body import Body
-from hal.errors import StateMissingError
-from hal.observation import BaseState, JointState, Observation
-from robots import RobotDescription
+from windup.control.body import Body
+from windup.hal.errors import StateMissingError
+from windup.hal.observation import BaseState, JointState, Observation
+from windup.robots import RobotDescription
 
 
 @pytest.fixture(scope="module")

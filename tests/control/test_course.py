@@ -3,9 +3,9 @@ from math import radians
 import numpy as np
 import pytest
 
-from control.course import Course
-from control.gait_file import Heading, Turn
-from control.guide import WalkCommand
+from windup.control.course import Course
+from windup.control.gait_file import Heading, Turn
+from windup.control.guide import WalkCommand
 
 
 def course(direction: float = 0.0) -> Course:

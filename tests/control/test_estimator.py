@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hal.errors import StateMissingError
-from hal.joints import Array
-from hal.observation import ImuState
 from tests.control.biped import AIR, BOTH_FEET, DT, GRAVITY, Run, estimator, lean, observed, turned
+from windup.hal.errors import StateMissingError
+from windup.hal.joints import Array
+from windup.hal.observation import ImuState
 
 
 def test_a_robot_at_rest_stays_where_it_is_with_its_soles_on_the_floor() -> None:

@@ -6,12 +6,12 @@ from math import atan2, cos, pi, radians, sin
 import numpy as np
 import pytest
 
-from control.body import Body
-from control.fall import FallPredictor, unreachable
-from control.momenta import Momenta
-from hal.errors import StateMissingError
-from hal.observation import BaseState, Observation
 from tests.control.biped import model, observed, soles
+from windup.control.body import Body
+from windup.control.fall import FallPredictor, unreachable
+from windup.control.momenta import Momenta
+from windup.hal.errors import StateMissingError
+from windup.hal.observation import BaseState, Observation
 
 SOLES = np.array([[0.05, 0.05], [0.05, -0.05], [-0.05, 0.05], [-0.05, -0.05]])
 REACH = 0.1

@@ -6,13 +6,13 @@ from math import degrees, radians
 import numpy as np
 import pytest
 
-from control.first_motion import CLOSE, SETTLING, FirstMotion
-from control.play import PoseHolder
-from hal.command import JointCommand
-from hal.errors import FirstMotionError
-from hal.joints import Array
-from hal.observation import Observation
 from tests.small_world import JOINTS, N, observation
+from windup.control.first_motion import CLOSE, SETTLING, FirstMotion
+from windup.control.play import PoseHolder
+from windup.hal.command import JointCommand
+from windup.hal.errors import FirstMotionError
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
 
 TICK = 0.008
 SPEED, WEAK = 0.6, np.array([0.3, 0.6, 0.6, 0.6, 0.6])

@@ -6,12 +6,12 @@ from math import cos, radians, sin, tan
 import numpy as np
 import pytest
 
-from control.footfalls import Footfalls
-from hal.observation import Observation
-from robots import RobotDescription
-from sim_twin.backend import TwinBackend
-from sim_twin.twin import Twin
-from tools.build import body_of
+from windup.control.footfalls import Footfalls
+from windup.hal.observation import Observation
+from windup.robots import RobotDescription
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.twin import Twin
+from windup.tools.build import body_of
 
 DOWN = radians(-4.0)
 

@@ -2,12 +2,12 @@ import mujoco
 import numpy as np
 import pytest
 
-from control.footing import Footing
-from control.rotation import turn
-from hal.errors import StateMissingError
-from hal.observation import BaseState, JointState, Observation
-from robots import load_robot
-from tools.stepping import footing_of, stepping_stance
+from windup.control.footing import Footing
+from windup.control.rotation import turn
+from windup.hal.errors import StateMissingError
+from windup.hal.observation import BaseState, JointState, Observation
+from windup.robots import load_robot
+from windup.tools.stepping import footing_of, stepping_stance
 
 OP3 = load_robot("op3")
 STANCE = stepping_stance(OP3)

@@ -3,7 +3,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.footprints import (
+from windup.control.footprints import (
     Footprint,
     between,
     ground_places,
@@ -12,7 +12,7 @@ from control.footprints import (
     seen_from,
     write_footprints,
 )
-from hal.errors import WindupError
+from windup.hal.errors import WindupError
 
 FEET = ("left_foot", "right_foot")
 HERE, THERE = np.array([1.0, 2.0, 0.5]), np.array([0.3, -0.2, -2.0])

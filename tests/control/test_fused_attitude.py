@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from control.fused_attitude import FusedAttitude
-from hal.joints import Array
-from hal.observation import ImuState
+from windup.control.fused_attitude import FusedAttitude
+from windup.hal.joints import Array
+from windup.hal.observation import ImuState
 
 
 def spun(angle: float) -> Array:

@@ -3,9 +3,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.pose_graph import FOREVER
-from hal.errors import ConfigError, UnknownNameError
 from tests.small_world import CONTACTS, gait
+from windup.control.pose_graph import FOREVER
+from windup.hal.errors import ConfigError, UnknownNameError
 
 GAIT = """
 title = "Walk"

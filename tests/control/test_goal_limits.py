@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from control.goal_limits import GoalLimits
-from hal.joints import Joint, Joints
+from windup.control.goal_limits import GoalLimits
+from windup.hal.joints import Joint, Joints
 
 
 def joints(speed: float) -> Joints:

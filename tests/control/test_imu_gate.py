@@ -3,11 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from control.imu_gate import ImuGate
-from hal.errors import ImuError
-from hal.guard.imu_watch import ImuWatch
-from hal.observation import BaseState, ImuState, Observation
 from tests.hal.imu_samples import DT, GRAVITY, UP, seen, still
+from windup.control.imu_gate import ImuGate
+from windup.hal.errors import ImuError
+from windup.hal.guard.imu_watch import ImuWatch
+from windup.hal.observation import BaseState, ImuState, Observation
 
 
 class Follower:

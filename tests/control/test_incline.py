@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from control.gait_file import Incline
-from control.incline import InclineControl
-from control.step_record import StepRecord
+from windup.control.gait_file import Incline
+from windup.control.incline import InclineControl
+from windup.control.step_record import StepRecord
 
 LAW = Incline(perturbation="incline", gain=40.0, limit=5.0)
 

@@ -4,9 +4,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.learnt_models import LearntModels
-from hal.errors import ConfigError
 from tests.control.test_step_memory import HERE, TARGET, J, Steps, model
+from windup.control.learnt_models import LearntModels
+from windup.hal.errors import ConfigError
 
 NAMES = ["up.forward", "up.lateral"], ["a", "b"], "0123456789abcdef"
 

@@ -4,10 +4,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from control.limb_ik import LimbIk, Pose
-from control.rotation import turn_between
-from hal.errors import UsageError
-from robots import load_robot
+from windup.control.limb_ik import LimbIk, Pose
+from windup.control.rotation import turn_between
+from windup.hal.errors import UsageError
+from windup.robots import load_robot
 
 OP3 = load_robot("op3")
 MODEL = OP3.spec().compile()

@@ -5,12 +5,12 @@ from math import cos, pi, radians, sin
 import numpy as np
 import pytest
 
-from control.course import wrapped
-from control.guide import Guide, Place
-from control.navigation import Agility, PathFollower, PointFollower, checked, circle, square
-from hal.errors import UsageError
-from hal.joints import Array
-from tools.route import read_path
+from windup.control.course import wrapped
+from windup.control.guide import Guide, Place
+from windup.control.navigation import Agility, PathFollower, PointFollower, checked, circle, square
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array
+from windup.tools.route import read_path
 
 NIMBLE = Agility(speed=0.2, turn=radians(45.0), slow=0.0)
 CAR = Agility(speed=0.8, turn=radians(20.0), radius=2.5)

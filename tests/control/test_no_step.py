@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from shapely import Point, Polygon, box
 
-from control.limb_ik import Pose
-from control.no_step import NoStep, grown, placed, shadow
-from control.rotation import turn
-from hal.errors import UsageError
+from windup.control.limb_ik import Pose
+from windup.control.no_step import NoStep, grown, placed, shadow
+from windup.control.rotation import turn
+from windup.hal.errors import UsageError
 
 SOLE = np.array([[x, y] for x in (-0.06, 0.06) for y in (-0.03, 0.03)])
 

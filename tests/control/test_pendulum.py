@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from control.footprints import seen_from
-from control.pendulum import Order, Pace, Stretch, capture_on_way, future, next_place
-from hal.joints import Array
+from windup.control.footprints import seen_from
+from windup.control.pendulum import Order, Pace, Stretch, capture_on_way, future, next_place
+from windup.hal.joints import Array
 
 PACE = Pace(single=0.35, double=0.1, width=0.12, longest=0.1, narrowest=0.09, widest=0.2, turn=0.3)
 OMEGA = 6.3

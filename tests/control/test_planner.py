@@ -4,17 +4,17 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from control.balancer import Balancer
-from control.planner import StepPlanner, StepRequest
-from control.shaken import Shaken
-from hal.controller import RolloutStart
-from hal.joints import Array
-from robots import load_robot
-from sim_twin.backend import TwinBackend
-from sim_twin.twin import Twin
-from tools.build import build_walk
-from tools.robot import Robot
-from tools.walk_options import WalkOptions
+from windup.control.balancer import Balancer
+from windup.control.planner import StepPlanner, StepRequest
+from windup.control.shaken import Shaken
+from windup.hal.controller import RolloutStart
+from windup.hal.joints import Array
+from windup.robots import load_robot
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.twin import Twin
+from windup.tools.build import build_walk
+from windup.tools.robot import Robot
+from windup.tools.walk_options import WalkOptions
 
 LATENCY = 0.06
 

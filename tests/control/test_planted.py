@@ -6,11 +6,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from control.legs import Legs, legs_of
-from control.planted import Planted
-from hal.joints import Array
-from hal.observation import BaseState, JointState, Observation
-from robots import RobotDescription, load_robot
+from windup.control.legs import Legs, legs_of
+from windup.control.planted import Planted
+from windup.hal.joints import Array
+from windup.hal.observation import BaseState, JointState, Observation
+from windup.robots import RobotDescription, load_robot
 
 Reading = Callable[[Array], Array]
 """What joints (n,) rad are read as."""

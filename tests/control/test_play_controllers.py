@@ -3,9 +3,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.play import GraphPlayer, PoseHolder
-from hal.joints import Array
 from tests.small_world import AIR, CONTACTS, JOINTS, L_TOE, N, gait, observation
+from windup.control.play import GraphPlayer, PoseHolder
+from windup.hal.joints import Array
 
 GAIT = """
 title = "Bow"

@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from control.pose_graph import FOREVER, PoseGraph, RelativeGraph
-from hal.errors import ConfigError, UnknownNameError
+from windup.control.pose_graph import FOREVER, PoseGraph, RelativeGraph
+from windup.hal.errors import ConfigError, UnknownNameError
 
 
 def graph(

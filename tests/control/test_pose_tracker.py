@@ -5,13 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from control.gait import Gait
-from control.goal_limits import GoalLimits
-from control.policy import StepPolicy
-from control.pose_tracker import PoseTracker, TrackerState
-from control.torso_servo import TorsoServo
-from hal.joints import Array
 from tests.small_world import AIR, CONTACTS, JOINTS, L_TOE, R_HEEL, R_TOE, N, gait, policy_state
+from windup.control.gait import Gait
+from windup.control.goal_limits import GoalLimits
+from windup.control.policy import StepPolicy
+from windup.control.pose_tracker import PoseTracker, TrackerState
+from windup.control.torso_servo import TorsoServo
+from windup.hal.joints import Array
 
 DT = 0.01
 

@@ -5,11 +5,11 @@ from math import radians
 import numpy as np
 import pytest
 
-from control.posture import Posture, PostureSense
-from control.tilt_filter import GRAVITY
-from hal.joints import Array
-from hal.observation import ImuState, JointState, Observation
-from robots import RobotDescription
+from windup.control.posture import Posture, PostureSense
+from windup.control.tilt_filter import GRAVITY
+from windup.hal.joints import Array
+from windup.hal.observation import ImuState, JointState, Observation
+from windup.robots import RobotDescription
 
 
 def seen(pose: Array, up: Array, felt: float = GRAVITY) -> Observation:

@@ -6,14 +6,14 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
-from control.body import Body
-from control.fall import FallPredictor
-from control.play import PoseHolder
-from control.protection import EFFORT, LONGEST, REST, FallWay, Phase, Protected, bounded
-from hal.command import joint_torque
-from hal.joints import Array, Joint, Joints
-from hal.observation import BaseState, Observation
 from tests.control.biped import DT, model, observed, soles
+from windup.control.body import Body
+from windup.control.fall import FallPredictor
+from windup.control.play import PoseHolder
+from windup.control.protection import EFFORT, LONGEST, REST, FallWay, Phase, Protected, bounded
+from windup.hal.command import joint_torque
+from windup.hal.joints import Array, Joint, Joints
+from windup.hal.observation import BaseState, Observation
 
 JOINTS = Joints(
     tuple(

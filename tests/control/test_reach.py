@@ -3,12 +3,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from control.gait_file import Reach
-from control.reach import Condition, lean
-from hal.errors import StateMissingError
-from hal.joints import Array
-from hal.observation import BaseState, Observation
 from tests.small_world import CONTACTS, JOINTS, L_TOE, R_HEEL, N, observation
+from windup.control.gait_file import Reach
+from windup.control.reach import Condition, lean
+from windup.hal.errors import StateMissingError
+from windup.hal.joints import Array
+from windup.hal.observation import BaseState, Observation
 
 GOAL = np.full(N, 0.5)
 Y, X = [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]

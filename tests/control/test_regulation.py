@@ -3,11 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from control.body import heading
-from control.regulation import GRAVITY, StepEnd, regulation_variables
-from hal.controller import Outcomes
-from hal.errors import UnknownNameError
-from hal.joints import Array
+from windup.control.body import heading
+from windup.control.regulation import GRAVITY, StepEnd, regulation_variables
+from windup.hal.controller import Outcomes
+from windup.hal.errors import UnknownNameError
+from windup.hal.joints import Array
 
 
 def turned(yaw: float, pitch: float = 0.0) -> Array:

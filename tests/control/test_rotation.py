@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from control.rotation import (
+from windup.control.rotation import (
     heading_between,
     lying,
     quaternion_matrix,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from control.shaken import Shaken
+from windup.control.shaken import Shaken
 
 WALK = np.array([0.2, 0.05, 0.0])
 

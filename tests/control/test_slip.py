@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from control.gait_file import Slip
-from control.slip import SlipControl
+from windup.control.gait_file import Slip
+from windup.control.slip import SlipControl
 
 LAW = Slip(states=["S2"], style="careful", least=0.02)
 BEARS, LANDS = 1, 2

@@ -2,11 +2,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from control.foot_load import FootLoad
-from control.soles import Soles, cross, spin
-from hal.contacts import ContactSensors
-from hal.errors import UsageError
 from tests.control.biped import CONTACTS, GRAVITY, model, soles
+from windup.control.foot_load import FootLoad
+from windup.control.soles import Soles, cross, spin
+from windup.hal.contacts import ContactSensors
+from windup.hal.errors import UsageError
 
 UP = np.array([0.0, 0.0, 1.0])
 REST = np.array([0.0, 0.0, GRAVITY])

@@ -3,9 +3,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.speed import SpeedControl
-from hal.errors import UsageError
 from tests.small_world import gait
+from windup.control.speed import SpeedControl
+from windup.hal.errors import UsageError
 
 GAIT = """
 title = "Speeds"

@@ -3,10 +3,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.staged import StagedPlayer
-from hal.errors import ConfigError, StateMissingError
-from hal.joints import Array
 from tests.small_world import CONTACTS, JOINTS, N, gait, observation
+from windup.control.staged import StagedPlayer
+from windup.hal.errors import ConfigError, StateMissingError
+from windup.hal.joints import Array
 
 GRAPH = """
 title = "Bows and comes up"

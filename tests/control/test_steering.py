@@ -5,16 +5,16 @@ from math import pi, radians
 
 import pytest
 
-from control.course import Course
-from control.gait import Gait
-from control.gait_file import Heading, Side, Style, Turn
-from control.guide import WalkCommand
-from control.side import SideControl
-from control.style import Spell, Styling
-from hal.errors import UnknownNameError, UsageError
-from robots import load_robot
-from tools.gaits import find_gait
-from tools.spells import spell
+from windup.control.course import Course
+from windup.control.gait import Gait
+from windup.control.gait_file import Heading, Side, Style, Turn
+from windup.control.guide import WalkCommand
+from windup.control.side import SideControl
+from windup.control.style import Spell, Styling
+from windup.hal.errors import UnknownNameError, UsageError
+from windup.robots import load_robot
+from windup.tools.gaits import find_gait
+from windup.tools.spells import spell
 
 
 @pytest.fixture(scope="module")

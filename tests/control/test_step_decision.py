@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 import shapely
 
-from control.momenta import Momenta, capture_point
-from control.step_decision import (
+from windup.control.momenta import Momenta, capture_point
+from windup.control.step_decision import (
     RULES,
     Placement,
     Reach,
@@ -15,8 +15,8 @@ from control.step_decision import (
     place,
     trigger_point,
 )
-from control.support import SupportRegion
-from hal.errors import UnknownNameError
+from windup.control.support import SupportRegion
+from windup.hal.errors import UnknownNameError
 
 FEET = np.array([[0.0, 0.05], [0.0, -0.05]])
 SOLES = SupportRegion.hull(np.array([[x, y, 0.0] for x in (-0.06, 0.06) for y in (-0.09, 0.09)]))

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from control.step_memory import Frozen, Library, Memory
-from control.step_model import StepModel
-from hal.joints import Array, Mask
+from windup.control.step_memory import Frozen, Library, Memory
+from windup.control.step_model import StepModel
+from windup.hal.joints import Array, Mask
 
 J = np.array([[0.02, 0.005], [-0.004, 0.03]])
 

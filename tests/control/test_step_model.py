@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from control.step_model import Sampling, StepModel
-from hal.joints import Array, Mask
+from windup.control.step_model import Sampling, StepModel
+from windup.hal.joints import Array, Mask
 
 NOMINAL = np.array([0.3, -0.2])
 TARGET = np.array([0.45, -0.35])

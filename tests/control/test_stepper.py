@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from control.comfort import ComfortStep
-from control.step_decision import find_rule
-from control.stepper import Stepper
-from hal.joints import Array
-from hal.observation import Observation
 from tests.control.test_footing import OP3, STANCE, seen
-from tools.stepping import build_stepper, find_stepping, footing_of
+from windup.control.comfort import ComfortStep
+from windup.control.step_decision import find_rule
+from windup.control.stepper import Stepper
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
+from windup.tools.stepping import build_stepper, find_stepping, footing_of
 
 TICK = 0.004
 

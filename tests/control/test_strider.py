@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from control.pendulum import Order
-from control.strider import Phase, Strider
-from hal.observation import Observation
 from tests.control.test_footing import OP3, seen
-from tools.build import body_of
-from tools.directed import limbs_of
-from tools.stepping import stepping_stance
-from tools.striding import find_stride
+from windup.control.pendulum import Order
+from windup.control.strider import Phase, Strider
+from windup.hal.observation import Observation
+from windup.tools.build import body_of
+from windup.tools.directed import limbs_of
+from windup.tools.stepping import stepping_stance
+from windup.tools.striding import find_stride
 
 TICK = 0.004
 HOW = find_stride(OP3)

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from control.supervisor import REST, RETURN, Supervisor
-from hal.observation import Observation
 from tests.control.test_footing import OP3, seen
-from tools.build import build_walk
-from tools.supervise import build_supervisor
-from tools.walk_options import WalkOptions
+from windup.control.supervisor import REST, RETURN, Supervisor
+from windup.hal.observation import Observation
+from windup.tools.build import build_walk
+from windup.tools.supervise import build_supervisor
+from windup.tools.walk_options import WalkOptions
 
 TICK = 0.004
 LEARNT = 2.5

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from control.support import SupportRegion
+from windup.control.support import SupportRegion
 
 SQUARE = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
 

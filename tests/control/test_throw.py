@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from control.stepping_file import CatchTable
-from control.throw import DRIFT, LEARN, Throw
+from windup.control.stepping_file import CatchTable
+from windup.control.throw import DRIFT, LEARN, Throw
 
 WAY = [np.array([0.01 * tick, 0.02]) for tick in range(5)]
 

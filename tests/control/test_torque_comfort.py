@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from control.footprints import Footprint
-from control.torque_comfort import ComfortWalk, TorqueComfort
-from hal.joints import Array
+from windup.control.footprints import Footprint
+from windup.control.torque_comfort import ComfortWalk, TorqueComfort
+from windup.hal.joints import Array
 
 STANCE = np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]])
 

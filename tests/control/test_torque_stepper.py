@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from tools.cli import run
+from windup.tools.cli import run
 
 
 @pytest.mark.parametrize(

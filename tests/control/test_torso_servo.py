@@ -5,12 +5,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from control.gait_file import TorsoServo as Record
-from control.torso_servo import TorsoServo
-from hal.command import JointCommand, joint_torque
-from hal.errors import UnknownNameError
-from robots import RobotDescription
 from tests.small_world import AIR, JOINTS, N, policy_state
+from windup.control.gait_file import TorsoServo as Record
+from windup.control.torso_servo import TorsoServo
+from windup.hal.command import JointCommand, joint_torque
+from windup.hal.errors import UnknownNameError
+from windup.robots import RobotDescription
 
 SERVO = TorsoServo.of(Record(joint="waist", angle=5.0), JOINTS)
 FREE = np.full(N, np.inf)

@@ -3,13 +3,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.gait_file import Upright
-from control.staged import StagedPlayer
-from control.upright import UprightFeedback
-from hal.errors import ConfigError, StateMissingError
-from hal.joints import Array
-from hal.observation import BaseState, Observation
 from tests.small_world import CONTACTS, JOINTS, N, gait, observation
+from windup.control.gait_file import Upright
+from windup.control.staged import StagedPlayer
+from windup.control.upright import UprightFeedback
+from windup.hal.errors import ConfigError, StateMissingError
+from windup.hal.joints import Array
+from windup.hal.observation import BaseState, Observation
 
 STATES = ("down", "up")
 

@@ -2,9 +2,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from control.weight import holding_torque
-from robots import RobotDescription
-from tools.build import body_of
+from windup.control.weight import holding_torque
+from windup.robots import RobotDescription
+from windup.tools.build import body_of
 
 
 def test_torques_that_hold_the_weight_do_the_work_that_lifts_it(op3: RobotDescription) -> None:

@@ -3,11 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from control.dynamics import Dynamics
-from control.momenta import GRAVITY
-from control.whole_body import FASTEST, Objectives, Weights, WholeBody
-from hal.observation import BaseState, JointState, Observation
-from robots import load_robot
+from windup.control.dynamics import Dynamics
+from windup.control.momenta import GRAVITY
+from windup.control.whole_body import FASTEST, Objectives, Weights, WholeBody
+from windup.hal.observation import BaseState, JointState, Observation
+from windup.robots import load_robot
 
 HUMAN = load_robot("human")
 STANCE = HUMAN.poses["ready"]

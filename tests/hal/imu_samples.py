@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hal.guard.finding import Finding
-from hal.guard.imu_watch import ImuWatch
-from hal.joints import Array
-from hal.observation import ImuState, JointState, Observation
+from windup.hal.guard.finding import Finding
+from windup.hal.guard.imu_watch import ImuWatch
+from windup.hal.joints import Array
+from windup.hal.observation import ImuState, JointState, Observation
 
 DT = 1.0 / 128.0  # no rounding in sums of it
 GRAVITY = 9.81

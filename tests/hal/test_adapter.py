@@ -2,9 +2,9 @@
 
 import pytest
 
-from hal.bus import Bus
-from hal.errors import NoAnswerError
 from tests.hal.adapters import ONE_OF_EACH, Adapter, adapter_port
+from windup.hal.bus import Bus
+from windup.hal.errors import NoAnswerError
 
 IDS = [1, 2, 3]
 

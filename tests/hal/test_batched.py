@@ -2,10 +2,10 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.protocols import protocol2
-from hal.protocols.batched import BlockRead, BlockWrite
-from hal.protocols.crc16 import crc16
-from hal.protocols.protocol2 import Span
+from windup.hal.protocols import protocol2
+from windup.hal.protocols.batched import BlockRead, BlockWrite
+from windup.hal.protocols.crc16 import crc16
+from windup.hal.protocols.protocol2 import Span
 
 IDS = [1, 2, 5, 9]
 EVEN = [Span(id, 126, 10) for id in IDS]

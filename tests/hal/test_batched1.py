@@ -2,10 +2,10 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.protocols import protocol1
-from hal.protocols.batched1 import GoalWrite, bulk_read, sync_read
-from hal.protocols.protocol2 import Span
-from hal.servos.feetech_registers import SCS, STS
+from windup.hal.protocols import protocol1
+from windup.hal.protocols.batched1 import GoalWrite, bulk_read, sync_read
+from windup.hal.protocols.protocol2 import Span
+from windup.hal.servos.feetech_registers import SCS, STS
 
 IDS = [1, 2, 5, 9]
 EVEN = [Span(id, 56, 6) for id in IDS]

@@ -5,11 +5,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.imu.bno08x_rvc import ON_THE_WIRE, Bno08xRvc, FrameParser
-from hal.port import Port
 from tests.hal.fake_bus import FakeSerial, VirtualClock
 from tests.hal.fake_bus1 import STS
 from tests.hal.mixed_robot import Wires, mount, robot, ticks
+from windup.hal.imu.bno08x_rvc import ON_THE_WIRE, Bno08xRvc, FrameParser
+from windup.hal.port import Port
 
 EXAMPLE = bytes.fromhex("AAAADE010092FF25088DFEECFFD103000000E7")  # of the data sheet
 

@@ -1,10 +1,10 @@
 import pytest
 
-from hal.bus import Bus
-from hal.errors import HardwareError, UsageError
-from hal.protocols.protocol2 import Span
-from hal.servos.x_series_registers import x_series_registers
 from tests.hal.fake_bus import fake_port
+from windup.hal.bus import Bus
+from windup.hal.errors import HardwareError, UsageError
+from windup.hal.protocols.protocol2 import Span
+from windup.hal.servos.x_series_registers import x_series_registers
 
 TABLE = x_series_registers("XM430-W350")
 

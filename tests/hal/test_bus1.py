@@ -1,14 +1,14 @@
 import pytest
 
-from hal.bus import Bus
-from hal.errors import HardwareError, UsageError
-from hal.exchange import TURNAROUND
-from hal.families import DYNAMIXEL_1, FEETECH_SCS, FEETECH_STS
-from hal.feetech import set_middle
-from hal.protocols import protocol1
-from hal.protocols.protocol1 import Instruction
-from hal.protocols.protocol2 import Span
 from tests.hal.fake_bus1 import AX, MX, SCS, STS, fake_port1
+from windup.hal.bus import Bus
+from windup.hal.errors import HardwareError, UsageError
+from windup.hal.exchange import TURNAROUND
+from windup.hal.families import DYNAMIXEL_1, FEETECH_SCS, FEETECH_STS
+from windup.hal.feetech import set_middle
+from windup.hal.protocols import protocol1
+from windup.hal.protocols.protocol1 import Instruction
+from windup.hal.protocols.protocol2 import Span
 
 IDS = [1, 2, 3]
 

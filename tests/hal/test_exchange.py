@@ -1,12 +1,12 @@
 import numpy as np
 import pytest
 
-from hal.exchange import DOUBTS, STILL_COMING, TURNAROUND, Exchange
-from hal.port import Port
-from hal.protocols import protocol2
-from hal.protocols.batched import BlockRead
-from hal.protocols.protocol2 import Span
 from tests.hal.fake_bus import FakeSerial, fake_port
+from windup.hal.exchange import DOUBTS, STILL_COMING, TURNAROUND, Exchange
+from windup.hal.port import Port
+from windup.hal.protocols import protocol2
+from windup.hal.protocols.batched import BlockRead
+from windup.hal.protocols.protocol2 import Span
 
 IDS = list(range(1, 21))
 

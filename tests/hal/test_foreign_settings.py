@@ -4,17 +4,17 @@ from dataclasses import replace
 
 import pytest
 
-from hal.bus import Bus
-from hal.errors import HardwareError
-from hal.families import family_of
-from hal.families.feetech import USUAL
-from hal.families.usual import protective_limits
-from hal.imu.opencr import OpenCr
-from hal.servo_setup import power_up
-from hal.servos import servo_model
 from tests.hal.backend_robot import Robot
 from tests.hal.mixed_robot import Wires, mount, robot
-from tools.servo_bus import ServoBus
+from windup.hal.bus import Bus
+from windup.hal.errors import HardwareError
+from windup.hal.families import family_of
+from windup.hal.families.feetech import USUAL
+from windup.hal.families.usual import protective_limits
+from windup.hal.imu.opencr import OpenCr
+from windup.hal.servo_setup import power_up
+from windup.hal.servos import servo_model
+from windup.tools.servo_bus import ServoBus
 
 KNEE = {"op3": 13, "duck": 23}
 BAUD = {"op3": 2_000_000, "duck": 1_000_000}

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hal.imu.frame_clock import LATEST, FrameClock
+from windup.hal.imu.frame_clock import LATEST, FrameClock
 
 PERIOD = 0.01
 

@@ -3,11 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hal.guard import HealthLevels, Kind
-from hal.guard.levels import defaults
-from hal.servo_model import ServoMount
-from hal.servos import servo_model, servo_names
-from robots import load_robot, robot_names
+from windup.hal.guard import HealthLevels, Kind
+from windup.hal.guard.levels import defaults
+from windup.hal.servo_model import ServoMount
+from windup.hal.servos import servo_model, servo_names
+from windup.robots import load_robot, robot_names
 
 SUPPLIES = {
     **dict.fromkeys(("XC330-M288", "XL330-M288", "XL330-M077"), 5.0),

@@ -3,10 +3,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from hal.guard.levels import HealthLevels, Kind
-from hal.guard.persistence import SIGNS, Persistence
-from hal.joints import Array
 from tests.hal.servo_state import MODEL, MOUNTS
+from windup.hal.guard.levels import HealthLevels, Kind
+from windup.hal.guard.persistence import SIGNS, Persistence
+from windup.hal.joints import Array
 
 N = 20
 LEVELS = HealthLevels.of([MOUNTS[0]] * N, 12.0)

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.command import JointCommand
-from hal.guard.watch import PERIOD
-from hal.observation import Observation
 from tests.hal.servo_state import DT, STALL, goal, seen, stop_of, stretch, watch
+from windup.hal.command import JointCommand
+from windup.hal.guard.watch import PERIOD
+from windup.hal.observation import Observation
 
 
 @pytest.mark.parametrize(

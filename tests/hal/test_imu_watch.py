@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.guard.imu_watch import ImuWatch
-from hal.observation import Observation
 from tests.hal.imu_samples import DT, GRAVITY, found, noisy, seen, still, tipping, upright
+from windup.hal.guard.imu_watch import ImuWatch
+from windup.hal.observation import Observation
 
 
 def test_an_imu_that_rests_is_well() -> None:

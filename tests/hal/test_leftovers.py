@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-import hal.leftovers
-from hal.guard import GuardedBackend, SafetyLimits
-from hal.guardian.lock import AdapterLock
-from hal.leftovers import FILES, KEPT, SPARE, process_runs, remove_leftovers
-from hal.telemetry import TelemetryReader, TelemetryWriter
+import windup.hal.leftovers
 from tests.hal.test_telemetry import CONTACTS, JOINTS, Servos, write
+from windup.hal.guard import GuardedBackend, SafetyLimits
+from windup.hal.guardian.lock import AdapterLock
+from windup.hal.leftovers import FILES, KEPT, SPARE, process_runs, remove_leftovers
+from windup.hal.telemetry import TelemetryReader, TelemetryWriter
 
 Make = Callable[..., TelemetryWriter]
 NOW = time.time()
@@ -35,9 +35,9 @@ def make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
         path = tmp_path / f"{name}@twin.ring"
         with monkeypatch.context() as patch:
             if pid is not None:
-                patch.setattr("hal.telemetry.os.getpid", lambda: pid)
+                patch.setattr("windup.hal.telemetry.os.getpid", lambda: pid)
             writer = TelemetryWriter(name, guard, CONTACTS, 1.0, path=path)
-            patch.setattr("hal.telemetry.wall.time", lambda: NOW - ago)
+            patch.setattr("windup.hal.telemetry.wall.time", lambda: NOW - ago)
             write(writer, range(1, 3))
         return writer
 
@@ -85,7 +85,7 @@ def test_rings_of_too_many_bytes_go(
     size = make("first", dead, 3.0).path.stat().st_size
     make("second", dead, 2.0)
     make("third", dead, 1.0)
-    monkeypatch.setattr(hal.leftovers, "BYTES", 2 * size)
+    monkeypatch.setattr(windup.hal.leftovers, "BYTES", 2 * size)
     remove_leftovers(tmp_path / "new@twin.ring", NOW)
     assert left(tmp_path) == {"second", "third"}
 

@@ -5,14 +5,14 @@ from math import pi
 import numpy as np
 import pytest
 
-from hal.command import JointCommand
-from hal.coupling import Coupling
-from hal.errors import ConfigError, HardwareError
-from hal.protocols.protocol1 import Instruction
-from hal.servo_model import ServoModel
-from hal.servos import servo_model
 from tests.hal.fake_bus1 import AX, MX, SCS, STS
 from tests.hal.mixed_robot import Wires, mount, robot, ticks
+from windup.hal.command import JointCommand
+from windup.hal.coupling import Coupling
+from windup.hal.errors import ConfigError, HardwareError
+from windup.hal.protocols.protocol1 import Instruction
+from windup.hal.servo_model import ServoModel
+from windup.hal.servos import servo_model
 
 XM = servo_model("XM430-W350")
 STS12 = servo_model("STS3215-12V")

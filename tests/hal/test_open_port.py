@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 import serial
 
-from hal.errors import PortError, UsageError
-from hal.open_port import _busy, holders, open_port
-from hal.port import DevicePort
+from windup.hal.errors import PortError, UsageError
+from windup.hal.open_port import _busy, holders, open_port
+from windup.hal.port import DevicePort
 
 
 @pytest.fixture
@@ -85,7 +85,7 @@ def test_a_port_whose_number_select_does_not_take_is_read_all_the_same(
     pty: tuple[int, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     master, path = pty
-    monkeypatch.setattr("hal.port.SELECTABLE", 0)
+    monkeypatch.setattr("windup.hal.port.SELECTABLE", 0)
     monkeypatch.setattr("select.select", None)
     with open_port(path) as port:
         assert port.read(3, port.clock.now()) == b""
@@ -107,7 +107,7 @@ def test_permission_denied_says_what_would_help(
         raise serial.SerialException(13, "could not open port: Permission denied")
 
     monkeypatch.setattr(serial, "Serial", refuse)
-    monkeypatch.setattr("hal.open_port.access_remedy", lambda device: f"ask for {device}")
+    monkeypatch.setattr("windup.hal.open_port.access_remedy", lambda device: f"ask for {device}")
     with pytest.raises(PortError, match=rf"no permission for {pty[1]}; ask for {pty[1]}"):
         open_port(pty[1])
 
@@ -119,7 +119,7 @@ def test_an_unknown_usb_serial_number_is_named() -> None:
 
 def test_a_twin_without_its_handler_says_what_to_import(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(serial, "protocol_handler_packages", ["serial.urlhandler"])
-    with pytest.raises(UsageError, match=r"`import sim_twin.wire` first"):
+    with pytest.raises(UsageError, match=r"`import windup.sim_twin.wire` first"):
         open_port("twin://op3")
 
 

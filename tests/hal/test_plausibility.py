@@ -4,10 +4,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hal.plausibility import Plausibility
-from hal.protocols import protocol1
 from tests.hal.fake_bus1 import SCS, STS
 from tests.hal.mixed_robot import Wires, mount, robot, ticks
+from windup.hal.plausibility import Plausibility
+from windup.hal.protocols import protocol1
 
 YES = np.array([True])
 

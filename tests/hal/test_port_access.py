@@ -3,7 +3,7 @@ import stat
 
 import pytest
 
-from hal.port_access import Person, access_remedy, remedy
+from windup.hal.port_access import Person, access_remedy, remedy
 
 ME, DIALOUT = 1000, 20
 JOIN = "sudo usermod -aG dialout $USER"
@@ -12,7 +12,7 @@ JOIN = "sudo usermod -aG dialout $USER"
 @pytest.fixture(autouse=True)
 def dialout_is_a_group(monkeypatch: pytest.MonkeyPatch) -> None:
     names = {0: "root", DIALOUT: "dialout"}
-    monkeypatch.setattr("hal.port_access._group", lambda gid: names[gid])
+    monkeypatch.setattr("windup.hal.port_access._group", lambda gid: names[gid])
 
 
 def _device(mode: int, uid: int, gid: int) -> os.stat_result:

@@ -2,8 +2,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.protocols import protocol1
-from hal.protocols.protocol2 import Span, Status
+from windup.hal.protocols import protocol1
+from windup.hal.protocols.protocol2 import Span, Status
 
 POSE = bytes([0x00, 0x08, 0, 0, 0xE8, 0x03])
 # Whole frames as the manuals print them: ROBOTIS' of protocol 1, Feetech's of its serial servos.

@@ -2,9 +2,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.protocols import protocol2
-from hal.protocols.crc16 import crc16, distance_table
-from hal.protocols.protocol2 import Span, Status
+from windup.hal.protocols import protocol2
+from windup.hal.protocols.crc16 import crc16, distance_table
+from windup.hal.protocols.protocol2 import Span, Status
 
 # Whole frames as ROBOTIS' manual of protocol 2 prints them.
 MANUAL = {

@@ -5,14 +5,14 @@ import numpy as np
 import pytest
 from serial.tools import list_ports
 
-from hal.command import JointCommand
-from hal.errors import HardwareError
-from hal.open_port import open_port, stable_url
-from hal.replug import Replug
-from hal.servo_backend import ServoBackend
-from hal.servos import servo_model
 from tests.hal.fake_bus1 import STS
 from tests.hal.mixed_robot import Wires, mount, robot, ticks
+from windup.hal.command import JointCommand
+from windup.hal.errors import HardwareError
+from windup.hal.open_port import open_port, stable_url
+from windup.hal.replug import Replug
+from windup.hal.servo_backend import ServoBackend
+from windup.hal.servos import servo_model
 
 XM = servo_model("XM430-W350")
 

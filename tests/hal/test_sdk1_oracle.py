@@ -8,13 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scservo_sdk.protocol_packet_handler import protocol_packet_handler
 
-from hal.errors import CorruptAnswerError, NoAnswerError, PortError, RefusedError, UsageError
-from hal.families import DYNAMIXEL_1, FEETECH_SCS, FEETECH_STS, Family
-from hal.protocols import protocol1
-from hal.protocols.protocol2 import Span
-from hal.sdk import SdkPort
-from hal.servo_model import ServoModel
 from tests.hal.fake_bus1 import MX, SCS, STS, fake_port1
+from windup.hal.errors import CorruptAnswerError, NoAnswerError, PortError, RefusedError, UsageError
+from windup.hal.families import DYNAMIXEL_1, FEETECH_SCS, FEETECH_STS, Family
+from windup.hal.protocols import protocol1
+from windup.hal.protocols.protocol2 import Span
+from windup.hal.sdk import SdkPort
+from windup.hal.servo_model import ServoModel
 
 IDS = [1, 2, 3]
 

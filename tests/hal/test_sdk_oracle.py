@@ -7,11 +7,11 @@ from dynamixel_sdk import COMM_SUCCESS, GroupSyncRead, GroupSyncWrite, Protocol2
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hal.errors import CorruptAnswerError, NoAnswerError, PortError, RefusedError
-from hal.protocols import protocol2
-from hal.protocols.crc16 import crc16
-from hal.sdk import DynamixelLink, SdkPackets, SdkPort
 from tests.hal.fake_bus import fake_port
+from windup.hal.errors import CorruptAnswerError, NoAnswerError, PortError, RefusedError
+from windup.hal.protocols import protocol2
+from windup.hal.protocols.crc16 import crc16
+from windup.hal.sdk import DynamixelLink, SdkPackets, SdkPort
 
 IDS = [1, 2, 3]
 HEADER_IN_DATA = bytes.fromhex("fffffd00")

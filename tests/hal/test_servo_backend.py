@@ -3,13 +3,13 @@ from math import nan, pi
 import numpy as np
 import pytest
 
-from hal.command import JointCommand
-from hal.imu.opencr import OpenCr
-from hal.servo_backend import BusPort, ServoBackend
-from hal.servo_model import ServoMount
-from hal.servos import servo_model
 from tests.hal.backend_robot import COUNT, XM430, Robot, joints_of
 from tests.hal.fake_bus import VirtualClock, fake_port
+from windup.hal.command import JointCommand
+from windup.hal.imu.opencr import OpenCr
+from windup.hal.servo_backend import BusPort, ServoBackend
+from windup.hal.servo_model import ServoMount
+from windup.hal.servos import servo_model
 
 
 def test_counts_become_joint_angles_with_sign_and_zero() -> None:

@@ -1,11 +1,11 @@
 import pytest
 
-from hal.errors import ConfigError, HardwareError, UsageError
-from hal.imu.opencr import OpenCr
-from hal.servo_backend import BusPort, ServoBackend
-from hal.servo_model import ServoMount
 from tests.hal.backend_robot import XM430, Robot, joints_of, written_registers
 from tests.hal.fake_bus import fake_port
+from windup.hal.errors import ConfigError, HardwareError, UsageError
+from windup.hal.imu.opencr import OpenCr
+from windup.hal.servo_backend import BusPort, ServoBackend
+from windup.hal.servo_model import ServoMount
 
 
 def test_configure_writes_only_what_differs() -> None:

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from hal.command import JointCommand
-from hal.errors import HardwareError
-from hal.families import family_of
-from hal.servo_backend import ServoBackend
-from hal.servo_model import ServoModel
-from hal.servo_torque import INRUSH, OFF_TIME
-from hal.servos import servo_model
 from tests.hal.fake_bus1 import AX, MX, SCS, STS
 from tests.hal.mixed_robot import Wires, mount, robot, ticks
+from windup.hal.command import JointCommand
+from windup.hal.errors import HardwareError
+from windup.hal.families import family_of
+from windup.hal.servo_backend import ServoBackend
+from windup.hal.servo_model import ServoModel
+from windup.hal.servo_torque import INRUSH, OFF_TIME
+from windup.hal.servos import servo_model
 
 XM = servo_model("XM430-W350")
 MAKES = [XM, STS, SCS, AX, MX]

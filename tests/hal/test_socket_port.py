@@ -7,11 +7,11 @@ from contextlib import ExitStack, closing
 
 import pytest
 
-from hal.errors import PortError, UsageError
-from hal.open_port import open_port
-from hal.port import SELECTABLE, Port
-from hal.socket_port import Connection
 from tests.hal.guardian.test_guardian_start import files
+from windup.hal.errors import PortError, UsageError
+from windup.hal.open_port import open_port
+from windup.hal.port import SELECTABLE, Port
+from windup.hal.socket_port import Connection
 
 PATIENCE = 20.0  # s for the machine
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from hal.imu.opencr import OpenCr
 from tests.hal.backend_robot import Robot
+from windup.hal.imu.opencr import OpenCr
 
 
 def pressing(robot: Robot, buttons: int) -> tuple[str | None, tuple[str, ...]]:

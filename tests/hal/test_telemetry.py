@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hal.command import JointCommand
-from hal.contacts import ContactSensors
-from hal.errors import TelemetryError
-from hal.guard import GuardedBackend, SafetyLimits
-from hal.joints import Joint, Joints
-from hal.observation import BaseState, ImuState, JointState, Observation
-from hal.telemetry import TelemetryReader, TelemetryWriter
-from hal.telemetry_layout import FIXED, ring_path
-from hal.torque_state import TorqueState
+from windup.hal.command import JointCommand
+from windup.hal.contacts import ContactSensors
+from windup.hal.errors import TelemetryError
+from windup.hal.guard import GuardedBackend, SafetyLimits
+from windup.hal.joints import Joint, Joints
+from windup.hal.observation import BaseState, ImuState, JointState, Observation
+from windup.hal.telemetry import TelemetryReader, TelemetryWriter
+from windup.hal.telemetry_layout import FIXED, ring_path
+from windup.hal.torque_state import TorqueState
 
 JOINTS = Joints(tuple(Joint(name, -1.0, 1.0, 10.0, 1.0) for name in ("hip", "knee")))
 CONTACTS = ContactSensors(("heel", "toe"), {"foot": ("heel", "toe")})
@@ -198,7 +198,7 @@ def test_a_reader_keeps_the_old_ring_and_sees_that_there_is_a_new_one(
 READ = """
 import sys
 from pathlib import Path
-from hal.telemetry import TelemetryReader
+from windup.hal.telemetry import TelemetryReader
 reader = TelemetryReader(Path(sys.argv[1]))
 print(reader.since()["tick"].tolist())
 """

@@ -4,9 +4,9 @@ from math import nan
 
 import pytest
 
-from hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FEETECH_SCS, FEETECH_STS, Family
-from hal.torque_cause import Evidence, judge
-from hal.torque_loss import UNPLUGGED, Loss, restarted, torque_lost
+from windup.hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FEETECH_SCS, FEETECH_STS, Family
+from windup.hal.torque_cause import Evidence, judge
+from windup.hal.torque_loss import UNPLUGGED, Loss, restarted, torque_lost
 
 HOT, LOADED = 0b100, 0b10_0000
 ALL = [DYNAMIXEL_X, DYNAMIXEL_1, FEETECH_STS, FEETECH_SCS]

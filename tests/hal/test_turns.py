@@ -2,11 +2,11 @@
 
 import pytest
 
-from hal.protocols import protocol1, protocol2
-from hal.protocols.batched import BlockRead
-from hal.protocols.batched1 import sync_read
-from hal.protocols.cyclic import CyclicRead
-from hal.protocols.protocol2 import Span
+from windup.hal.protocols import protocol1, protocol2
+from windup.hal.protocols.batched import BlockRead
+from windup.hal.protocols.batched1 import sync_read
+from windup.hal.protocols.cyclic import CyclicRead
+from windup.hal.protocols.protocol2 import Span
 
 IDS = [1, 2, 5, 9]
 OLD, NEW = b"\x11" * 6, b"\x22" * 6

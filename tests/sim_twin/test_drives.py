@@ -3,13 +3,13 @@ from math import pi
 import numpy as np
 import pytest
 
-from hal.command import JointCommand, joint_torque, shifted_goal
-from hal.joints import Array
-from robots import RobotDescription
-from sim_twin.backend import TwinBackend
-from sim_twin.rollouts import RolloutPredictor
-from sim_twin.servo_motor import KD, KP, VMAX, ServoDrive
-from sim_twin.twin import Twin
+from windup.hal.command import JointCommand, joint_torque, shifted_goal
+from windup.hal.joints import Array
+from windup.robots import RobotDescription
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.rollouts import RolloutPredictor
+from windup.sim_twin.servo_motor import KD, KP, VMAX, ServoDrive
+from windup.sim_twin.twin import Twin
 
 COUNT = 2.0 * pi / 4096
 

@@ -4,15 +4,15 @@ import mujoco
 import numpy as np
 import pytest
 
-from robots import RobotDescription, load_robot
-from sim_twin.backend import TwinBackend
-from sim_twin.clearance import FootClearance
-from sim_twin.foot_level import FootLevel
-from sim_twin.plant import Plant
-from sim_twin.push import Push
-from sim_twin.terrain import Ground
-from sim_twin.twin import Twin
-from sim_twin.world import World, build_model
+from windup.robots import RobotDescription, load_robot
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.clearance import FootClearance
+from windup.sim_twin.foot_level import FootLevel
+from windup.sim_twin.plant import Plant
+from windup.sim_twin.push import Push
+from windup.sim_twin.terrain import Ground
+from windup.sim_twin.twin import Twin
+from windup.sim_twin.world import World, build_model
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +72,7 @@ def test_a_plant_changes_mass_gains_friction_delay_and_supply(op3: RobotDescript
 
 
 def test_a_plant_is_stiffer_whatever_gains_are_sent(op3: RobotDescription) -> None:
-    from hal.command import JointCommand
+    from windup.hal.command import JointCommand
 
     command = JointCommand.hold(op3.joints, op3.stance)
     usual = TwinBackend(Twin(op3)).write(command).stiffness

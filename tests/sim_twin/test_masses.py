@@ -6,11 +6,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from robots import load_robot
-from sim_twin.masses import keep_masses
-from sim_twin.plant import Plant
-from sim_twin.world import World, build_model
 from tests.shapes import SHAPES, Shape, write_shape
+from windup.robots import load_robot
+from windup.sim_twin.masses import keep_masses
+from windup.sim_twin.plant import Plant
+from windup.sim_twin.world import World, build_model
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.name)

@@ -2,8 +2,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from hal.servos import servo_model, servo_names
-from tools import bench_servo
+from windup.hal.servos import servo_model, servo_names
+from windup.tools import bench_servo
 
 SHEET = bench_servo.measure_servos("op3")
 

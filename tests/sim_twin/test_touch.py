@@ -1,6 +1,6 @@
-from robots import load_robot
-from sim_twin.touch import TouchWatch
-from sim_twin.twin import Twin
+from windup.robots import load_robot
+from windup.sim_twin.touch import TouchWatch
+from windup.sim_twin.twin import Twin
 
 
 def test_feet_may_touch_and_are_not_noted() -> None:

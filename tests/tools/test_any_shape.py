@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from robots import load_robot
 from tests.shapes import ARM, ONE_LEG, QUADRUPED, SHAPES, THIRTY, Shape, joint_names, write_shape
 from tests.tools.conftest import Windup, refusal
-from tools.servo_bus import ServoBus
+from windup.robots import load_robot
+from windup.tools.servo_bus import ServoBus
 
 EVERY = pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.name)
 WALKING = {
@@ -29,15 +29,15 @@ def test_it_loads_with_all_its_joints(shape: Shape, tmp_path: Path) -> None:
 
 
 @EVERY
-def test_it_stands_on_its_twin(windup: Windup, shape: Shape, tmp_path: Path) -> None:
-    ran = windup("stand", write_shape(tmp_path / "r", shape), "--seconds", "0.5", "--json", "-")
+def test_it_stands_on_its_twin(shell: Windup, shape: Shape, tmp_path: Path) -> None:
+    ran = shell("stand", write_shape(tmp_path / "r", shape), "--seconds", "0.5", "--json", "-")
     assert ran.status == 0, ran.err
     assert ran.json["largest_error_deg"] < 3.0
 
 
 @EVERY
-def test_it_plays_a_graph(windup: Windup, shape: Shape, tmp_path: Path) -> None:
-    ran = windup("play", write_shape(tmp_path / "r", shape), "nod", "--json", "-")
+def test_it_plays_a_graph(shell: Windup, shape: Shape, tmp_path: Path) -> None:
+    ran = shell("play", write_shape(tmp_path / "r", shape), "nod", "--json", "-")
     assert (ran.status, ran.json["reason"]) == (0, "done"), ran.err
 
 
@@ -74,15 +74,15 @@ def test_ground_is_not_for_an_arm(nothing_opens: None, tmp_path: Path) -> None:
     assert "is fixed" in refusal(["stand", str(folder), "--slope", "5"])
 
 
-def test_ground_takes_a_floor_to_be_made_of(windup: Windup, tmp_path: Path) -> None:
+def test_ground_takes_a_floor_to_be_made_of(shell: Windup, tmp_path: Path) -> None:
     model = write_shape(tmp_path / "r", QUADRUPED) / "model.xml"
     model.write_text(model.read_text().replace('type="plane" size="0 0 0.05"', 'size="0.1"'))
-    ran = windup("stand", tmp_path / "r", "--slope", "5")
+    ran = shell("stand", tmp_path / "r", "--slope", "5")
     assert ran.status == 2 and "has no plane to make other ground of" in ran.err
 
 
-def test_the_arm_of_the_package_waves_and_folds_itself(windup: Windup) -> None:
-    ran = windup("play", "so101", "wave", "--json", "-")
+def test_the_arm_of_the_package_waves_and_folds_itself(shell: Windup) -> None:
+    ran = shell("play", "so101", "wave", "--json", "-")
     assert (ran.status, ran.json["reason"]) == (0, "done"), ran.err
     assert ran.json["peak_load"] < 1.0
 

@@ -13,8 +13,8 @@ import tomli_w
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robots import load_robot
 from tests.tools.conftest import refusal
+from windup.robots import load_robot
 
 FILES = {
     "robot.toml": "stand {}",

@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
-from hal.errors import UsageError
-from sim_twin.twin import Twin
 from tests.tools.conftest import Ran, Windup
-from tools import Robot
-from tools.walk_options import WalkOptions
+from windup import Robot
+from windup.hal.errors import UsageError
+from windup.sim_twin.twin import Twin
+from windup.tools.walk_options import WalkOptions
 
 GAIT = """
 title = "Bow"
@@ -100,11 +100,9 @@ OPTIONS = {
 
 @pytest.mark.usefixtures("still")
 @pytest.mark.parametrize(("line", "message"), OPTIONS.values(), ids=OPTIONS.keys())
-def test_bad_options_are_one_line_and_nothing_moves(
-    windup: Windup, line: str, message: str
-) -> None:
+def test_bad_options_are_one_line_and_nothing_moves(shell: Windup, line: str, message: str) -> None:
     command = line.split()[0]
-    refused(windup(*line.split(), "--json", "-"), command, message)
+    refused(shell(*line.split(), "--json", "-"), command, message)
 
 
 @pytest.mark.parametrize(
@@ -112,17 +110,17 @@ def test_bad_options_are_one_line_and_nothing_moves(
     ["walk op3 --steps many", "walk op3 --sampling best", "walk", "walk op3 --stepps 3", "dance"],
 )
 def test_what_the_command_line_cannot_mean_is_status_2_and_no_output(
-    windup: Windup, line: str
+    shell: Windup, line: str
 ) -> None:
-    ran = windup(*line.split())
+    ran = shell(*line.split())
     assert (ran.status, ran.out) == (2, "")
     assert "Traceback" not in ran.err
 
 
 def test_what_the_command_line_cannot_mean_is_json_where_json_was_asked_for(
-    windup: Windup,
+    shell: Windup,
 ) -> None:
-    ran = windup("walk", "op3", "--steps", "many", "--json", "-")
+    ran = shell("walk", "op3", "--steps", "many", "--json", "-")
     assert ran.status == 2
     assert ran.json["error"]["exit_status"] == 2
 
@@ -130,9 +128,9 @@ def test_what_the_command_line_cannot_mean_is_json_where_json_was_asked_for(
 @pytest.mark.usefixtures("still")
 @pytest.mark.parametrize("option", ["--json", "--plot"])
 def test_a_result_that_cannot_be_written_is_found_out_first(
-    windup: Windup, tmp_path: Path, option: str
+    shell: Windup, tmp_path: Path, option: str
 ) -> None:
-    ran = windup("walk", "op3", option, tmp_path / "none" / "result.png")
+    ran = shell("walk", "op3", option, tmp_path / "none" / "result.png")
     assert ran.status == 2
     assert "cannot be written: there is no folder" in ran.err
 
@@ -169,13 +167,13 @@ ROBOT = {
 @pytest.mark.usefixtures("still")
 @pytest.mark.parametrize(("old", "new", "message"), ROBOT.values(), ids=ROBOT.keys())
 def test_a_broken_robot_folder_is_one_line_with_file_and_key(
-    windup: Windup, my_op3: Path, old: str, new: str, message: str
+    shell: Windup, my_op3: Path, old: str, new: str, message: str
 ) -> None:
     path = my_op3 / "robot.toml"
     text = path.read_text()
     assert old in text
     path.write_text(text.replace(old, new, 1))
-    ran = windup("walk", my_op3, "--json", "-")
+    ran = shell("walk", my_op3, "--json", "-")
     refused(ran, "walk", message)
     assert f"windup: {path}: " in ran.err
 
@@ -210,25 +208,25 @@ GRAPH = {
 @pytest.mark.usefixtures("still")
 @pytest.mark.parametrize(("old", "new", "message"), GRAPH.values(), ids=GRAPH.keys())
 def test_a_broken_gait_is_one_line_with_file_and_key(
-    windup: Windup, my_op3: Path, old: str, new: str, message: str
+    shell: Windup, my_op3: Path, old: str, new: str, message: str
 ) -> None:
     path = my_op3 / "gaits" / "bow.toml"
     assert old in GAIT
     path.write_text(GAIT.replace(old, new, 1))
-    ran = windup("play", my_op3, "bow", "--json", "-")
+    ran = shell("play", my_op3, "bow", "--json", "-")
     refused(ran, "play", message)
     assert f"windup: {path}: " in ran.err
 
 
-def test_a_sound_folder_of_ones_own_is_played(windup: Windup, my_op3: Path) -> None:
+def test_a_sound_folder_of_ones_own_is_played(shell: Windup, my_op3: Path) -> None:
     (my_op3 / "gaits" / "bow.toml").write_text(GAIT)
-    ran = windup("play", my_op3, "bow", "--json", "-")
+    ran = shell("play", my_op3, "bow", "--json", "-")
     assert ran.status == 0
     assert ran.json["reason"] == "done"
 
 
 def test_a_reader_that_goes_away_leaves_no_traceback() -> None:
-    command = [sys.executable, "-c", "from tools.cli import main; main()", "push", "--help"]
+    command = [sys.executable, "-c", "from windup.tools.cli import main; main()", "push", "--help"]
     run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert run.stdout is not None
     run.stdout.close()

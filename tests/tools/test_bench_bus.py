@@ -1,8 +1,8 @@
 import pytest
 
-from tools.bench_bus import bench_memory, wire_bytes
-from tools.bench_bus1 import Vendor
-from tools.bench_wire import Maker, cycle_over_wire
+from windup.tools.bench_bus import bench_memory, wire_bytes
+from windup.tools.bench_bus1 import Vendor
+from windup.tools.bench_wire import Maker, cycle_over_wire
 
 
 def test_a_cycle_of_20_servos_has_the_bytes_that_the_findings_count() -> None:

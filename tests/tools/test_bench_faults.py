@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 
-from hal.errors import UsageError
-from sim_twin.wire.fault_rule import ANSWERS, REQUESTS
-from tools import bench_faults
-from tools.soak import BREAKDOWNS, Soak, Tally
-from tools.soak_rig import FAMILIES, SoakRig
-from tools.soak_table import fault_table
-from tools.soak_verdict import (
+from windup.hal.errors import UsageError
+from windup.sim_twin.wire.fault_rule import ANSWERS, REQUESTS
+from windup.tools import bench_faults
+from windup.tools.soak import BREAKDOWNS, Soak, Tally
+from windup.tools.soak_rig import FAMILIES, SoakRig
+from windup.tools.soak_table import fault_table
+from windup.tools.soak_verdict import (
     CHANCE,
     KINDS,
     LATE_ADAPTER,

@@ -3,8 +3,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hal.errors import UsageError
-from tools.bench_jitter import WakeLog, _compare, compile_c, run_c
+from windup.hal.errors import UsageError
+from windup.tools.bench_jitter import WakeLog, _compare, compile_c, run_c
 
 
 class SleepyClock:

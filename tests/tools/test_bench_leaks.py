@@ -5,15 +5,15 @@ from collections.abc import Iterator
 
 import pytest
 
-from hal.errors import WindupError
-from hal.telemetry_layout import runtime_folder
-from robots import load_robot
-from sim_twin.terrain import Ground
-from sim_twin.wire.worlds import _running
-from sim_twin.world import World
-from tools.bench_leaks import COUNTED, Traces, clean, leaks, open_once
-from tools.robot import Robot
-from tools.stack import limp
+from windup.hal.errors import WindupError
+from windup.hal.telemetry_layout import runtime_folder
+from windup.robots import load_robot
+from windup.sim_twin.terrain import Ground
+from windup.sim_twin.wire.worlds import _running
+from windup.sim_twin.world import World
+from windup.tools.bench_leaks import COUNTED, Traces, clean, leaks, open_once
+from windup.tools.robot import Robot
+from windup.tools.stack import limp
 
 
 @pytest.fixture

@@ -1,10 +1,10 @@
 import pytest
 
-import sim_twin.wire as wire
-from hal.errors import WindupError
-from robots import load_robot
-from tools.bench_unplug import script, watch
-from tools.stack import servo_backend
+import windup.sim_twin.wire as wire
+from windup.hal.errors import WindupError
+from windup.robots import load_robot
+from windup.tools.bench_unplug import script, watch
+from windup.tools.stack import servo_backend
 
 
 @pytest.mark.parametrize(("robot", "bus"), [("duck", "body"), ("op3", "body")])

@@ -15,8 +15,8 @@ import pytest
 import rustypot
 import scservo_sdk as scs
 
-from robots import load_robot
 from tests.tools.test_emulate import said, start
+from windup.robots import load_robot
 
 IDS = [20, 21, 22, 23, 24, 30, 31, 32, 33, 10, 11, 12, 13, 14]
 MODEL = 777  # an STS3215, as LeRobot's table of models has it

@@ -4,9 +4,9 @@ import sys
 import pytest
 
 from tests.tools.conftest import Windup, refusal
-from tools.command import Command
-from tools.command_table import COMMANDS, Entry
-from tools.version import installed_version
+from windup.tools.command import Command
+from windup.tools.command_table import COMMANDS, Entry
+from windup.tools.version import installed_version
 
 LINES = {
     "misspelt": ("walk op3 --hlep", "walk: unknown option --hlep (did you mean --help?)"),
@@ -39,8 +39,8 @@ def test_a_wrong_word_is_one_line_with_the_near_one(line: str, said: str) -> Non
 
 
 @pytest.mark.parametrize("word", ["-h", "--help"])
-def test_the_help_fits_one_screen(windup: Windup, word: str) -> None:
-    ran = windup(word)
+def test_the_help_fits_one_screen(shell: Windup, word: str) -> None:
+    ran = shell(word)
     lines = ran.out.splitlines()
     assert (ran.status, ran.err) == (0, "")
     assert len(lines) < 24
@@ -50,10 +50,10 @@ def test_the_help_fits_one_screen(windup: Windup, word: str) -> None:
 
 @pytest.mark.parametrize("line", [["--help"], ["walk", "--help"]])
 def test_help_that_nobody_can_read_is_told(
-    windup: Windup, monkeypatch: pytest.MonkeyPatch, line: list[str]
+    shell: Windup, monkeypatch: pytest.MonkeyPatch, line: list[str]
 ) -> None:
     monkeypatch.setattr("sys.stdout", None)
-    ran = windup(*line)
+    ran = shell(*line)
     assert (ran.status, ran.err) == (2, "windup: standard output cannot be written: it is closed\n")
 
 
@@ -68,19 +68,19 @@ def test_the_table_of_commands_knows_where_each_is(entry: Entry) -> None:
 
 def test_the_overview_imports_no_command() -> None:
     code = (
-        "import sys\nfrom tools.cli import run\nstatus = run(['--help'])\n"
+        "import sys\nfrom windup.tools.cli import run\nstatus = run(['--help'])\n"
         "print(sorted({'mujoco', 'tyro', 'scipy'} & set(sys.modules)), status)"
     )
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert ran.stdout.splitlines()[-1] == "[] 0"
 
 
-def test_the_version_is_told(windup: Windup) -> None:
-    assert windup("--version").out == f"windup {installed_version()}\n"
+def test_the_version_is_told(shell: Windup) -> None:
+    assert shell("--version").out == f"windup {installed_version()}\n"
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_every_command_has_its_own_help(windup: Windup, name: str) -> None:
-    ran = windup(name, "--help")
+def test_every_command_has_its_own_help(shell: Windup, name: str) -> None:
+    ran = shell(name, "--help")
     assert (ran.status, ran.err) == (0, "")
     assert f"usage: windup {name} " in ran.out

@@ -6,8 +6,9 @@ import pytest
 
 from tests.shapes import ARM, write_shape
 from tests.tools.conftest import Windup
-from tools import Robot, doubt_once
-from tools.servo_bus import ServoBus
+from windup import Robot
+from windup.tools import doubt_once
+from windup.tools.servo_bus import ServoBus
 
 
 @pytest.fixture
@@ -21,10 +22,10 @@ def doubtful(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_the_first_command_points_to_the_doubts(
-    windup: Windup, doubtful: Path, caplog: pytest.LogCaptureFixture
+    shell: Windup, doubtful: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     for _ in range(2):
-        assert windup("stand", doubtful, "--seconds", "0.02").status == 0
+        assert shell("stand", doubtful, "--seconds", "0.02").status == 0
     assert caplog.messages == [
         f"1 thing is doubtful about the MJCF of arm: run `windup robots '{doubtful}'`"
     ]

@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 import serial
 
-from sim_twin.wire.frames1 import encode
 from tests.tools.conftest import Windup
-from tools.cli import run
+from windup.sim_twin.wire.frames1 import encode
+from windup.tools.cli import run
 
-COMMAND = [sys.executable, "-c", "from tools.cli import main; main()", "emulate"]
+COMMAND = [sys.executable, "-c", "from windup.tools.cli import main; main()", "emulate"]
 STS = "twin://bench?servos=STS3215:1-3"
 
 
@@ -100,14 +100,14 @@ def test_what_cannot_be_is_said(
     assert message in capsys.readouterr().err
 
 
-def test_a_tcp_port_that_is_taken_is_one_line(windup: Windup) -> None:
+def test_a_tcp_port_that_is_taken_is_one_line(shell: Windup) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
-        ran = windup("emulate", STS, "--tcp", taken.getsockname()[1])
+        ran = shell("emulate", STS, "--tcp", taken.getsockname()[1])
     assert ran.status == 3
     assert "windup: cannot serve: Address already in use; give another --pty" in ran.err
 
 
-def test_a_pty_in_no_folder_is_one_line(windup: Windup, tmp_path: Path) -> None:
-    ran = windup("emulate", STS, "--pty", tmp_path / "none" / "bus")
+def test_a_pty_in_no_folder_is_one_line(shell: Windup, tmp_path: Path) -> None:
+    ran = shell("emulate", STS, "--pty", tmp_path / "none" / "bus")
     assert (ran.status, ran.err.count("\n")) == (2, 1)
     assert "cannot be written: there is no folder" in ran.err

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from tools.cli import run
-from tools.robot import Robot
+from windup.tools.cli import run
+from windup.tools.robot import Robot
 
 
 def test_the_estimate_of_a_walking_and_pushed_op3_is_within_its_limits(tmp_path: Path) -> None:
@@ -26,8 +26,8 @@ def test_the_estimate_of_a_walking_and_pushed_op3_is_within_its_limits(tmp_path:
 
 
 def test_an_estimate_over_its_limits_fails(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tools.estimate.VELOCITY_LIMIT", 1e-6)
-    monkeypatch.setattr("tools.estimate.TRIALS", ("stand",))
+    monkeypatch.setattr("windup.tools.estimate.VELOCITY_LIMIT", 1e-6)
+    monkeypatch.setattr("windup.tools.estimate.TRIALS", ("stand",))
     assert run(["estimate", "op3"]) == 1
 
 
@@ -36,8 +36,8 @@ def test_an_estimate_over_its_limits_fails(monkeypatch: pytest.MonkeyPatch) -> N
 def test_op3_walks_on_its_own_sensors(
     switches: bool, rate: float | None, delay: float | None
 ) -> None:
-    from sim_twin.imu_errors import OPENCR
-    from tools.build import build_estimator
+    from windup.sim_twin.imu_errors import OPENCR
+    from windup.tools.build import build_estimator
 
     with Robot.open("op3", rate=rate, delay=delay, noise=0.2, state="estimated") as robot:
         estimator = build_estimator(robot.description, OPENCR.lag, switches=switches)
@@ -50,7 +50,7 @@ def test_op3_walks_on_its_own_sensors(
 def test_an_estimate_through_a_wire_is_judged_by_the_twin_behind_it(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr("tools.estimate.TRIALS", ("stand",))
+    monkeypatch.setattr("windup.tools.estimate.TRIALS", ("stand",))
     target = tmp_path / "estimate.json"
     line = "estimate duck --port twin://duck?clock=virtual --faults drop:0.01 --json"
     assert run([*line.split(), str(target)]) == 0

@@ -3,11 +3,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hal.errors import ImuError
-from robots import load_robot, robot_names
 from tests.tools.conftest import Windup
-from tools.gaits import find_gait
-from tools.robot import Robot
+from windup.hal.errors import ImuError
+from windup.robots import load_robot, robot_names
+from windup.tools.gaits import find_gait
+from windup.tools.robot import Robot
 
 AT = 3.0
 FAULTS = {
@@ -70,9 +70,9 @@ def test_a_walk_after_a_stand_without_an_imu_stops() -> None:
         assert not robot.armed
 
 
-def test_a_stride_needs_the_imu(windup: Windup) -> None:
+def test_a_stride_needs_the_imu(shell: Windup) -> None:
     line = "stride op3 --port twin://op3 --seconds 4 --json - --faults imu_silent:at=2.5"
-    ran = windup(*line.split())
+    ran = shell(*line.split())
     assert (ran.status, ran.json["error"]["kind"]) == (3, "Imu")
 
 

@@ -5,17 +5,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.footprints import Footprint, read_footprints
-from hal.errors import UsageError
-from robots import RobotDescription
 from tests.tools.conftest import Windup
-from tools.directed import build_checks, feet_of
+from windup.control.footprints import Footprint, read_footprints
+from windup.hal.errors import UsageError
+from windup.robots import RobotDescription
+from windup.tools.directed import build_checks, feet_of
 
 
 @pytest.mark.parametrize("more", [(), ("--state", "estimated"), ("--port", "twin://op3")])
-def test_a_foot_comes_down_where_it_is_told(windup: Windup, more: tuple[str, ...]) -> None:
+def test_a_foot_comes_down_where_it_is_told(shell: Windup, more: tuple[str, ...]) -> None:
     where = ("--to", "0.05", "0.12", "--yaw", "10")
-    ran = windup("step", "op3", "--foot", "left", *where, *more, "--json", "-")
+    ran = shell("step", "op3", "--foot", "left", *where, *more, "--json", "-")
     (fall,) = ran.json["falls"]
     assert (ran.status, ran.json["good"], ran.json["reason"]) == (0, True, "done")
     assert fall["foot"] == "left_foot"
@@ -24,29 +24,29 @@ def test_a_foot_comes_down_where_it_is_told(windup: Windup, more: tuple[str, ...
 
 
 def test_steps_of_a_file_are_walked_in_the_frame_of_the_start(
-    windup: Windup, tmp_path: Path
+    shell: Windup, tmp_path: Path
 ) -> None:
     path = tmp_path / "two.toml"
     rows = [("right", 0.04, -0.06), ("left", 0.04, 0.06)]
     steps = "".join(f'[[step]]\nfoot = "{foot}"\nx = {x}\ny = {y}\n' for foot, x, y in rows)
     path.write_text('frame = "start"\n' + steps)
-    ran = windup("footprints", "op3", path, "--json", "-")
+    ran = shell("footprints", "op3", path, "--json", "-")
     assert (ran.status, ran.json["stepped"]) == (0, 2)
     assert all(fall["away_m"] < 0.01 for fall in ran.json["falls"])
     assert "took 2 of 2 steps" in ran.err
 
 
 def test_random_footprints_are_written_as_a_file_that_can_be_walked(
-    windup: Windup, tmp_path: Path
+    shell: Windup, tmp_path: Path
 ) -> None:
-    first = windup("footprints", "op3", "--random", "20", "--seed", "3", "--write")
+    first = shell("footprints", "op3", "--random", "20", "--seed", "3", "--write")
     path = tmp_path / "random.toml"
     path.write_text(first.out)
-    again = windup("footprints", "op3", path, "--write")
+    again = shell("footprints", "op3", path, "--write")
     assert (first.status, again.status) == (0, 0)
     assert first.out == again.out
     assert first.out.count("[[step]]") == 20
-    other = windup("footprints", "op3", "--random", "20", "--seed", "4", "--write")
+    other = shell("footprints", "op3", "--random", "20", "--seed", "4", "--write")
     assert other.out != first.out
 
 
@@ -65,22 +65,22 @@ def test_random_footprints_are_written_as_a_file_that_can_be_walked(
     ],
 )
 def test_a_step_that_cannot_be_is_refused_in_one_line(
-    windup: Windup, arguments: tuple[str, ...], said: str
+    shell: Windup, arguments: tuple[str, ...], said: str
 ) -> None:
-    ran = windup("step", "op3", "--foot", *arguments)
+    ran = shell("step", "op3", "--foot", *arguments)
     assert ran.status == 2
     assert said in ran.err
     assert len(ran.err.strip().splitlines()) == 1
 
 
-def test_a_robot_without_the_file_is_told_who_has_it(windup: Windup) -> None:
-    ran = windup("step", "duck", "--foot", "left", "--to", "0", "0.1")
+def test_a_robot_without_the_file_is_told_who_has_it(shell: Windup) -> None:
+    ran = shell("step", "duck", "--foot", "left", "--to", "0", "0.1")
     assert (ran.status, "robots that have: human, human_handstand, op3" in ran.err) == (2, True)
 
 
-def test_footprints_need_a_file_or_a_number(windup: Windup) -> None:
+def test_footprints_need_a_file_or_a_number(shell: Windup) -> None:
     for arguments in ((), ("--random", "-1"), ("prints.toml", "--random", "3")):
-        assert windup("footprints", "op3", *arguments).status == 2
+        assert shell("footprints", "op3", *arguments).status == 2
 
 
 def test_a_crossing_later_in_a_file_is_found_before_anything_moves(op3: RobotDescription) -> None:

@@ -5,15 +5,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.footprints import read_footprints
-from robots import RobotDescription
 from tests.tools.conftest import Windup
-from tools.directed import build_checks, feet_of
+from windup.control.footprints import read_footprints
+from windup.robots import RobotDescription
+from windup.tools.directed import build_checks, feet_of
 
 
-def test_the_human_puts_a_foot_where_it_is_told(windup: Windup) -> None:
+def test_the_human_puts_a_foot_where_it_is_told(shell: Windup) -> None:
     where = ("--to", "0.2", "0.2", "--yaw", "15", "--duration", "0.5")
-    ran = windup("step", "human", "--foot", "left", *where, "--json", "-")
+    ran = shell("step", "human", "--foot", "left", *where, "--json", "-")
     (fall,) = ran.json["falls"]
     assert (ran.status, ran.json["good"], ran.json["reason"]) == (0, True, "done")
     assert np.hypot(fall["place"]["x"] - 0.2, fall["place"]["y"] - 0.2) < 0.03

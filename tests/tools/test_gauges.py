@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from hal.contacts import ContactSensors
-from hal.observation import BaseState, JointState, Observation
-from tools.gauges import Gauges
+from windup.hal.contacts import ContactSensors
+from windup.hal.observation import BaseState, JointState, Observation
+from windup.tools.gauges import Gauges
 
 CONTACTS = ContactSensors(("left", "right"), {"left": ("left",), "right": ("right",)})
 

@@ -6,10 +6,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from control.footprints import read_footprints
-from robots import RobotDescription, load_robot
 from tests.tools.conftest import Windup
-from tools.directed import build_checks, feet_of
+from windup.control.footprints import read_footprints
+from windup.robots import RobotDescription, load_robot
+from windup.tools.directed import build_checks, feet_of
 
 
 @pytest.fixture(scope="module")
@@ -55,17 +55,17 @@ def test_it_starts_with_its_weight_over_flat_hands(handstand: RobotDescription) 
         np.testing.assert_allclose(hand.xmat.reshape(3, 3), np.eye(3), atol=1e-3)
 
 
-def test_it_steps_with_a_hand_where_it_is_told(windup: Windup) -> None:
+def test_it_steps_with_a_hand_where_it_is_told(shell: Windup) -> None:
     where = ("--to", "0.1", "0.26", "--state", "estimated", "--json", "-")
-    ran = windup("step", "human_handstand", "--foot", "left", *where)
+    ran = shell("step", "human_handstand", "--foot", "left", *where)
     (fall,) = ran.json["falls"]
     assert (ran.status, fall["foot"], ran.json["reason"]) == (0, "left_hand", "done")
     assert np.hypot(fall["place"]["x"] - 0.1, fall["place"]["y"] - 0.26) < 0.03
 
 
-def test_a_push_makes_it_step_with_a_hand(windup: Windup) -> None:
+def test_a_push_makes_it_step_with_a_hand(shell: Windup) -> None:
     push = ("--impulse", "30", "--at", "0.5", "--way", "predictive", "--json", "-")
-    ran = windup("push", "human_handstand", *push)
+    ran = shell("push", "human_handstand", *push)
     assert (ran.status, ran.json["steps"]) == (0, 1)
 
 

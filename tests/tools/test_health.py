@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from hal.command import JointCommand
-from hal.guard import GuardedBackend, SafetyLimits
-from hal.observation import ImuState, JointState, Observation
-from hal.telemetry import TelemetryReader, TelemetryWriter
-from robots import load_robot
-from sim_twin.backend import TwinBackend
-from sim_twin.twin import Twin
-from tools.cli import run
-from tools.diagnosis import Diagnosis, Limits
-from tools.health import picture
-from tools.robot import Robot
+from windup.hal.command import JointCommand
+from windup.hal.guard import GuardedBackend, SafetyLimits
+from windup.hal.observation import ImuState, JointState, Observation
+from windup.hal.telemetry import TelemetryReader, TelemetryWriter
+from windup.robots import load_robot
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.twin import Twin
+from windup.tools.cli import run
+from windup.tools.diagnosis import Diagnosis, Limits
+from windup.tools.health import picture
+from windup.tools.robot import Robot
 
 OP3 = load_robot("op3")
 LIMITS = Limits.of(OP3)

@@ -3,13 +3,13 @@ from dataclasses import dataclass, field
 
 import pytest
 
-import tools.idle
-from hal.errors import StaleStateError, UsageError, WindupError
-from hal.guard import GuardedBackend, SafetyLimits
-from hal.observation import Observation
+import windup.tools.idle
 from tests.small_world import JOINTS, FakeBackend
-from tools.idle import IdleKeeper
-from tools.interrupts import check_not_interrupted, forget_interruption
+from windup.hal.errors import StaleStateError, UsageError, WindupError
+from windup.hal.guard import GuardedBackend, SafetyLimits
+from windup.hal.observation import Observation
+from windup.tools.idle import IdleKeeper
+from windup.tools.interrupts import check_not_interrupted, forget_interruption
 
 
 @dataclass
@@ -66,7 +66,7 @@ def test_a_button_ends_the_hold_at_once_and_nothing_arms_by_itself(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     stopped = Stopped()
-    monkeypatch.setattr(tools.idle, "pressed_button", lambda backend: "the mode button")
+    monkeypatch.setattr(windup.tools.idle, "pressed_button", lambda backend: "the mode button")
     keeper = IdleKeeper(guarded(FakeBackend()), 60.0, lambda: None, stopped)
     assert stopped.said.wait(10.0) and stopped.error is None
     keeper.end()

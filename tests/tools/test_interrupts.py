@@ -4,17 +4,17 @@ from collections.abc import Iterator
 
 import pytest
 
-from hal.errors import UsageError
-from hal.observation import Observation
-from tools.interrupts import (
+from windup.hal.errors import UsageError
+from windup.hal.observation import Observation
+from windup.tools.interrupts import (
     RunInterruptedError,
     check_not_interrupted,
     counted_signals,
     forget_interruption,
     note_interruption,
 )
-from tools.robot import Robot
-from tools.servo_bus import ServoBus
+from windup.tools.robot import Robot
+from windup.tools.servo_bus import ServoBus
 
 
 @pytest.fixture(autouse=True)

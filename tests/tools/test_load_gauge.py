@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.small_world import JOINTS, N, observation
-from tools.load_gauge import LoadGauge
+from windup.tools.load_gauge import LoadGauge
 
 
 def looked(shares: list[list[float]]) -> LoadGauge:

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from hal.errors import UsageError
-from hal.ranges import Range
 from tests.tools.conftest import refusal
-from tools import Robot
-from tools.command_table import COMMANDS
+from windup import Robot
+from windup.hal.errors import UsageError
+from windup.hal.ranges import Range
+from windup.tools.command_table import COMMANDS
 
 LINES = {
     "walk": "walk op3 --port /dev/ttyUSB9 --arm",

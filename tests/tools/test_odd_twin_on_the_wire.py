@@ -1,15 +1,15 @@
 import pytest
 
-from hal.errors import UsageError
-from sim_twin.terrain import Ground
-from sim_twin.world import World
 from tests.tools.conftest import Windup
-from tools.robot import Robot
+from windup.hal.errors import UsageError
+from windup.sim_twin.terrain import Ground
+from windup.sim_twin.world import World
+from windup.tools.robot import Robot
 
 
-def test_a_random_plant_walks_through_the_wire(windup: Windup) -> None:
+def test_a_random_plant_walks_through_the_wire(shell: Windup) -> None:
     line = "walk op3 --port twin://op3 --plant 3 --speed 0.15 --steps 6 --json -"
-    ran = windup(*line.split())
+    ran = shell(*line.split())
     assert (ran.status, ran.json["fell"], ran.json["steps"]) == (0, False, 6)
 
 

@@ -5,7 +5,7 @@ import sys
 
 STUBBORN = """
 import multiprocessing, os, signal, sys, time
-from tools.parallel import side_by_side
+from windup.tools.parallel import side_by_side
 
 def work(item):
     signal.signal(signal.SIGTERM, lambda *_: None)  # as a robot's loop, which ends in its own time

@@ -2,9 +2,9 @@ from pathlib import Path
 
 import pytest
 
-from hal.errors import OutputError, UsageError
 from tests.tools.conftest import Windup, refusal
-from tools.picture import check_picture, load_pyplot, save_picture
+from windup.hal.errors import OutputError, UsageError
+from windup.tools.picture import check_picture, load_pyplot, save_picture
 
 
 def test_a_picture_that_can_be_drawn_is_not_complained_about(tmp_path: Path) -> None:
@@ -30,7 +30,7 @@ def test_a_picture_that_cannot_be_drawn_is_refused_first(
 
 
 def test_a_missing_matplotlib_is_told_first(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tools.picture.find_spec", lambda name: None)
+    monkeypatch.setattr("windup.tools.picture.find_spec", lambda name: None)
     with pytest.raises(UsageError, match=r"--plot needs matplotlib: pip install"):
         check_picture(Path("walk.png"))
 
@@ -58,10 +58,10 @@ def test_a_plot_that_nothing_would_draw_is_refused(line: str, said: str) -> None
     assert said in refusal(line.split())
 
 
-def test_a_picture_that_is_lost_takes_nothing_along(windup: Windup, tmp_path: Path) -> None:
+def test_a_picture_that_is_lost_takes_nothing_along(shell: Windup, tmp_path: Path) -> None:
     full = tmp_path / "full.png"
     full.symlink_to("/dev/full")
-    ran = windup("walk", "op3", "--steps", 1, "--open-loop", "--plot", full, "--json", "-")
+    ran = shell("walk", "op3", "--steps", 1, "--open-loop", "--plot", full, "--json", "-")
     assert (ran.status, ran.json["steps"]) == (1, 1)
     assert f"windup: {full} cannot be written: No space left" in ran.err
     assert "op3 walked 1 steps" in ran.err

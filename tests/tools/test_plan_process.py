@@ -9,18 +9,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.planner import StepPlanner, StepRequest
-from hal.controller import Stopwatch
-from hal.errors import PlannerError
-from hal.joints import Array
-from robots import load_robot
-from sim_twin.backend import TwinBackend
-from sim_twin.rollouts import RolloutPredictor
-from sim_twin.twin import Twin
-from tools.build import build_walk
-from tools.plan_process import ProcessPlanner, plan_aside
-from tools.plan_worker import Question, Task, _newest
-from tools.walk_options import WalkOptions
+from windup.control.planner import StepPlanner, StepRequest
+from windup.hal.controller import Stopwatch
+from windup.hal.errors import PlannerError
+from windup.hal.joints import Array
+from windup.robots import load_robot
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.rollouts import RolloutPredictor
+from windup.sim_twin.twin import Twin
+from windup.tools.build import build_walk
+from windup.tools.plan_process import ProcessPlanner, plan_aside
+from windup.tools.plan_worker import Question, Task, _newest
+from windup.tools.walk_options import WalkOptions
 
 OP3 = load_robot("op3")
 DT = 0.004

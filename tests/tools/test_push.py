@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
-from tools.cli import run
-from tools.envelope_tables import summarise
-from tools.push import Push
-from tools.push_edge import Search, find_edge
-from tools.push_trial import PushPlan
+from windup.tools.cli import run
+from windup.tools.envelope_tables import summarise
+from windup.tools.push import Push
+from windup.tools.push_edge import Search, find_edge
+from windup.tools.push_trial import PushPlan
 
 
 def pushed(capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, str]:

@@ -7,11 +7,11 @@ from pathlib import Path
 import mujoco
 import pytest
 
-from tools.cli import run
-from tools.forbid import forbidden
-from tools.landings import Landings, landings_said
-from tools.robot import Robot
-from tools.stepping import footing_of, stepping_stance
+from windup.tools.cli import run
+from windup.tools.forbid import forbidden
+from windup.tools.landings import Landings, landings_said
+from windup.tools.robot import Robot
+from windup.tools.stepping import footing_of, stepping_stance
 
 LINE = ["push", "op3", "--impulse", "1.8"]
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PLUGIN = "tools.pytest_plugin"
+PLUGIN = "windup.tools.pytest_plugin"
 
 
 def run(pytester: pytest.Pytester) -> pytest.RunResult:

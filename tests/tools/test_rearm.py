@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from control.play import PoseHolder
-from hal.errors import PortError, StaleStateError, UsageError
-from hal.servo_backend import ServoBackend
-from tools.robot import Robot
+from windup.control.play import PoseHolder
+from windup.hal.errors import PortError, StaleStateError, UsageError
+from windup.hal.servo_backend import ServoBackend
+from windup.tools.robot import Robot
 
 
 def unplugged(seconds: float) -> Robot:

@@ -4,10 +4,10 @@ from typing import Any
 
 import pytest
 
-from tools.reproduce.figure import Figure, Job, Result
-from tools.reproduce.wu_zordan import WU_ZORDAN, pendulum, reactive
-from tools.reproduce.wu_zordan.jobs import push, turn
-from tools.reproduce.wu_zordan.work import work
+from windup.tools.reproduce.figure import Figure, Job, Result
+from windup.tools.reproduce.wu_zordan import WU_ZORDAN, pendulum, reactive
+from windup.tools.reproduce.wu_zordan.jobs import push, turn
+from windup.tools.reproduce.wu_zordan.work import work
 
 
 def fake_result(job: Job, good: bool = True) -> Result:

@@ -2,10 +2,10 @@
 
 import pytest
 
-from control.navigation import PathFollower
-from robots import load_robot
-from tools.gaits import find_gait
-from tools.route import guide_of
+from windup.control.navigation import PathFollower
+from windup.robots import load_robot
+from windup.tools.gaits import find_gait
+from windup.tools.route import guide_of
 
 
 @pytest.mark.parametrize(("name", "far"), [("human", 2.4), ("op3", None)])

@@ -1,9 +1,9 @@
 import pytest
 
-from hal.guard.finding import SAYINGS, Finding
-from hal.guard.levels import Kind
-from tools.run_notes import RunNotes
-from tools.slowness import Slowness
+from windup.hal.guard.finding import SAYINGS, Finding
+from windup.hal.guard.levels import Kind
+from windup.tools.run_notes import RunNotes
+from windup.tools.slowness import Slowness
 
 WELL = Slowness(125.0)
 

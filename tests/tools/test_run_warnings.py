@@ -2,10 +2,10 @@ from pathlib import Path
 
 import pytest
 
-from control.balancer import Balancer
 from tests.tools.conftest import Windup
-from tools.robot import Robot
-from tools.walk_options import WalkOptions
+from windup.control.balancer import Balancer
+from windup.tools.robot import Robot
+from windup.tools.walk_options import WalkOptions
 
 PORT = "--port twin://op3"
 WARM = "heat:at=1:ids=14:degrees=68"
@@ -22,8 +22,8 @@ def rings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("command", ["stand op3 --seconds 4", "play op3 wave --seconds 4"])
-def test_a_warning_is_in_the_last_line_in_json_and_in_health(windup: Windup, command: str) -> None:
-    ran = windup(*f"{command} {PORT} --faults {WARM} --json -".split())
+def test_a_warning_is_in_the_last_line_in_json_and_in_health(shell: Windup, command: str) -> None:
+    ran = shell(*f"{command} {PORT} --faults {WARM} --json -".split())
     assert ran.status == 0, "a warning is no failure"
     assert last_line(ran.err) == "warning: l_knee was at 68 degrees C (warning at 65)"
     (warning,) = ran.json["warnings"]
@@ -37,9 +37,9 @@ def test_a_warning_is_in_the_last_line_in_json_and_in_health(windup: Windup, com
     }
 
 
-def test_health_says_what_the_run_said(windup: Windup) -> None:
-    windup(*f"stand op3 --seconds 6 {PORT} --faults {HOT}".split())
-    seen = windup(*f"health op3 {PORT} --faults {HOT} --json -".split())
+def test_health_says_what_the_run_said(shell: Windup) -> None:
+    shell(*f"stand op3 --seconds 6 {PORT} --faults {HOT}".split())
+    seen = shell(*f"health op3 {PORT} --faults {HOT} --json -".split())
     assert seen.status == 1
     (warning,) = seen.json["warnings"]
     assert (warning["kind"], warning["joints"]) == ("temperature", ["l_knee"])
@@ -47,9 +47,9 @@ def test_health_says_what_the_run_said(windup: Windup) -> None:
 
 
 def test_a_stop_is_the_last_line_and_the_warning_of_its_cause_is_not_said_again(
-    windup: Windup,
+    shell: Windup,
 ) -> None:
-    ran = windup(*f"stand op3 --seconds 6 {PORT} --faults {HOT} --json -".split())
+    ran = shell(*f"stand op3 --seconds 6 {PORT} --faults {HOT} --json -".split())
     assert ran.status == 3
     (line,) = ran.err.strip().splitlines()
     assert line.startswith("windup: l_knee is at 75 degrees C (stop at 72): let it cool")
@@ -57,32 +57,32 @@ def test_a_stop_is_the_last_line_and_the_warning_of_its_cause_is_not_said_again(
     assert [row["kind"] for row in ran.json["warnings"]] == ["temperature"]
 
 
-def test_another_warning_is_said_before_the_stop(windup: Windup) -> None:
+def test_another_warning_is_said_before_the_stop(shell: Windup) -> None:
     faults = f"imu_silent:at=1,{HOT}"
-    ran = windup(*f"stand op3 --seconds 6 {PORT} --faults {faults}".split())
+    ran = shell(*f"stand op3 --seconds 6 {PORT} --faults {faults}".split())
     first, second = ran.err.strip().splitlines()
     assert first.startswith("warning: the IMU was silent for ")
     assert second.startswith("windup: l_knee is at 75")
 
 
-def test_a_run_without_warnings_says_so_to_programs_only(windup: Windup) -> None:
-    ran = windup("stand", "op3", "--seconds", 1, "--json", "-")
+def test_a_run_without_warnings_says_so_to_programs_only(shell: Windup) -> None:
+    ran = shell("stand", "op3", "--seconds", 1, "--json", "-")
     assert ran.json["warnings"] == []
     assert "warning" not in ran.err
 
 
-def test_a_command_that_runs_no_robot_has_none(windup: Windup) -> None:
-    assert "warnings" not in windup("scan", "twin://op3", "--json", "-").json
+def test_a_command_that_runs_no_robot_has_none(shell: Windup) -> None:
+    assert "warnings" not in shell("scan", "twin://op3", "--json", "-").json
 
 
-def test_seeds_in_processes_of_their_own_have_their_warnings(windup: Windup) -> None:
-    ran = windup("walk", "op3", "--steps", 1, "--seeds", 2, "--json", "-")
+def test_seeds_in_processes_of_their_own_have_their_warnings(shell: Windup) -> None:
+    ran = shell("walk", "op3", "--steps", 1, "--seeds", 2, "--json", "-")
     assert [row["warnings"] for row in ran.json["rows"]] == [[], []]
     assert ran.json["warnings"] == []
 
 
 def test_late_plans_of_a_walk_are_in_its_last_line(
-    windup: Windup, monkeypatch: pytest.MonkeyPatch
+    shell: Windup, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     begin = Balancer._begin_step
 
@@ -91,7 +91,7 @@ def test_late_plans_of_a_walk_are_in_its_last_line(
         self.late += 1
 
     monkeypatch.setattr(Balancer, "_begin_step", late)
-    ran = windup("walk", "op3", "--steps", 3, "--json", "-")
+    ran = shell("walk", "op3", "--steps", 3, "--json", "-")
     assert last_line(ran.err) == (
         "warning: 4 of 4 plans came late: this computer is too slow for 250 Hz: "
         "try `--model library` or a lower --rate"
@@ -112,8 +112,8 @@ def test_late_plans_are_counted_though_the_walk_fails() -> None:
         assert robot.slowness.plans >= 1 and robot.slowness.ticks > 100
 
 
-def test_a_bus_that_is_too_slow_for_its_rate_is_said(windup: Windup) -> None:
-    ran = windup("stand", "duck", "--port", "twin://duck", "--rate", 500, "--seconds", 1)
+def test_a_bus_that_is_too_slow_for_its_rate_is_said(shell: Windup) -> None:
+    ran = shell("stand", "duck", "--port", "twin://duck", "--rate", 500, "--seconds", 1)
     assert ran.status == 0
     assert last_line(ran.err).endswith(
         "of the ticks came late: the bus is too slow for 500 Hz: try a lower --rate"

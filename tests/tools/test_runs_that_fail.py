@@ -4,16 +4,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-import tools.robot
-import tools.walk
-from control.play import GraphPlayer
-from hal.command import JointCommand
-from hal.errors import DivergedError, UnsafeCommandError
-from hal.observation import Observation
 from tests.tools.conftest import Windup
-from tools import Robot
-from tools.build import build_walk
-from tools.interrupts import RunInterruptedError
+from windup import Robot
+from windup.control.play import GraphPlayer
+from windup.hal.command import JointCommand
+from windup.hal.errors import DivergedError, UnsafeCommandError
+from windup.hal.observation import Observation
+from windup.tools.build import build_walk
+from windup.tools.interrupts import RunInterruptedError
 
 
 class Trouble:
@@ -85,7 +83,7 @@ def test_a_controller_that_crashes_stops_the_robot_too() -> None:
         assert stopped(robot)
 
 
-def test_nan_in_mid_walk_is_status_1(windup: Windup, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nan_in_mid_walk_is_status_1(shell: Windup, monkeypatch: pytest.MonkeyPatch) -> None:
 
     def build(*arguments: Any, **named: Any) -> Any:
         walker = build_walk(*arguments, **named)
@@ -100,8 +98,8 @@ def test_nan_in_mid_walk_is_status_1(windup: Windup, monkeypatch: pytest.MonkeyP
         walker.step = broken  # type: ignore[method-assign]
         return walker
 
-    monkeypatch.setattr(tools.robot, "build_walk", build)
-    ran = windup("walk", "op3", "--steps", 5, "--json", "-")
+    monkeypatch.setattr("windup.tools.robot.build_walk", build)
+    ran = shell("walk", "op3", "--steps", 5, "--json", "-")
     assert ran.status == 1
     message = "the controller asked joint 'head_pan' for position nan; refused"
     assert ran.err.strip() == f"windup: {message}"
@@ -109,14 +107,14 @@ def test_nan_in_mid_walk_is_status_1(windup: Windup, monkeypatch: pytest.MonkeyP
 
 
 def test_a_twin_that_diverges_is_status_1(
-    windup: Windup, my_human: Path, monkeypatch: pytest.MonkeyPatch
+    shell: Windup, my_human: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(my_human)
     toml = my_human / "robot.toml"
     soft = "stiffness = 50.0,   damping =   5.0"
     assert soft in toml.read_text()
     toml.write_text(toml.read_text().replace(soft, "stiffness = 1e7, damping = 0.0"))
-    ran = windup("walk", my_human, "--open-loop", "--json", "-")
+    ran = shell("walk", my_human, "--open-loop", "--json", "-")
     assert ran.status == 1
     assert ran.json["error"]["kind"] == "Diverged"
     message = ran.json["error"]["message"]
@@ -180,7 +178,7 @@ def test_a_walk_interrupted_before_its_first_step_has_all_its_keys() -> None:
 
 
 def test_ctrl_c_in_a_walk_is_status_130_with_the_report(
-    windup: Windup, monkeypatch: pytest.MonkeyPatch
+    shell: Windup, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def interrupt(*arguments: object) -> Any:
         def update(steps: int, speed: float) -> None:
@@ -189,15 +187,15 @@ def test_ctrl_c_in_a_walk_is_status_130_with_the_report(
 
         return update
 
-    monkeypatch.setattr(tools.walk, "_update", interrupt)
-    ran = windup("walk", "op3", "--steps", 40, "--json", "-")
+    monkeypatch.setattr("windup.tools.walk._update", interrupt)
+    ran = shell("walk", "op3", "--steps", 40, "--json", "-")
     assert ran.status == 130
     assert (ran.json["steps"], ran.json["reason"]) == (3, "interrupted")
     assert "interrupted after 3 of 40 steps" in " ".join(ran.err.split())
 
 
 def test_ctrl_c_in_a_played_graph_is_status_130_with_the_report(
-    windup: Windup, monkeypatch: pytest.MonkeyPatch
+    shell: Windup, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     step = GraphPlayer.step
 
@@ -207,7 +205,7 @@ def test_ctrl_c_in_a_played_graph_is_status_130_with_the_report(
         return step(self, observation, dt)
 
     monkeypatch.setattr(GraphPlayer, "step", interrupted)
-    ran = windup("play", "op3", "wave", "--json", "-")
+    ran = shell("play", "op3", "wave", "--json", "-")
     assert ran.status == 130
     assert ran.json["reason"] == "interrupted"
     assert ran.json["sim_time_s"] == pytest.approx(0.5, abs=0.01)

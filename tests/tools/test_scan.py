@@ -7,14 +7,14 @@ from typing import Any
 import pytest
 from rich.console import Console
 
-from hal.bus import Bus
-from hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FAMILIES, FEETECH_STS
-from hal.open_port import open_port
-from hal.port import Port
-from hal.protocols import protocol1, protocol2
 from tests.tools.conftest import Windup
-from tools.scan_said import complaints, narrow_lines, table
-from tools.survey import Survey, places
+from windup.hal.bus import Bus
+from windup.hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FAMILIES, FEETECH_STS
+from windup.hal.open_port import open_port
+from windup.hal.port import Port
+from windup.hal.protocols import protocol1, protocol2
+from windup.tools.scan_said import complaints, narrow_lines, table
+from windup.tools.survey import Survey, places
 
 BAUD = 1_000_000
 Answer = Any
@@ -145,9 +145,9 @@ def test_an_echo_is_called_one_and_nothing_is_made_of_it() -> None:
     assert said(found) == "URL sends back what it is sent: switch the echo of the adapter off"
 
 
-def test_two_servos_with_one_id_are_named(windup: Windup) -> None:
+def test_two_servos_with_one_id_are_named(shell: Windup) -> None:
     url = "twin://bench?servos=XM430-W350:1,XM430-W350:2,XM430-W350:2"
-    ran = windup("scan", url, "--baud", BAUD, "--json", "-")
+    ran = shell("scan", url, "--baud", BAUD, "--json", "-")
     assert ran.status == 3
     assert (ran.json["doubled_ids"], [row["id"] for row in ran.json["servos"]]) == ([2], [1])
     assert "id 2: only broken answers: are there two servos with this id?" in " ".join(
@@ -177,17 +177,17 @@ def test_every_baud_rate_is_a_step_of_the_progress() -> None:
     assert port.baud == BAUD
 
 
-def test_the_board_of_op3_has_its_name(windup: Windup) -> None:
-    ran = windup("scan", "twin://op3", "--baud", 2 * BAUD, "--robot", "op3", "--json", "-")
+def test_the_board_of_op3_has_its_name(shell: Windup) -> None:
+    ran = shell("scan", "twin://op3", "--baud", 2 * BAUD, "--robot", "op3", "--json", "-")
     assert ran.status == 0
     (board,) = [row for row in ran.json["servos"] if row["id"] == 200]
     assert (board["model"], board["voltage_v"], board["error"]) == ("OpenCR", 12.0, "")
 
 
 @pytest.fixture
-def rows(windup: Windup) -> Iterator[list[dict[str, Any]]]:
+def rows(shell: Windup) -> Iterator[list[dict[str, Any]]]:
     url = "twin://bench?servos=XM430-W350:1-3"
-    found = windup("scan", url, "--baud", BAUD, "--json", "-")
+    found = shell("scan", url, "--baud", BAUD, "--json", "-")
     assert json.loads(found.out)["servos"]
     yield [row | {"joint": "l_sho_pitch"} for row in found.json["servos"]]
 
@@ -205,7 +205,7 @@ def test_the_table_fits_the_terminal(rows: list[dict[str, Any]], width: int) -> 
         assert word in text
 
 
-def test_a_feetech_servo_is_no_unknown_dynamixel(windup: Windup) -> None:
-    ran = windup("scan", "twin://bench?servos=STS3215:1-2", "--baud", BAUD, "--json", "-")
+def test_a_feetech_servo_is_no_unknown_dynamixel(shell: Windup) -> None:
+    ran = shell("scan", "twin://bench?servos=STS3215:1-2", "--baud", BAUD, "--json", "-")
     assert (ran.status, ran.json["unknown"], len(ran.json["servos"])) == (0, [], 2)
     assert ran.json["servos"][0]["model"] in FEETECH_STS.numbers.values()

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from hal.servo_backend import ServoBackend
-from tools.servo_bus import ServoBus
+from windup.hal.servo_backend import ServoBackend
+from windup.tools.servo_bus import ServoBus
 
 
 def test_op3_freezes_with_torque_on_and_goes_on_when_its_host_is_back() -> None:

@@ -1,6 +1,6 @@
 import pytest
 
-from tools.slowness import Slowness
+from windup.tools.slowness import Slowness
 
 
 @pytest.mark.parametrize(

@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from control.play import PoseHolder
-from hal.errors import FirstMotionError, PostureError
-from sim_twin.servo_motor import KP
-from sim_twin.wire.twin_shaft import TwinPhysics
-from tools.rise import lay, rise
-from tools.robot import Robot
-from tools.servo_bus import ServoBus
+from windup.control.play import PoseHolder
+from windup.hal.errors import FirstMotionError, PostureError
+from windup.sim_twin.servo_motor import KP
+from windup.sim_twin.wire.twin_shaft import TwinPhysics
+from windup.tools.rise import lay, rise
+from windup.tools.robot import Robot
+from windup.tools.servo_bus import ServoBus
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 CHILD = """
 import sys, time
-from tools.stop_keys import keyboard, stop_keys
+from windup.tools.stop_keys import keyboard, stop_keys
 try:
     with stop_keys(keyboard()) as key:
         print("ready", flush=True)
@@ -100,7 +100,9 @@ def test_ctrl_c_still_is_a_signal(child: Child) -> None:
 
 def test_a_process_in_the_background_asks_no_terminal() -> None:
     ours, theirs = os.openpty()
-    asking = "import os; os.setpgid(0, 0); from tools.stop_keys import keyboard; print(keyboard())"
+    asking = "import os; os.setpgid(0, 0); from windup.tools.stop_keys import keyboard; " + (
+        "print(keyboard())"
+    )
     parent = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {asking!r}])"
     ran = subprocess.run(
         [sys.executable, "-c", TAKE_THE_TERMINAL + parent],
@@ -118,7 +120,7 @@ def test_a_process_in_the_background_asks_no_terminal() -> None:
 
 def test_a_pipe_is_no_keyboard() -> None:
     ran = subprocess.run(
-        [sys.executable, "-c", "from tools.stop_keys import keyboard; print(keyboard())"],
+        [sys.executable, "-c", "from windup.tools.stop_keys import keyboard; print(keyboard())"],
         stdin=subprocess.PIPE,
         capture_output=True,
         text=True,

@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from hal.errors import UsageError
-from hal.observation import Observation
-from sim_twin.wire.opencr import MODE_BUTTON, USER_BUTTON, OpenCr
 from tests.tools.conftest import Windup
-from tools import stop_keys, stop_request
-from tools.interrupts import forget_interruption
-from tools.servo_bus import ServoBus
-from tools.stack import Stack
+from windup.hal.errors import UsageError
+from windup.hal.observation import Observation
+from windup.sim_twin.wire.opencr import MODE_BUTTON, USER_BUTTON, OpenCr
+from windup.tools import stop_keys, stop_request
+from windup.tools.interrupts import forget_interruption
+from windup.tools.servo_bus import ServoBus
+from windup.tools.stack import Stack
 
 
 @pytest.fixture(autouse=True)
@@ -72,7 +72,7 @@ def test_a_button_that_is_held_down_keeps_torque_off_and_is_told() -> None:
     ids=lambda value: value[0] if isinstance(value, tuple) else None,
 )
 def test_a_command_that_a_button_stops_has_status_130_and_says_so(
-    windup: Windup,
+    shell: Windup,
     monkeypatch: pytest.MonkeyPatch,
     caplog: pytest.LogCaptureFixture,
     command: tuple[str, ...],
@@ -86,7 +86,7 @@ def test_a_command_that_a_button_stops_has_status_130_and_says_so(
 
     monkeypatch.setattr(OpenCr, "read", pressed)
     name, *options = command
-    ran = windup(name, "op3", *options, "--port", "twin://op3", "--json", "-")
+    ran = shell(name, "op3", *options, "--port", "twin://op3", "--json", "-")
     assert ran.status == 130
     assert ran.json["reason"] == "interrupted"
     assert "stopped by the mode button" in caplog.text

@@ -9,11 +9,11 @@ from threading import Event, Thread, current_thread, main_thread
 
 import pytest
 
-from hal.errors import UsageError
-from hal.observation import Observation
-from tools.interrupts import RunInterruptedError, forget_interruption
-from tools.robot import Robot
-from tools.servo_bus import ServoBus
+from windup.hal.errors import UsageError
+from windup.hal.observation import Observation
+from windup.tools.interrupts import RunInterruptedError, forget_interruption
+from windup.tools.robot import Robot
+from windup.tools.servo_bus import ServoBus
 
 
 def driving(bus: ServoBus) -> bool:

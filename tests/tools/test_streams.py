@@ -6,7 +6,7 @@ from typing import IO, cast
 import pytest
 from rich.console import Console
 
-from tools.streams import StandardError, drop_unwritten
+from windup.tools.streams import StandardError, drop_unwritten
 
 
 class Full(io.StringIO):
@@ -34,7 +34,7 @@ def test_what_a_full_device_did_not_take_is_dropped() -> None:
 
 
 def test_no_file_gets_the_number_of_a_closed_standard_stream() -> None:
-    program = "from tools.streams import fill_closed_streams as f; f(); import os; " + (
+    program = "from windup.tools.streams import fill_closed_streams as f; f(); import os; " + (
         "raise SystemExit(os.open('/dev/zero', os.O_RDWR))"
     )
     run = subprocess.run(

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from hal.errors import UsageError
-from tools.cli import run
-from tools.striding import Leg, read_leg
+from windup.hal.errors import UsageError
+from windup.tools.cli import run
+from windup.tools.striding import Leg, read_leg
 
 
 def test_it_walks_changes_direction_turns_and_halts_with_its_sensors(tmp_path: Path) -> None:

@@ -9,12 +9,12 @@ from typing import Annotated, Any
 import pytest
 import tyro
 
-from hal.errors import HardwareError, UsageError
-from tools import cli
-from tools.command import Command
-from tools.command_table import COMMANDS, Entry
-from tools.sweep_grid import parse_axis, points
-from tools.sweep_table import CsvTable, open_table
+from windup.hal.errors import HardwareError, UsageError
+from windup.tools import cli
+from windup.tools.command import Command
+from windup.tools.command_table import COMMANDS, Entry
+from windup.tools.sweep_grid import parse_axis, points
+from windup.tools.sweep_table import CsvTable, open_table
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from control.gait_file import GaitFile
-from hal.config import load_toml
-from hal.errors import UnknownNameError, UsageError
-from robots import load_robot
-from robots.description import robot_names
 from tests.tools.conftest import Windup
-from tools.gaits import find_gait, gait_path
-from tools.synthesis.gait_toml import write_gait
-from tools.synthesis.genes import Gene, Genome
-from tools.synthesis.log import Entry, SearchLog
-from tools.synthesis.score import objective
-from tools.synthesis.search import Search, Values
+from windup.control.gait_file import GaitFile
+from windup.hal.config import load_toml
+from windup.hal.errors import UnknownNameError, UsageError
+from windup.robots import load_robot
+from windup.robots.description import robot_names
+from windup.tools.gaits import find_gait, gait_path
+from windup.tools.synthesis.gait_toml import write_gait
+from windup.tools.synthesis.genes import Gene, Genome
+from windup.tools.synthesis.log import Entry, SearchLog
+from windup.tools.synthesis.score import objective
+from windup.tools.synthesis.search import Search, Values
 
 ROW: dict[str, Any] = {
     "steps": 30,
@@ -177,24 +177,24 @@ def test_the_file_of_another_search_is_not_gone_on_with(tmp_path: Path) -> None:
         SearchLog(tmp_path / "log", {"seed": 2, "steps": 5})
 
 
-def test_the_command_writes_a_gait_that_walks(windup: Windup, tmp_path: Path) -> None:
+def test_the_command_writes_a_gait_that_walks(shell: Windup, tmp_path: Path) -> None:
     out = tmp_path / "bird.toml"
     line = ["synthesise", "robobird", "--gait", "run", "--vary", "hold.*", "target.*"]
     line += ["--population", "4", "--steps", "3", "--seeds", "1", "--out", str(out), "--json", "-"]
-    first = windup(*line, "--trials", "5", "--jobs", "1")
+    first = shell(*line, "--trials", "5", "--jobs", "1")
     assert first.status == 0, first.err
     assert first.json["after"]["cost"] <= first.json["before"]["cost"]
     found = load_toml(out, GaitFile)
     assert found.balance is not None
     assert found.balance.targets["up.forward"] == first.json["values"]["target.up.forward"]
-    assert windup("walk", "robobird", "--gait", out, "--steps", "3").status == 0
+    assert shell("walk", "robobird", "--gait", out, "--steps", "3").status == 0
     kept = out.with_suffix(".trials").read_text().splitlines()
     assert [json.loads(line).get("trial") for line in kept] == [None, 0, 1, 2, 3, 4]
-    again = windup(*line, "--trials", "5", "--jobs", "1")
+    again = shell(*line, "--trials", "5", "--jobs", "1")
     assert again.json == first.json
 
 
-def test_bad_input_is_refused_before_anything_runs(windup: Windup, tmp_path: Path) -> None:
+def test_bad_input_is_refused_before_anything_runs(shell: Windup, tmp_path: Path) -> None:
     out = tmp_path / "x.toml"
     for words, message in (
         (("--trials", "0"), "--trials 0: give 1 .. 1000000"),
@@ -203,7 +203,7 @@ def test_bad_input_is_refused_before_anything_runs(windup: Windup, tmp_path: Pat
         (("--speed", "9"), "speed 9 m/s is outside the range of gait 'walk'"),
         (("--population", "2"), "--population 2: give 4 .. 10000"),
     ):
-        ran = windup("synthesise", "op3", "--out", out, *words)
+        ran = shell("synthesise", "op3", "--out", out, *words)
         assert (ran.status, message in ran.err) == (2, True), ran.err
-    assert windup("synthesise", "op3", "--out", tmp_path / "x.csv").status == 2
+    assert shell("synthesise", "op3", "--out", tmp_path / "x.csv").status == 2
     assert list(tmp_path.iterdir()) == []

@@ -14,7 +14,7 @@ import serial
 
 from tests.tools.test_emulate import said, start
 
-CLI = [sys.executable, "-c", "from tools.cli import main; main()"]
+CLI = [sys.executable, "-c", "from windup.tools.cli import main; main()"]
 
 
 @contextmanager

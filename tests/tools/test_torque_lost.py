@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-import sim_twin.wire.byte_servo
-import sim_twin.wire.servo
-from hal.command import JointCommand
-from hal.errors import PortError, StaleStateError, TorqueLostError, WindupError
-from hal.observation import Observation
-from hal.servo_backend import ServoBackend
+import windup.sim_twin.wire.byte_servo
+import windup.sim_twin.wire.servo
 from tests.tools.conftest import Windup
-from tools.robot import Robot
-from tools.servo_bus import ServoBus
-from tools.soak_rig import SoakRig
+from windup.hal.command import JointCommand
+from windup.hal.errors import PortError, StaleStateError, TorqueLostError, WindupError
+from windup.hal.observation import Observation
+from windup.hal.servo_backend import ServoBackend
+from windup.tools.robot import Robot
+from windup.tools.servo_bus import ServoBus
+from windup.tools.soak_rig import SoakRig
 
 KNEE = 13
 TORQUE = {"dynamixel2": 64, "dynamixel1": 24, "ax": 24, "sts": 40, "scs": 40}
@@ -22,8 +22,8 @@ TORQUE = {"dynamixel2": 64, "dynamixel1": 24, "ax": 24, "sts": 40, "scs": 40}
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let emulated servos boot before the loop gives them up."""
-    monkeypatch.setattr(sim_twin.wire.byte_servo, "BOOT_SECONDS", 0.15)
-    monkeypatch.setattr(sim_twin.wire.servo, "BOOT_SECONDS", 0.15)
+    monkeypatch.setattr(windup.sim_twin.wire.byte_servo, "BOOT_SECONDS", 0.15)
+    monkeypatch.setattr(windup.sim_twin.wire.servo, "BOOT_SECONDS", 0.15)
 
 
 def torque_enable(bus: ServoBus, address: int) -> int:
@@ -89,10 +89,10 @@ def test_a_robot_with_a_silent_joint_does_not_crouch_either() -> None:
 
 @pytest.mark.parametrize("command", [("walk", "op3", "--steps", "12"), ("stand", "op3")])
 def test_an_overload_ends_the_command_with_the_joint_and_the_cause(
-    windup: Windup, command: tuple[str, ...]
+    shell: Windup, command: tuple[str, ...]
 ) -> None:
     faults = f"overload:at=1.5:ids={KNEE}"
-    ran = windup(*command, "--port", "twin://op3", "--faults", faults, "--json", "-")
+    ran = shell(*command, "--port", "twin://op3", "--faults", faults, "--json", "-")
     assert ran.status == 3
     message = (
         "r_knee lost its torque: its servo shut down: overload; "

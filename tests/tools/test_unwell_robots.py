@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-import sim_twin.wire as wire
-from hal.errors import UnhealthyError
-from hal.servo_backend import ServoBackend
+import windup.sim_twin.wire as wire
 from tests.tools.conftest import Windup
-from tools.robot import Robot
+from windup.hal.errors import UnhealthyError
+from windup.hal.servo_backend import ServoBackend
+from windup.tools.robot import Robot
 
 
 def servo_of(robot: Robot, joint: str) -> Any:
@@ -74,11 +74,11 @@ FAULT = "brown_out:at={at}:volts={volts}:seconds={seconds}"
 
 @pytest.mark.parametrize(("name", "volts", "stop"), [("op3", 9.8, "10.2"), ("duck", 6.0, "6.2")])
 def test_an_empty_battery_stops_the_robot(
-    windup: Windup, name: str, volts: float, stop: str
+    shell: Windup, name: str, volts: float, stop: str
 ) -> None:
     faults = FAULT.format(at=1.5, volts=volts, seconds="inf")
     line = f"stand {name} --port twin://{name} --seconds 4 --json - --faults"
-    ran = windup(*line.split(), faults)
+    ran = shell(*line.split(), faults)
     assert ran.status == 3
     assert ran.json["error"]["kind"] == "Unhealthy"
     assert f"joints are on {volts} V (stop below {stop})" in ran.json["error"]["message"]
@@ -86,27 +86,27 @@ def test_an_empty_battery_stops_the_robot(
 
 @pytest.mark.parametrize(("name", "volts"), [("op3", 9.8), ("duck", 6.0)])
 def test_an_empty_battery_is_refused_before_the_first_motion(
-    windup: Windup, name: str, volts: float
+    shell: Windup, name: str, volts: float
 ) -> None:
     faults = FAULT.format(at=0, volts=volts, seconds="inf")
-    ran = windup(*f"stand {name} --port twin://{name} --faults {faults} --json -".split())
+    ran = shell(*f"stand {name} --port twin://{name} --faults {faults} --json -".split())
     assert ran.status == 3
     assert "nothing has moved; charge the battery" in ran.json["error"]["message"]
 
 
 @pytest.mark.parametrize(("name", "volts"), [("op3", 9.8), ("duck", 6.0)])
-def test_a_dip_of_the_supply_stops_nobody(windup: Windup, name: str, volts: float) -> None:
+def test_a_dip_of_the_supply_stops_nobody(shell: Windup, name: str, volts: float) -> None:
     faults = FAULT.format(at=1.5, volts=volts, seconds=0.2)
-    ran = windup(*f"stand {name} --port twin://{name} --seconds 4 --faults {faults}".split())
+    ran = shell(*f"stand {name} --port twin://{name} --seconds 4 --faults {faults}".split())
     assert ran.status == 0, ran.err
 
 
 def test_levels_of_my_robot_are_its_own(
-    windup: Windup, my_op3: Path, monkeypatch: pytest.MonkeyPatch
+    shell: Windup, my_op3: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     toml = my_op3 / "robot.toml"
     toml.write_text(toml.read_text().replace("warn = 11.0, stop = 10.2", "warn = 11.9, stop = 11"))
     faults = FAULT.format(at=0, volts=10.5, seconds="inf")
     monkeypatch.chdir(my_op3.parent)
-    ran = windup("stand", my_op3.name, "--port", f"twin://{my_op3.name}", "--faults", faults)
+    ran = shell("stand", my_op3.name, "--port", f"twin://{my_op3.name}", "--faults", faults)
     assert ran.status == 3 and "20 joints are on 10.5 V (stop below 11.0)" in ran.err

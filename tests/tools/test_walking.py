@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tests.tools.conftest import Windup
-from tools import Robot
-from tools.walk_options import WalkOptions
+from windup import Robot
+from windup.tools.walk_options import WalkOptions
 
 KEYS = {
     "schema",
@@ -51,8 +51,8 @@ KEYS = {
 }
 
 
-def test_the_json_of_a_walk_has_all_its_keys_and_nothing_else(windup: Windup) -> None:
-    ran = windup("walk", "op3", "--steps", 10, "--seed", 3, "--noise", 0.2, "--json", "-")
+def test_the_json_of_a_walk_has_all_its_keys_and_nothing_else(shell: Windup) -> None:
+    ran = shell("walk", "op3", "--steps", 10, "--seed", 3, "--noise", 0.2, "--json", "-")
     assert ran.status == 0
     result = ran.json
     assert set(result) == KEYS
@@ -72,9 +72,9 @@ def test_the_json_of_a_walk_has_all_its_keys_and_nothing_else(windup: Windup) ->
     assert "op3 walked 10 steps" in " ".join(ran.err.split())
 
 
-def test_op3_walks_twelve_steps_and_turns_little(windup: Windup, tmp_path: Path) -> None:
+def test_op3_walks_twelve_steps_and_turns_little(shell: Windup, tmp_path: Path) -> None:
     path = tmp_path / "walk.json"
-    ran = windup("walk", "op3", "--steps", 12, "--json", path)
+    ran = shell("walk", "op3", "--steps", 12, "--json", path)
     assert (ran.status, ran.out) == (0, "")
     text = path.read_text()
     with Robot.open("op3") as robot:
@@ -106,9 +106,9 @@ def test_the_human_falls_in_four_to_eight_steps_without_balance(seed: int) -> No
     assert (report["reason"], report["rollouts"]) == ("fell", 0)
 
 
-def test_the_human_walks_as_in_the_thesis(windup: Windup) -> None:
+def test_the_human_walks_as_in_the_thesis(shell: Windup) -> None:
     line = "walk human --rv up --no-torso-servo --sampling fl --target .25 --steps 15 --json -"
-    ran = windup(*line.split())
+    ran = shell(*line.split())
     assert ran.status == 0
     result = ran.json
     assert (result["steps"], result["fell"]) == (15, False)
@@ -118,15 +118,15 @@ def test_the_human_walks_as_in_the_thesis(windup: Windup) -> None:
     assert result["distance_m"] > 3.0
 
 
-def test_a_fall_is_status_1_and_says_in_which_step(windup: Windup) -> None:
-    ran = windup("walk", "human", "--open-loop", "--no-torso-servo", "--steps", 30, "--json", "-")
+def test_a_fall_is_status_1_and_says_in_which_step(shell: Windup) -> None:
+    ran = shell("walk", "human", "--open-loop", "--no-torso-servo", "--steps", 30, "--json", "-")
     assert ran.status == 1
     assert ran.json["fell"] is True
     assert f"human fell in step {ran.json['fell_at_step']} of 30" in " ".join(ran.err.split())
 
 
-def test_several_seeds_are_a_row_each_and_a_summary(windup: Windup) -> None:
-    ran = windup("walk", "op3", "--steps", 1, "--seeds", 2, "--open-loop", "--json", "-")
+def test_several_seeds_are_a_row_each_and_a_summary(shell: Windup) -> None:
+    ran = shell("walk", "op3", "--steps", 1, "--seeds", 2, "--open-loop", "--json", "-")
     assert ran.status == 0
     result = ran.json
     rest = {"warnings", "driver_clamps", "robot", "rows", "summary"}
@@ -136,17 +136,17 @@ def test_several_seeds_are_a_row_each_and_a_summary(windup: Windup) -> None:
     assert (result["summary"]["runs"], result["summary"]["walked"]) == (2, 2)
 
 
-def test_a_users_own_folder_walks_by_its_path(windup: Windup, my_op3: Path) -> None:
+def test_a_users_own_folder_walks_by_its_path(shell: Windup, my_op3: Path) -> None:
     toml = my_op3 / "robot.toml"
     toml.write_text(toml.read_text().replace('name = "op3"', 'name = "mine"', 1))
-    ran = windup("walk", my_op3, "--steps", 2, "--json", "-")
+    ran = shell("walk", my_op3, "--steps", 2, "--json", "-")
     assert ran.status == 0
     assert ran.json["robot"] == "mine"
 
 
-def test_a_bare_target_is_the_first_forward_variables(windup: Windup) -> None:
+def test_a_bare_target_is_the_first_forward_variables(shell: Windup) -> None:
     line = "walk human --rv up --target .2 up.lateral=.01 --open-loop --steps 2 --json -"
-    rows = windup(*line.split()).json["regulation"]
+    rows = shell(*line.split()).json["regulation"]
     assert [(row["name"], row["target"]) for row in rows] == [
         ("up.forward", 0.2),
         ("up.lateral", 0.01),
@@ -172,15 +172,15 @@ def test_another_rate_and_delay_are_those_of_the_run() -> None:
     assert ticks == pytest.approx(robot.loop.ticks, abs=1.0)
 
 
-def test_the_picture_of_a_walk_is_drawn(windup: Windup, tmp_path: Path) -> None:
+def test_the_picture_of_a_walk_is_drawn(shell: Windup, tmp_path: Path) -> None:
     picture = tmp_path / "walk.png"
-    ran = windup("walk", "op3", "--steps", 2, "--open-loop", "--plot", picture)
+    ran = shell("walk", "op3", "--steps", 2, "--open-loop", "--plot", picture)
     assert ran.status == 0
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
-def test_robots_are_listed_with_their_gaits(windup: Windup) -> None:
-    ran = windup("robots", "--json", "-")
+def test_robots_are_listed_with_their_gaits(shell: Windup) -> None:
+    ran = shell("robots", "--json", "-")
     assert ran.status == 0
     listed = {row["robot"]: row for row in ran.json["robots"]}
     assert {"op3", "human"} <= set(listed)
@@ -190,8 +190,8 @@ def test_robots_are_listed_with_their_gaits(windup: Windup) -> None:
     assert "op3" in ran.err
 
 
-def test_a_graph_is_played_to_its_end(windup: Windup) -> None:
-    ran = windup("play", "op3", "wave", "--json", "-")
+def test_a_graph_is_played_to_its_end(shell: Windup) -> None:
+    ran = shell("play", "op3", "wave", "--json", "-")
     assert ran.status == 0
     result = ran.json
     assert (result["robot"], result["graph"], result["reason"]) == ("op3", "wave", "done")
@@ -199,8 +199,8 @@ def test_a_graph_is_played_to_its_end(windup: Windup) -> None:
     assert 1.0 < result["sim_time_s"] < 20.0
 
 
-def test_a_graph_is_played_for_some_seconds(windup: Windup) -> None:
-    ran = windup("play", "op3", "squat", "--seconds", 0.5, "--json", "-")
+def test_a_graph_is_played_for_some_seconds(shell: Windup) -> None:
+    ran = shell("play", "op3", "squat", "--seconds", 0.5, "--json", "-")
     assert ran.status == 0
     assert ran.json["sim_time_s"] == pytest.approx(0.5, abs=0.01)
 

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from tests.tools.conftest import Windup
-from tools.fall_report import fall_said
-from tools.rise import lay
-from tools.robot import Robot
-from tools.stand import stand_said
-from tools.stopping import LAY
-from tools.walk_said import walk_said
+from windup.tools.fall_report import fall_said
+from windup.tools.rise import lay
+from windup.tools.robot import Robot
+from windup.tools.stand import stand_said
+from windup.tools.stopping import LAY
+from windup.tools.walk_said import walk_said
 
 STOOD: dict[str, Any] = {
     "robot": "op3",
@@ -53,8 +53,8 @@ def test_the_first_motion_is_no_part_of_a_stand() -> None:
     assert stand_said(STOOD).startswith("op3 stood for 2.0 s; farthest from its pose is l_knee")
 
 
-def test_a_stand_on_a_port_lasts_as_long_as_it_was_told(windup: Windup) -> None:
-    ran = windup("stand", "op3", "--port", "twin://op3", "--seconds", "1", "--json", "-")
+def test_a_stand_on_a_port_lasts_as_long_as_it_was_told(shell: Windup) -> None:
+    ran = shell("stand", "op3", "--port", "twin://op3", "--seconds", "1", "--json", "-")
     assert ran.status == 0
     assert "op3 stood for 1.0 s, after a first motion of " in " ".join(ran.err.split())
     assert ran.json["first_motion_s"] > 0.3
@@ -92,8 +92,8 @@ def test_a_load_beyond_the_stall_torque_is_no_percentage_of_it() -> None:
     assert said.endswith("l_knee bore 1.9 x its stall torque, more than it gives by itself")
 
 
-def test_every_seed_of_a_stand_is_a_row(windup: Windup) -> None:
-    ran = windup("stand", "op3", "--seconds", "0.2", "--seeds", "2", "--noise", "3", "--json", "-")
+def test_every_seed_of_a_stand_is_a_row(shell: Windup) -> None:
+    ran = shell("stand", "op3", "--seconds", "0.2", "--seeds", "2", "--noise", "3", "--json", "-")
     rows = json.loads(ran.out)["rows"]
     assert [row["seed"] for row in rows] == [0, 1]
     assert ran.err.count("op3 stood for") == 2

@@ -3,8 +3,8 @@ from pathlib import Path
 
 import pytest
 
-from hal.errors import OutputError, UsageError
-from tools.writing import check_folder, check_writable, writing
+from windup.hal.errors import OutputError, UsageError
+from windup.tools.writing import check_folder, check_writable, writing
 
 
 def test_what_can_be_written_is_not_complained_about(tmp_path: Path) -> None:

@@ -11,9 +11,9 @@ from typing import Any
 
 from rich.progress import Progress
 
-from tools.cli import run
-from tools.fuzz.trial import PATIENCE, Trial, odd_run
-from tools.output import console
+from windup.tools.cli import run
+from windup.tools.fuzz.trial import PATIENCE, Trial, odd_run
+from windup.tools.output import console
 
 ROBOTS = ("op3", "duck", "human", "robobird")
 HANG = 3.0 * PATIENCE

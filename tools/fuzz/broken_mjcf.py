@@ -5,7 +5,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from copy import deepcopy
 
-from tools.fuzz import odd
+from windup.tools.fuzz import odd
 
 Mistake = Callable[[random.Random, ET.Element], None]
 

@@ -4,7 +4,7 @@ import random
 import re
 from collections.abc import Callable
 
-from tools.fuzz import odd
+from windup.tools.fuzz import odd
 
 VALUE = re.compile(r"(?P<key>[A-Za-z_][\w.]*)\s*=\s*(?P<value>\"[^\"\n]*\"|[^,{}\[\]#\n]+)")
 """A key and its value, on a line of its own or in an inline table."""

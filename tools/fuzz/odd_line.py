@@ -4,7 +4,7 @@ import random
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from tools.fuzz import odd
+from windup.tools.fuzz import odd
 
 SHORT = {
     "stand": ("--seconds", "0.1"),

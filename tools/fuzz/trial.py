@@ -13,10 +13,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from robots import load_robot
-from tools.fuzz.broken_mjcf import broken_mjcf
-from tools.fuzz.broken_toml import broken_toml
-from tools.fuzz.odd_line import odd_line
+from windup.robots import load_robot
+from windup.tools.fuzz.broken_mjcf import broken_mjcf
+from windup.tools.fuzz.broken_toml import broken_toml
+from windup.tools.fuzz.odd_line import odd_line
 
 KNOWN = {0, 1, 2, 3, 130}
 """Exit statuses that have a meaning."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from hal.errors import UnknownNameError
+from windup.hal.errors import UnknownNameError
 
 Result = dict[str, Any]
 

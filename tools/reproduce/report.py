@@ -5,13 +5,13 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from tools.output import plain
-from tools.parallel import side_by_side
-from tools.picture import load_pyplot
-from tools.reproduce.figure import Figure, Result, Results, Study, distinct
-from tools.reproduce.page import Entry, page
-from tools.reproduce.store import Store
-from tools.writing import writing
+from windup.tools.output import plain
+from windup.tools.parallel import side_by_side
+from windup.tools.picture import load_pyplot
+from windup.tools.reproduce.figure import Figure, Result, Results, Study, distinct
+from windup.tools.reproduce.page import Entry, page
+from windup.tools.reproduce.store import Store
+from windup.tools.writing import writing
 
 
 def reproduce(

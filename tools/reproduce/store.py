@@ -7,10 +7,10 @@ from os import replace
 from pathlib import Path
 from typing import Any
 
-from hal.errors import UsageError
-from tools.output import plain
-from tools.reproduce.figure import Job, Result
-from tools.writing import writing
+from windup.hal.errors import UsageError
+from windup.tools.output import plain
+from windup.tools.reproduce.figure import Job, Result
+from windup.tools.writing import writing
 
 SUFFIXES = (".py", ".toml", ".xml")
 

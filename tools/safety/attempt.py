@@ -10,15 +10,15 @@ from dataclasses import replace
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 
-from tools.safety.emulated import Journal, serve
-from tools.safety.moment import Moment
-from tools.safety.processes import child_with, guardian_of
-from tools.safety.program import Program, main
-from tools.safety.row import Row
-from tools.safety.standard_error import unread
-from tools.safety.trial import PATIENCE, NotMeasuredError, Trial
+from windup.tools.safety.emulated import Journal, serve
+from windup.tools.safety.moment import Moment
+from windup.tools.safety.processes import child_with, guardian_of
+from windup.tools.safety.program import Program, main
+from windup.tools.safety.row import Row
+from windup.tools.safety.standard_error import unread
+from windup.tools.safety.trial import PATIENCE, NotMeasuredError, Trial
 
-PRELOAD = ["tools.robot", "tools.safety.program", "tools.safety.emulated"]
+PRELOAD = ["windup.tools.robot", "windup.tools.safety.program", "windup.tools.safety.emulated"]
 """What a fresh process would import anew each time: nothing is kept from trial to trial."""
 
 

@@ -11,17 +11,17 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
-from hal.errors import UsageError
-from robots import load_robot
-from tools.output import console
-from tools.safety.attempt import trial, under_way
-from tools.safety.moment import Moment
-from tools.safety.refusals import measure_refusals
-from tools.safety.row import Row
-from tools.safety.rows import ROWS, SIGNALS
-from tools.safety.scripts import BY_ITSELF
-from tools.safety.trial import NotMeasuredError
-from tools.safety.verdict import Verdict, judge
+from windup.hal.errors import UsageError
+from windup.robots import load_robot
+from windup.tools.output import console
+from windup.tools.safety.attempt import trial, under_way
+from windup.tools.safety.moment import Moment
+from windup.tools.safety.refusals import measure_refusals
+from windup.tools.safety.row import Row
+from windup.tools.safety.rows import ROWS, SIGNALS
+from windup.tools.safety.scripts import BY_ITSELF
+from windup.tools.safety.trial import NotMeasuredError
+from windup.tools.safety.verdict import Verdict, judge
 
 ROBOTS = ("op3", "duck")
 LONGEST = {"standing": 1.0, "walking": 1.5, "closing crouch": 1.2}

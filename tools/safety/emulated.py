@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from hal.clock import PRIORITY
-from sim_twin.wire import parse_address
-from sim_twin.wire.emulate import Emulator, emulate
-from sim_twin.wire.journal import Event
+from windup.hal.clock import PRIORITY
+from windup.sim_twin.wire import parse_address
+from windup.sim_twin.wire.emulate import Emulator, emulate
+from windup.sim_twin.wire.journal import Event
 
 FIRST = PRIORITY + 10
 """Of an emulator among real-time processes: servos and physics wait for no program."""

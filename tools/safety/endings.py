@@ -4,8 +4,8 @@ import signal
 from collections.abc import Callable
 from math import inf
 
-from tools.safety.standard_error import fill
-from tools.safety.trial import Trial
+from windup.tools.safety.standard_error import fill
+from windup.tools.safety.trial import Trial
 
 Do = Callable[[Trial], float]
 

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from hal.command import JointCommand
-from hal.controller import Controller
-from hal.observation import ImuState, Observation
-from hal.servo_backend import ServoBackend
-from hal.servo_link import ServoLink
-from tools.robot import Robot
-from tools.safety.begin import Begin
+from windup.hal.command import JointCommand
+from windup.hal.controller import Controller
+from windup.hal.observation import ImuState, Observation
+from windup.hal.servo_backend import ServoBackend
+from windup.hal.servo_link import ServoLink
+from windup.tools.robot import Robot
+from windup.tools.safety.begin import Begin
 
 Fault = Callable[[JointCommand], JointCommand]
 

@@ -7,7 +7,7 @@ from typing import Any
 import dynamixel_sdk
 import scservo_sdk
 
-from robots import RobotDescription
+from windup.robots import RobotDescription
 
 TORQUE_X, WATCHDOG_X, TORQUE_STS = 64, 98, 40
 TRIPPED = 255

@@ -3,7 +3,7 @@
 from contextlib import suppress
 from pathlib import Path
 
-from hal.guardian.lock import AdapterLock
+from windup.hal.guardian.lock import AdapterLock
 
 
 def guardian_of(port: str) -> int | None:

@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from hal.errors import WindupError
-from tools.interrupts import end_on_signals
-from tools.output import console
-from tools.robot import Robot
-from tools.safety.begin import Begin
-from tools.safety.faulty import FAULTS, break_imu, make_faulty
-from tools.safety.moment import Activity
-from tools.safety.scripts import LEFT_OPEN, SCRIPTS, move
-from tools.safety.standard_error import Errors, replace_standard_error
+from windup.hal.errors import WindupError
+from windup.tools.interrupts import end_on_signals
+from windup.tools.output import console
+from windup.tools.robot import Robot
+from windup.tools.safety.begin import Begin
+from windup.tools.safety.faulty import FAULTS, break_imu, make_faulty
+from windup.tools.safety.moment import Activity
+from windup.tools.safety.scripts import LEFT_OPEN, SCRIPTS, move
+from windup.tools.safety.standard_error import Errors, replace_standard_error
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from typing import Any
 
-from tools.output import console
-from tools.safety.attempt import trial
-from tools.safety.moment import Moment
-from tools.safety.row import Row
-from tools.safety.trial import PATIENCE
+from windup.tools.output import console
+from windup.tools.safety.attempt import trial
+from windup.tools.safety.moment import Moment
+from windup.tools.safety.row import Row
+from windup.tools.safety.trial import PATIENCE
 
 AT_REST = Moment("standing", 0.0)
 

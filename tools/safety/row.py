@@ -4,10 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from hal.guard import CROUCH_SECONDS
-from tools.safety.moment import ACTIVITIES, Activity
-from tools.safety.standard_error import Errors
-from tools.safety.trial import Trial
+from windup.hal.guard import CROUCH_SECONDS
+from windup.tools.safety.moment import ACTIVITIES, Activity
+from windup.tools.safety.standard_error import Errors
+from windup.tools.safety.trial import Trial
 
 End = Literal["off", "frozen", "unknown", "unattended"]
 """What is found afterwards: torque off at every servo that answers; every servo frozen by its bus

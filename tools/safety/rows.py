@@ -12,7 +12,7 @@ from signal import (
     SIGTSTP,
 )
 
-from tools.safety.endings import (
+from windup.tools.safety.endings import (
     brown_out,
     inject,
     kill,
@@ -22,7 +22,7 @@ from tools.safety.endings import (
     press_then,
     unplug,
 )
-from tools.safety.row import HANG, STOP, Row
+from windup.tools.safety.row import HANG, STOP, Row
 
 KILLED, ASKED, FAILED, BUS = (-SIGKILL,), (130,), (1,), (3,)
 X_SERVOS = ("op3",)

@@ -5,12 +5,12 @@ import threading
 import time
 from collections.abc import Callable
 
-from hal.errors import WindupError
-from hal.observation import Observation
-from tools.robot import Robot
-from tools.safety.begin import Begin
-from tools.safety.moment import Activity
-from tools.session import Watch
+from windup.hal.errors import WindupError
+from windup.hal.observation import Observation
+from windup.tools.robot import Robot
+from windup.tools.safety.begin import Begin
+from windup.tools.safety.moment import Activity
+from windup.tools.session import Watch
 
 BY_ITSELF = "its walk ended by itself"
 FOR_EVER = 3600.0

@@ -8,9 +8,9 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 
-from hal.errors import WindupError
-from tools.safety.emulated import Journal
-from tools.safety.moment import Moment
+from windup.hal.errors import WindupError
+from windup.tools.safety.emulated import Journal
+from windup.tools.safety.moment import Moment
 
 PATIENCE = 60.0
 """Until a program is under way, s."""

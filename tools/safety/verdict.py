@@ -7,11 +7,11 @@ from math import inf
 
 from serial import SerialException
 
-from robots import RobotDescription
-from tools.safety.independent import torque_of
-from tools.safety.processes import alive
-from tools.safety.row import Row
-from tools.safety.trial import AFTERWARDS, LONGEST, Trial
+from windup.robots import RobotDescription
+from windup.tools.safety.independent import torque_of
+from windup.tools.safety.processes import alive
+from windup.tools.safety.row import Row
+from windup.tools.safety.trial import AFTERWARDS, LONGEST, Trial
 
 READS, BETWEEN = 4, 0.3
 """How often an independent client tries to read, and how long it waits between, s."""

@@ -8,8 +8,8 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from robots import RobotDescription
-from tools.protect import leg_joints
+from windup.robots import RobotDescription
+from windup.tools.protect import leg_joints
 
 Fault = Literal["sign", "swap", "jam", "motor"]
 FAULTS: tuple[Fault, ...] = get_args(Fault)

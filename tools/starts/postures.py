@@ -7,11 +7,11 @@ import mujoco
 import numpy as np
 from scipy.optimize import brentq, least_squares
 
-from control.legs import legs_of
-from control.posture import PostureSense
-from hal.joints import Array
-from robots import RobotDescription
-from tools.gaits import find_gait
+from windup.control.legs import legs_of
+from windup.control.posture import PostureSense
+from windup.hal.joints import Array
+from windup.robots import RobotDescription
+from windup.tools.gaits import find_gait
 
 Kind = Literal["standing", "squatting", "sitting", "lying", "hanging"]
 KINDS: tuple[Kind, ...] = get_args(Kind)

@@ -9,17 +9,17 @@ from typing import Any
 import mujoco
 import numpy as np
 
-from hal.errors import FirstMotionError, PostureError, WindupError
-from hal.observation import Observation
-from robots import load_robot
-from sim_twin.twin import Twin
-from sim_twin.wire.twin_shaft import TwinPhysics
-from sim_twin.wire.world import World
-from tools.rise import rise
-from tools.robot import Robot
-from tools.servo_bus import ServoBus
-from tools.starts.faults import Broken, Fault
-from tools.starts.postures import KINDS, Kind, Placed, random_posture
+from windup.hal.errors import FirstMotionError, PostureError, WindupError
+from windup.hal.observation import Observation
+from windup.robots import load_robot
+from windup.sim_twin.twin import Twin
+from windup.sim_twin.wire.twin_shaft import TwinPhysics
+from windup.sim_twin.wire.world import World
+from windup.tools.rise import rise
+from windup.tools.robot import Robot
+from windup.tools.servo_bus import ServoBus
+from windup.tools.starts.faults import Broken, Fault
+from windup.tools.starts.postures import KINDS, Kind, Placed, random_posture
 
 LIE = 2.0
 """How long limp limbs take to come to rest, s."""

@@ -8,26 +8,26 @@ from typing import Annotated, Any
 import msgspec
 import tyro
 
-from control.gait_file import GaitFile
-from hal.config import load_toml
-from hal.errors import UsageError
-from hal.ranges import Range
-from robots import load_robot
-from tools.build import build_walk
-from tools.command import Command
-from tools.gaits import gait_path
-from tools.output import console, write_json
-from tools.parallel import Workers
-from tools.quantities import Count, Jobs, Noise, Seed, Some, Speed
-from tools.shape import check_walks
-from tools.synthesis.gait_toml import write_gait
-from tools.synthesis.genes import Genome
-from tools.synthesis.log import Entry, SearchLog
-from tools.synthesis.score import Objective, objective
-from tools.synthesis.search import Search, Values
-from tools.synthesis.trial import Trial, walk_trial
-from tools.walk_options import WalkOptions
-from tools.writing import check_writable
+from windup.control.gait_file import GaitFile
+from windup.hal.config import load_toml
+from windup.hal.errors import UsageError
+from windup.hal.ranges import Range
+from windup.robots import load_robot
+from windup.tools.build import build_walk
+from windup.tools.command import Command
+from windup.tools.gaits import gait_path
+from windup.tools.output import console, write_json
+from windup.tools.parallel import Workers
+from windup.tools.quantities import Count, Jobs, Noise, Seed, Some, Speed
+from windup.tools.shape import check_walks
+from windup.tools.synthesis.gait_toml import write_gait
+from windup.tools.synthesis.genes import Genome
+from windup.tools.synthesis.log import Entry, SearchLog
+from windup.tools.synthesis.score import Objective, objective
+from windup.tools.synthesis.search import Search, Values
+from windup.tools.synthesis.trial import Trial, walk_trial
+from windup.tools.walk_options import WalkOptions
+from windup.tools.writing import check_writable
 
 FINALISTS = 5
 Positional = Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]

@@ -5,9 +5,9 @@ from typing import Any
 
 import msgspec
 
-from control.gait_file import GaitFile
-from hal.errors import UsageError
-from tools.writing import writing
+from windup.control.gait_file import GaitFile
+from windup.hal.errors import UsageError
+from windup.tools.writing import writing
 
 
 def write_gait(path: Path, file: GaitFile) -> None:

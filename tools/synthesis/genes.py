@@ -20,10 +20,10 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from control.gait_file import GaitFile, State
-from hal.errors import UsageError
-from hal.joints import Array, Joints
-from hal.mirror import Mirror, other_side
+from windup.control.gait_file import GaitFile, State
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array, Joints
+from windup.hal.mirror import Mirror, other_side
 
 SPREAD = {"pose": 4.0, "hold": 0.02, "target": 0.03, "limit": 4.0, "change": 0.2}
 DIGITS = {"pose": 2, "hold": 4, "target": 4, "limit": 2, "change": 3}

@@ -4,9 +4,9 @@ import json
 from pathlib import Path
 from typing import Any
 
-from hal.errors import UsageError
-from tools.output import plain
-from tools.writing import writing
+from windup.hal.errors import UsageError
+from windup.tools.output import plain
+from windup.tools.writing import writing
 
 Entry = dict[str, Any]
 

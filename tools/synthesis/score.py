@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from hal.errors import UnknownNameError, UsageError
-from hal.ranges import Range, read_number
+from windup.hal.errors import UnknownNameError, UsageError
+from windup.hal.ranges import Range, read_number
 
 WEIGHT = Range(0.0, 1e6)
 Row = dict[str, Any]

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from hal.errors import UsageError
-from hal.joints import Array
-from tools.synthesis.genes import Gene, shape
-from tools.synthesis.log import Entry, SearchLog
+from windup.hal.errors import UsageError
+from windup.hal.joints import Array
+from windup.tools.synthesis.genes import Gene, shape
+from windup.tools.synthesis.log import Entry, SearchLog
 
 Values = dict[str, float]
 # Walks gaits, given by their numbers and the values of their genes, and yields what came of each.

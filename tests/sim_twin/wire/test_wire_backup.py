@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from sim_twin.wire.register_file import BAD_INSTRUCTION, BAD_RANGE, FAILED, OK
 from tests.sim_twin.wire.wire_host import Host, open_host
+from windup.sim_twin.wire.register_file import BAD_INSTRUCTION, BAD_RANGE, FAILED, OK
 
 XM, TWIN = 1, 2
 BACKUP, REBOOT, FACTORY_RESET = 0x20, 0x08, 0x06

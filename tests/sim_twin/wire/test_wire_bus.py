@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim_twin.wire.frames import Frame, Parser, encode
 from tests.sim_twin.wire.wire_host import Host, open_host
+from windup.sim_twin.wire.frames import Frame, Parser, encode
 
 BYTE = 1e-5  # s at 1 Mbaud
 

@@ -4,16 +4,6 @@ from collections.abc import Iterator
 
 import pytest
 
-from sim_twin.wire.dynamixel1_servo import (
-    ANGLE_LIMIT,
-    CHECKSUM,
-    INPUT_VOLTAGE,
-    INSTRUCTION,
-    OVERHEATING,
-    OVERLOAD,
-    RANGE,
-)
-from sim_twin.wire.frames1 import encode
 from tests.sim_twin.wire.wire_host1 import (
     ACTION,
     BULK_READ,
@@ -28,6 +18,16 @@ from tests.sim_twin.wire.wire_host1 import (
     open_host1,
     statuses,
 )
+from windup.sim_twin.wire.dynamixel1_servo import (
+    ANGLE_LIMIT,
+    CHECKSUM,
+    INPUT_VOLTAGE,
+    INSTRUCTION,
+    OVERHEATING,
+    OVERLOAD,
+    RANGE,
+)
+from windup.sim_twin.wire.frames1 import encode
 
 ALL = 254
 AX, MX28, MX64, MX106 = 1, 2, 3, 4

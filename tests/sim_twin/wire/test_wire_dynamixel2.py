@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from sim_twin.wire.frames import BROADCAST, encode, seal
-from sim_twin.wire.register_file import BAD_CRC, OK
 from tests.sim_twin.wire.wire_host import Host, open_host
+from windup.sim_twin.wire.frames import BROADCAST, encode, seal
+from windup.sim_twin.wire.register_file import BAD_CRC, OK
 
 GROUP = 100
 WRITE, REG_WRITE, ACTION, FACTORY_RESET = 0x03, 0x04, 0x05, 0x06

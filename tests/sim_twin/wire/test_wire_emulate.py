@@ -10,8 +10,8 @@ import pytest
 import rustypot
 import serial
 
-from sim_twin.wire.frames import encode
 from tests.sim_twin.wire.emulator_process import emulator
+from windup.sim_twin.wire.frames import encode
 
 BUS = "twin://bench?servos=XL430-W250:1-3,XM430-W350:4&return_delay=0"
 POSITION = 132

@@ -5,12 +5,12 @@ from collections.abc import Iterator
 
 import pytest
 
-from sim_twin.wire import build_world, parse_address
-from sim_twin.wire.fault_text import parse_rules
-from sim_twin.wire.health import OVERHEATING
-from sim_twin.wire.opencr import USER_BUTTON, OpenCr
-from sim_twin.wire.world import World
 from tests.sim_twin.wire.wire_host import Host, open_host
+from windup.sim_twin.wire import build_world, parse_address
+from windup.sim_twin.wire.fault_text import parse_rules
+from windup.sim_twin.wire.health import OVERHEATING
+from windup.sim_twin.wire.opencr import USER_BUTTON, OpenCr
+from windup.sim_twin.wire.world import World
 
 XM, XL = 1, 2
 BUTTON = bytes((30, 0, 1, 0))

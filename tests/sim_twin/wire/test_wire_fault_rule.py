@@ -5,10 +5,10 @@ import re
 
 import pytest
 
-from hal.errors import UsageError
-from sim_twin.wire import parse_address
-from sim_twin.wire.build import build_world
-from sim_twin.wire.fault_text import parse_rules
+from windup.hal.errors import UsageError
+from windup.sim_twin.wire import parse_address
+from windup.sim_twin.wire.build import build_world
+from windup.sim_twin.wire.fault_text import parse_rules
 
 BENCH = "twin://bench?servos=STS3215:1-4&faults="
 

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator
 import pytest
 import serial
 
-from sim_twin.wire import drop_world
-from sim_twin.wire.fault_rule import KINDS, make_rule
-from sim_twin.wire.faults import Faults
-from sim_twin.wire.frames import Frame, Parser
-from sim_twin.wire.frames import encode as encode2
-from sim_twin.wire.frames1 import encode
 from tests.sim_twin.wire.wire_host1 import PING, READ, Host1, open_host1, statuses
+from windup.sim_twin.wire import drop_world
+from windup.sim_twin.wire.fault_rule import KINDS, make_rule
+from windup.sim_twin.wire.faults import Faults
+from windup.sim_twin.wire.frames import Frame, Parser
+from windup.sim_twin.wire.frames import encode as encode2
+from windup.sim_twin.wire.frames1 import encode
 
 BUS = "twin://bench?servos=STS3215:1-4&seed=5"
 ASKED = encode(1, READ, b"\x38\x06")

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import pytest
 
-from sim_twin.wire.frames1 import encode
 from tests.sim_twin.wire.wire_host1 import (
     ACTION,
     PING,
@@ -18,6 +17,7 @@ from tests.sim_twin.wire.wire_host1 import (
     open_host1,
     statuses,
 )
+from windup.sim_twin.wire.frames1 import encode
 
 ALL = 254
 STS, BIG = 1, 2

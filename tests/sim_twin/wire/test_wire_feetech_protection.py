@@ -5,9 +5,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from sim_twin.wire.fault_rule import make_rule
-from sim_twin.wire.feetech_servo import CURRENT, OVERLOAD, TEMPERATURE, VOLTAGE
 from tests.sim_twin.wire.wire_host1 import PING, Host1, open_host1
+from windup.sim_twin.wire.fault_rule import make_rule
+from windup.sim_twin.wire.feetech_servo import CURRENT, OVERLOAD, TEMPERATURE, VOLTAGE
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim_twin.wire.frames1 import Frame1, Frame1Error, Parser1, encode, seal
+from windup.sim_twin.wire.frames1 import Frame1, Frame1Error, Parser1, encode, seal
 
 # ROBOTIS e-Manual, protocol 1; Feetech's manual of its serial protocol.
 MANUALS = [

@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pytest
 
-from hal.errors import UnknownNameError, UsageError
-from sim_twin.twin import Twin
-from sim_twin.wire.address import parse_address
-from sim_twin.wire.build import build_world
-from sim_twin.wire.frames import encode
-from sim_twin.wire.hand import Swing, parse_hands
-from sim_twin.wire.twin_shaft import TwinPhysics
 from tests.sim_twin.wire.wire_host import Host, open_host
 from tests.sim_twin.wire.wire_host1 import open_host1
+from windup.hal.errors import UnknownNameError, UsageError
+from windup.sim_twin.twin import Twin
+from windup.sim_twin.wire.address import parse_address
+from windup.sim_twin.wire.build import build_world
+from windup.sim_twin.wire.frames import encode
+from windup.sim_twin.wire.hand import Swing, parse_hands
+from windup.sim_twin.wire.twin_shaft import TwinPhysics
 
 KNEE = 13  # the id of op3's right knee
 IDS = tuple(range(1, 21))

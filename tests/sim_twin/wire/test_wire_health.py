@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 import pytest
 
-from sim_twin.wire.firmware import ALERT
-from sim_twin.wire.health import ENCODER, INPUT_VOLTAGE, OVERHEATING, OVERLOAD
-from sim_twin.wire.register_file import BAD_ACCESS, OK
 from tests.sim_twin.wire.wire_host import Host, open_host
+from windup.sim_twin.wire.firmware import ALERT
+from windup.sim_twin.wire.health import ENCODER, INPUT_VOLTAGE, OVERHEATING, OVERLOAD
+from windup.sim_twin.wire.register_file import BAD_ACCESS, OK
 
 XM = 1
 POSITION, PWM = 3, 16

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from hal.imu.bno08x_rvc import decode
-from hal.imu.opencr import OpenCr
-from hal.imu.quaternion import euler_zxy
-from hal.joints import Array
-from sim_twin.twin import Twin
-from sim_twin.wire import drop_world
 from tests.sim_twin.wire.wire_host import Host, open_host
 from tests.sim_twin.wire.wire_host1 import open_host1
+from windup.hal.imu.bno08x_rvc import decode
+from windup.hal.imu.opencr import OpenCr
+from windup.hal.imu.quaternion import euler_zxy
+from windup.hal.joints import Array
+from windup.sim_twin.twin import Twin
+from windup.sim_twin.wire import drop_world
 
 BOARD = 200
 MOTION = bytes((30, 0, 20, 0))

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 import serial
 
-from hal.errors import UsageError
-from sim_twin.wire import build_world, parse_address
-from sim_twin.wire.emulate import Emulator
-from sim_twin.wire.frames import encode
 from tests.sim_twin.wire.emulator_process import run_emulator
+from windup.hal.errors import UsageError
+from windup.sim_twin.wire import build_world, parse_address
+from windup.sim_twin.wire.emulate import Emulator
+from windup.sim_twin.wire.frames import encode
 
 BUS = "twin://bench?servos=XM430-W350:1-2&return_delay=0"
 PING = encode(1, 1)

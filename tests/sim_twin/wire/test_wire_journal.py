@@ -2,9 +2,9 @@
 
 import time
 
-from sim_twin.wire import build_world, parse_address
-from sim_twin.wire.journal import Event, Watcher
-from sim_twin.wire.world import World
+from windup.sim_twin.wire import build_world, parse_address
+from windup.sim_twin.wire.journal import Event, Watcher
+from windup.sim_twin.wire.world import World
 
 TORQUE = 64
 

@@ -5,19 +5,19 @@ import serial
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hal.servos import servo_model
-from sim_twin.wire import drop_world, put_world
-from sim_twin.wire.address import parse_address
-from sim_twin.wire.build import build_world
-from sim_twin.wire.bus import Bus
-from sim_twin.wire.device import Device
-from sim_twin.wire.families import PROTOCOLS, make_language, make_servo
-from sim_twin.wire.frames import encode as encode2
-from sim_twin.wire.frames1 import encode
-from sim_twin.wire.schedule import Schedule
-from sim_twin.wire.shaft import InertiaShaft
-from sim_twin.wire.world import Bench, World
 from tests.sim_twin.wire.wire_host1 import PING, open_host1, statuses
+from windup.hal.servos import servo_model
+from windup.sim_twin.wire import drop_world, put_world
+from windup.sim_twin.wire.address import parse_address
+from windup.sim_twin.wire.build import build_world
+from windup.sim_twin.wire.bus import Bus
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.families import PROTOCOLS, make_language, make_servo
+from windup.sim_twin.wire.frames import encode as encode2
+from windup.sim_twin.wire.frames1 import encode
+from windup.sim_twin.wire.schedule import Schedule
+from windup.sim_twin.wire.shaft import InertiaShaft
+from windup.sim_twin.wire.world import Bench, World
 
 MIX = {"legs": "STS3215-12V", "arms": "AX-12A", "head": "XL430-W250", "face": "SCS0009"}
 

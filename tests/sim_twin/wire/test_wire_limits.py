@@ -1,8 +1,8 @@
 import pytest
 
-from hal.servo_model import OwnLimits
-from hal.servos import servo_model, servo_names
-from sim_twin.wire import dynamixel1_tables, feetech_tables, x_series
+from windup.hal.servo_model import OwnLimits
+from windup.hal.servos import servo_model, servo_names
+from windup.sim_twin.wire import dynamixel1_tables, feetech_tables, x_series
 
 
 def factory_limits(name: str) -> OwnLimits:

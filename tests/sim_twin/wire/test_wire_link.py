@@ -13,9 +13,9 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from hal.errors import UsageError
-from sim_twin.wire.emulate import _readable
-from sim_twin.wire.link import Pty, Tcp
+from windup.hal.errors import UsageError
+from windup.sim_twin.wire.emulate import _readable
+from windup.sim_twin.wire.link import Pty, Tcp
 
 PATIENCE = 20.0  # s for the machine
 MOST = 65_536
@@ -178,7 +178,7 @@ def test_a_file_and_a_folder_that_is_not_there_are_told(tmp_path: Path) -> None:
 def test_descriptors_beyond_those_that_select_takes_are_waited_for(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("sim_twin.wire.emulate.SELECTABLE", 0)
+    monkeypatch.setattr("windup.sim_twin.wire.emulate.SELECTABLE", 0)
     reader, writer = os.pipe()
     try:
         assert _readable([reader], 0.0) == []

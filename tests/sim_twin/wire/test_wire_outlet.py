@@ -4,11 +4,11 @@ import math
 
 import pytest
 
-from sim_twin.wire.address import parse_address
-from sim_twin.wire.build import build_world
-from sim_twin.wire.frames import encode
-from sim_twin.wire.outlet import ON_THE_WIRE, WAITING, Outlet
-from sim_twin.wire.world import World
+from windup.sim_twin.wire.address import parse_address
+from windup.sim_twin.wire.build import build_world
+from windup.sim_twin.wire.frames import encode
+from windup.sim_twin.wire.outlet import ON_THE_WIRE, WAITING, Outlet
+from windup.sim_twin.wire.world import World
 
 HEADERS = b"\xff\xff\xfd\x00" * 300_000  # 1.2 MB
 PING = encode(1, 1)

@@ -2,16 +2,16 @@ import numpy as np
 import pytest
 import serial
 
-from hal.errors import UnknownNameError, UsageError
-from sim_twin.wire import drop_world, find_world, parse_address, put_world
-from sim_twin.wire.bus import Bus
-from sim_twin.wire.dynamixel2 import Dynamixel2
-from sim_twin.wire.frames import encode
-from sim_twin.wire.imu import RestingImu
-from sim_twin.wire.opencr import ACCELERATION_UNIT, GYRO_UNIT, OpenCr
-from sim_twin.wire.schedule import Schedule
-from sim_twin.wire.world import Bench, World
 from tests.sim_twin.wire.wire_host import open_host
+from windup.hal.errors import UnknownNameError, UsageError
+from windup.sim_twin.wire import drop_world, find_world, parse_address, put_world
+from windup.sim_twin.wire.bus import Bus
+from windup.sim_twin.wire.dynamixel2 import Dynamixel2
+from windup.sim_twin.wire.frames import encode
+from windup.sim_twin.wire.imu import RestingImu
+from windup.sim_twin.wire.opencr import ACCELERATION_UNIT, GYRO_UNIT, OpenCr
+from windup.sim_twin.wire.schedule import Schedule
+from windup.sim_twin.wire.world import Bench, World
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim_twin.wire.profile import RECTANGULAR, STEP, TRAPEZOIDAL, TRIANGULAR, Profile
+from windup.sim_twin.wire.profile import RECTANGULAR, STEP, TRAPEZOIDAL, TRIANGULAR, Profile
 
 
 def test_a_trapezoid_takes_distance_over_top_and_top_over_acceleration() -> None:

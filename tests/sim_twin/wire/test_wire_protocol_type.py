@@ -13,11 +13,11 @@ from dynamixel_sdk import (
     Protocol2PacketHandler,
 )
 
-from hal.open_port import open_port
-from hal.sdk import SdkPort
-from sim_twin.wire.health import OVERHEATING
-from sim_twin.wire.old_errors import ANGLE_LIMIT, INSTRUCTION, RANGE
 from tests.sim_twin.wire.wire_host import Host
+from windup.hal.open_port import open_port
+from windup.hal.sdk import SdkPort
+from windup.sim_twin.wire.health import OVERHEATING
+from windup.sim_twin.wire.old_errors import ANGLE_LIMIT, INSTRUCTION, RANGE
 
 PROTOCOL, SHADOW, TORQUE, LED, GOAL, POSITION, FURTHER = 13, 12, 64, 65, 116, 132, 634
 OLD, NEW = Protocol1PacketHandler(), Protocol2PacketHandler()

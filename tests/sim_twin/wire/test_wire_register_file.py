@@ -1,13 +1,13 @@
 import pytest
 
-from sim_twin.wire.register_file import (
+from windup.sim_twin.wire.register_file import (
     BAD_ACCESS,
     BAD_LENGTH,
     BAD_RANGE,
     OK,
     RegisterFile,
 )
-from sim_twin.wire.x_series import MODELS, model
+from windup.sim_twin.wire.x_series import MODELS, model
 
 
 @pytest.fixture

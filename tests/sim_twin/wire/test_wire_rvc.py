@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from hal.imu.bno08x_rvc import decode
-from hal.imu.quaternion import euler_zxy
-from sim_twin.twin import Twin
-from sim_twin.wire import drop_world
-from sim_twin.wire.imu import GRAVITY
-from sim_twin.wire.rvc import encode_rvc
 from tests.sim_twin.wire.wire_host1 import open_host1
+from windup.hal.imu.bno08x_rvc import decode
+from windup.hal.imu.quaternion import euler_zxy
+from windup.sim_twin.twin import Twin
+from windup.sim_twin.wire import drop_world
+from windup.sim_twin.wire.imu import GRAVITY
+from windup.sim_twin.wire.rvc import encode_rvc
 
 EXAMPLE = "AA AA DE 01 00 92 FF 25 08 8D FE EC FF D1 03 00 00 00 E7"  # of the data sheet
 

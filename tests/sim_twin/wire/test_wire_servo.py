@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from sim_twin.wire.register_file import (
+from tests.sim_twin.wire.wire_host import Host, open_host
+from windup.sim_twin.wire.register_file import (
     BAD_ACCESS,
     BAD_INSTRUCTION,
     BAD_LIMIT,
@@ -12,7 +13,6 @@ from sim_twin.wire.register_file import (
     FAILED,
     OK,
 )
-from tests.sim_twin.wire.wire_host import Host, open_host
 
 XM = 1
 XL430 = 2

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from hal.errors import UsageError
-from robots import load_robot
-from sim_twin.plant import Plant
-from sim_twin.servo_motor import KP
-from sim_twin.terrain import Ground
-from sim_twin.twin import Twin
-from sim_twin.wire.address import parse_address
-from sim_twin.wire.build import build_world
-from sim_twin.wire.twin_shaft import TwinShaft
-from sim_twin.world import World
+from windup.hal.errors import UsageError
+from windup.robots import load_robot
+from windup.sim_twin.plant import Plant
+from windup.sim_twin.servo_motor import KP
+from windup.sim_twin.terrain import Ground
+from windup.sim_twin.twin import Twin
+from windup.sim_twin.wire.address import parse_address
+from windup.sim_twin.wire.build import build_world
+from windup.sim_twin.wire.twin_shaft import TwinShaft
+from windup.sim_twin.world import World
 
 OP3 = load_robot("op3")
 

@@ -5,10 +5,10 @@ from typing import Any
 import pytest
 import rustypot
 
-from hal.servos import servo_model
-from sim_twin.wire import dynamixel1_tables, feetech_tables
-from sim_twin.wire.byte_table import TWOS, ByteTable, Field
-from sim_twin.wire.families import PROTOCOLS
+from windup.hal.servos import servo_model
+from windup.sim_twin.wire import dynamixel1_tables, feetech_tables
+from windup.sim_twin.wire.byte_table import TWOS, ByteTable, Field
+from windup.sim_twin.wire.families import PROTOCOLS
 
 TABLES: dict[str, tuple[ByteTable, Any]] = {
     "AX-12A": (dynamixel1_tables.MODELS["AX-12A"].table(), rustypot.AxPyController),

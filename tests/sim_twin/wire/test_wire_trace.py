@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from sim_twin.wire.frames1 import encode
-from sim_twin.wire.trace import HEADER, TraceError, read_trace
-from tools.servo_bus import ServoBus
+from windup.sim_twin.wire.frames1 import encode
+from windup.sim_twin.wire.trace import HEADER, TraceError, read_trace
+from windup.tools.servo_bus import ServoBus
 
 SERVOS = "STS3215:1-3"
 READ = encode(254, 0x82, bytes((56, 6, 1, 2, 3)))

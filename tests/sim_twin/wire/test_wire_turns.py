@@ -5,8 +5,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from sim_twin.wire.register_file import OK
 from tests.sim_twin.wire.wire_host import Host, open_host
+from windup.sim_twin.wire.register_file import OK
 
 XM = 1
 VELOCITY, POSITION, EXTENDED, CURRENT_POSITION = 1, 3, 4, 5

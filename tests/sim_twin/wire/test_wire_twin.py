@@ -7,12 +7,12 @@ import mujoco
 import numpy as np
 import pytest
 
-from robots import load_robot
-from sim_twin.twin import Twin
-from sim_twin.wire.frames import encode
-from sim_twin.wire.shaft import InertiaShaft
-from sim_twin.wire.twin_shaft import TwinPhysics, TwinShaft
 from tests.sim_twin.wire.wire_host import Host, open_host
+from windup.robots import load_robot
+from windup.sim_twin.twin import Twin
+from windup.sim_twin.wire.frames import encode
+from windup.sim_twin.wire.shaft import InertiaShaft
+from windup.sim_twin.wire.twin_shaft import TwinPhysics, TwinShaft
 
 IDS = tuple(range(1, 21))
 LEFT_KNEE = "l_knee"

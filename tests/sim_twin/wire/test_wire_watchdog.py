@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from sim_twin.wire.register_file import BAD_RANGE, OK
 from tests.sim_twin.wire.wire_host import Host, open_host
+from windup.sim_twin.wire.register_file import BAD_RANGE, OK
 
 XM = 1
 CURRENT, VELOCITY, POSITION, EXTENDED, CURRENT_POSITION, PWM = 0, 1, 3, 4, 5, 16

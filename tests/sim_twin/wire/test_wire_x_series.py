@@ -5,7 +5,7 @@ from pathlib import Path
 import dynamixel_sdk
 import pytest
 
-from sim_twin.wire.x_series import FOUR_MODES, MODELS, SIX_MODES, model
+from windup.sim_twin.wire.x_series import FOUR_MODES, MODELS, SIX_MODES, model
 
 TABLES = Path(dynamixel_sdk.__file__).parent.parent / "dynamixel_easy_sdk" / "control_table"
 RENAMED = {

@@ -6,11 +6,11 @@ from typing import Any
 
 import serial
 
-import sim_twin.wire  # noqa: F401 - makes twin:// known to pyserial
-from sim_twin.wire.frames import BROADCAST, Frame, Parser, encode
-from sim_twin.wire.servo import Servo
-from sim_twin.wire.shaft import InertiaShaft
-from sim_twin.wire.world import Bench, World
+import windup.sim_twin.wire  # noqa: F401 - makes twin:// known to pyserial
+from windup.sim_twin.wire.frames import BROADCAST, Frame, Parser, encode
+from windup.sim_twin.wire.servo import Servo
+from windup.sim_twin.wire.shaft import InertiaShaft
+from windup.sim_twin.wire.world import Bench, World
 
 
 class Host:

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from tools import cli
+from windup.tools import cli
 
 
 class Full(io.StringIO):

@@ -1,6 +1,6 @@
 """The bench of odd runs: it counts them all, and a process that hangs costs one of them."""
 
-from tools.fuzz.bench import Runner, measure_fuzz
+from windup.tools.fuzz.bench import Runner, measure_fuzz
 
 
 def test_all_runs_are_counted() -> None:

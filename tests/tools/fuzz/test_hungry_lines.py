@@ -21,7 +21,7 @@ HUNGRY = [
 ]
 PROGRAM = """
 import resource, sys
-from tools import cli
+from windup.tools import cli
 resource.setrlimit(resource.RLIMIT_DATA, (2**30, 2**30))
 print([cli.run(line.split()) for line in sys.argv[1:]])
 """

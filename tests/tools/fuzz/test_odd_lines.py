@@ -10,15 +10,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import hal.open_port
-import sim_twin.wire.emulate
-import sim_twin.wire.worlds
-from hal.errors import PortError
-from sim_twin.twin import Twin
-from tools import cli
-from tools.command_table import COMMANDS
-from tools.fuzz import odd_line
-from tools.fuzz.odd_line import any_line
+import windup.hal.open_port
+import windup.sim_twin.wire.emulate
+import windup.sim_twin.wire.worlds
+from windup.hal.errors import PortError
+from windup.sim_twin.twin import Twin
+from windup.tools import cli
+from windup.tools.command_table import COMMANDS
+from windup.tools.fuzz import odd_line
+from windup.tools.fuzz.odd_line import any_line
 
 LONG = ("bench", "reproduce", "sweep", "synthesise", "health")
 """Commands that run for long without a port or a twin, or look at what others run."""
@@ -35,9 +35,9 @@ def nothing_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     def refuse(*_: object, **__: object) -> None:
         raise PortError("there is nothing to open in this test")
 
-    monkeypatch.setattr(hal.open_port, "_open", refuse)
-    monkeypatch.setattr(sim_twin.wire.worlds, "build_world", refuse)
-    monkeypatch.setattr(sim_twin.wire.emulate, "build_world", refuse)
+    monkeypatch.setattr(windup.hal.open_port, "_open", refuse)
+    monkeypatch.setattr(windup.sim_twin.wire.worlds, "build_world", refuse)
+    monkeypatch.setattr(windup.sim_twin.wire.emulate, "build_world", refuse)
     monkeypatch.setattr(Twin, "__init__", refuse)
     for name in LONG:
         monkeypatch.setattr(COMMANDS[name].load(), "run", lambda self: 0)

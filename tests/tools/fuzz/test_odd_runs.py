@@ -7,12 +7,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from robots import load_robot
-from tools.cli import run
-from tools.fuzz.broken_mjcf import broken_mjcf
-from tools.fuzz.broken_toml import MISTAKES, broken_toml
-from tools.fuzz.odd_line import odd_line
-from tools.fuzz.trial import Trial, odd_run
+from windup.robots import load_robot
+from windup.tools.cli import run
+from windup.tools.fuzz.broken_mjcf import broken_mjcf
+from windup.tools.fuzz.broken_toml import MISTAKES, broken_toml
+from windup.tools.fuzz.odd_line import odd_line
+from windup.tools.fuzz.trial import Trial, odd_run
 
 OP3 = load_robot("op3").folder
 

@@ -4,9 +4,9 @@ from multiprocessing.connection import Connection
 
 import pytest
 
-from sim_twin.wire.journal import Event
-from tools.safety.begin import Begin
-from tools.safety.emulated import Journal
+from windup.sim_twin.wire.journal import Event
+from windup.tools.safety.begin import Begin
+from windup.tools.safety.emulated import Journal
 
 Pipe = tuple[Connection, Connection]
 

@@ -1,15 +1,15 @@
 import numpy as np
 import pytest
 
-from hal.errors import UsageError
-from hal.guard import CROUCH_SECONDS
-from tools.safety import bench
-from tools.safety.bench import _moments, measure_safety
-from tools.safety.moment import Moment
-from tools.safety.row import HANG, STOP, Row
-from tools.safety.rows import ROWS
-from tools.safety.trial import NotMeasuredError
-from tools.safety.verdict import Verdict
+from windup.hal.errors import UsageError
+from windup.hal.guard import CROUCH_SECONDS
+from windup.tools.safety import bench
+from windup.tools.safety.bench import _moments, measure_safety
+from windup.tools.safety.moment import Moment
+from windup.tools.safety.row import HANG, STOP, Row
+from windup.tools.safety.rows import ROWS
+from windup.tools.safety.trial import NotMeasuredError
+from windup.tools.safety.verdict import Verdict
 
 
 def test_every_row_has_a_name_of_its_own_and_something_to_allow() -> None:

@@ -2,11 +2,11 @@
 
 import pytest
 
-from robots import load_robot
-from tools.safety.attempt import trial, under_way
-from tools.safety.moment import Moment
-from tools.safety.rows import ROWS
-from tools.safety.verdict import judge
+from windup.robots import load_robot
+from windup.tools.safety.attempt import trial, under_way
+from windup.tools.safety.moment import Moment
+from windup.tools.safety.rows import ROWS
+from windup.tools.safety.verdict import judge
 
 
 @pytest.mark.parametrize(

@@ -5,9 +5,9 @@ from typing import Any, cast
 
 import pytest
 
-from robots import load_robot
-from tools.safety import verdict
-from tools.safety.rows import ROWS
+from windup.robots import load_robot
+from windup.tools.safety import verdict
+from windup.tools.safety.rows import ROWS
 
 
 @pytest.mark.parametrize(

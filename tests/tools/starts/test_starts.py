@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.legs import legs_of
-from robots import load_robot
-from tools.bench_starts import measure_starts
-from tools.starts.faults import Broken
-from tools.starts.postures import KINDS, kinds_of, on_feet, random_posture
-from tools.starts.trial import Start, try_start
+from windup.control.legs import legs_of
+from windup.robots import load_robot
+from windup.tools.bench_starts import measure_starts
+from windup.tools.starts.faults import Broken
+from windup.tools.starts.postures import KINDS, kinds_of, on_feet, random_posture
+from windup.tools.starts.trial import Start, try_start
 
 
 def test_a_robot_on_its_feet_has_flat_level_soles_under_its_weight() -> None:

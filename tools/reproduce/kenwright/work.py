@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from robots import load_robot
-from sim_twin.impact import ImpactGauge
-from sim_twin.touch import TouchWatch
-from tools.fall_report import fall_result
-from tools.push import Push
-from tools.push_trial import push_robot
-from tools.reproduce.figure import Job, Result
-from tools.reproduce.kenwright.recorder import Recorder
-from tools.robot import Robot
-from tools.stepping import find_stepping, footing_of, stepping_stance
-from tools.stride import Stride
+from windup.robots import load_robot
+from windup.sim_twin.impact import ImpactGauge
+from windup.sim_twin.touch import TouchWatch
+from windup.tools.fall_report import fall_result
+from windup.tools.push import Push
+from windup.tools.push_trial import push_robot
+from windup.tools.reproduce.figure import Job, Result
+from windup.tools.reproduce.kenwright.recorder import Recorder
+from windup.tools.robot import Robot
+from windup.tools.stepping import find_stepping, footing_of, stepping_stance
+from windup.tools.stride import Stride
 
 ARMS = ("l_el_link", "r_el_link")
 PLAN = ("impulse", "way", "height", "duration", "every", "body", "stance", "support", "forbid")

@@ -2,11 +2,9 @@
 
 from pathlib import Path
 
-import control
-import robots
-import sim_twin
-from tools.reproduce.figure import Study, folder_of
-from tools.reproduce.laszlo import (
+from windup import control, robots, sim_twin
+from windup.tools.reproduce.figure import Study, folder_of
+from windup.tools.reproduce.laszlo import (
     discrete,
     following,
     open_loop,

@@ -5,15 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from hal.errors import DivergedError
-from hal.observation import Observation
-from tools.build import body_of, build_walk
-from tools.gauges import Gauges
-from tools.reproduce.figure import Job, Result
-from tools.reproduce.laszlo.recorder import Recorder
-from tools.robot import Robot
-from tools.walk_end import WalkEnd
-from tools.walk_options import WalkOptions
+from windup.hal.errors import DivergedError
+from windup.hal.observation import Observation
+from windup.tools.build import body_of, build_walk
+from windup.tools.gauges import Gauges
+from windup.tools.reproduce.figure import Job, Result
+from windup.tools.reproduce.laszlo.recorder import Recorder
+from windup.tools.robot import Robot
+from windup.tools.walk_end import WalkEnd
+from windup.tools.walk_options import WalkOptions
 
 NOISE = 0.2  # degrees
 BEND = "spine"  # the joint that bends a human over; of the others the first one
