@@ -14,7 +14,7 @@ from windup.hal.errors import UnknownNameError, UsageError
 from windup.hal.guard import HealthLevels, StopPolicy
 from windup.hal.joints import Array, Joint, Joints
 from windup.hal.mirror import Mirror
-from windup.hal.servo_model import ServoMount
+from windup.hal.servos.servo_model import ServoMount
 from windup.hal.servos import servo_model
 from windup.robots import mjcf, structure
 from windup.robots.checks import Checks, whole_steps

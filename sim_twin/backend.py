@@ -12,7 +12,7 @@ from windup.hal.observation import Observation
 from windup.hal.torque_state import TorqueState
 from windup.sim_twin.imu_errors import ImuErrors
 from windup.sim_twin.sensors import Sensors
-from windup.sim_twin.servo_motor import ServoDrive, TorqueDrive
+from windup.sim_twin.servo.servo_motor import ServoDrive, TorqueDrive
 from windup.sim_twin.twin import Twin
 
 

@@ -16,7 +16,7 @@ from windup.sim_twin.lowest import lowest_point
 from windup.sim_twin.places import JointPlaces
 from windup.sim_twin.push import Push
 from windup.sim_twin.runaway import WILD, fastest_dof
-from windup.sim_twin.world import World, build_model
+from windup.sim_twin.environment import World, build_model
 
 STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 LOST = 1e6  # sum of positions that no robot has

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from windup.control.gait import Gait, load_gait
+from windup.control.pose_graph.gait import Gait, load_gait
 from windup.hal.command import JointCommand
 from windup.hal.contacts import ContactSensors
 from windup.hal.controller import PolicyInput

@@ -6,16 +6,16 @@ from pathlib import Path
 from typing import Any
 
 from windup.hal.errors import UnwellError, UsageError, WindupError
-from windup.tools.command_table import COMMANDS
-from windup.tools.interrupts import end_on_signals, ignore_signals
-from windup.tools.near_word import near_word
-from windup.tools.output import console, error_record, print_result, write_json
-from windup.tools.overview import overview
-from windup.tools.run_notes import NOTES
-from windup.tools.streams import drop_unwritten, fill_closed_streams
-from windup.tools.sweep_line import separate
-from windup.tools.version import installed_version
-from windup.tools.writing import check_writable
+from windup.tools.command_line.table import COMMANDS
+from windup.tools.stopping.interrupts import end_on_signals, ignore_signals
+from windup.tools.command_line.near_word import near_word
+from windup.tools.terminal.output import console, error_record, print_result, write_json
+from windup.tools.command_line.overview import overview
+from windup.tools.terminal.run_notes import NOTES
+from windup.tools.terminal.streams import drop_unwritten, fill_closed_streams
+from windup.tools.command_line.sweep_line import separate
+from windup.tools.command_line.version import installed_version
+from windup.tools.terminal.writing import check_writable
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -109,7 +109,7 @@ def parse(arguments: list[str]) -> Any:
     if (name := arguments[0]) not in COMMANDS:
         near = near_word(name, (*COMMANDS, "--help"))
         raise UsageError(f"unknown command {name!r}{near}; `windup --help` lists all")
-    from windup.tools.parsing import parse_options  # only now: it takes longer than the help
+    from windup.tools.command_line.parsing import parse_options  # only now: it takes longer than the help
 
     kind = COMMANDS[name].load()
     return parse_options(name, kind, separate(arguments)[1:])

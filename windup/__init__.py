@@ -25,9 +25,9 @@ if TYPE_CHECKING:
         WindupError,
     )
     from windup.robots import RobotDescription, load_robot, robot_names
-    from windup.tools.report import WalkReport
-    from windup.tools.robot import Robot
-    from windup.tools.walk_options import WalkOptions
+    from windup.tools.robot.walk_report import WalkReport
+    from windup.tools.robot.robot import Robot
+    from windup.tools.assembly.walk_options import WalkOptions
 
 PLACES = {
     "BaseState": "windup.hal",
@@ -38,10 +38,10 @@ PLACES = {
     "Joints": "windup.hal",
     "LoopReport": "windup.control.loop",
     "Observation": "windup.hal",
-    "Robot": "windup.tools.robot",
+    "Robot": "windup.tools.robot.robot",
     "RobotDescription": "windup.robots",
-    "WalkOptions": "windup.tools.walk_options",
-    "WalkReport": "windup.tools.report",
+    "WalkOptions": "windup.tools.assembly.walk_options",
+    "WalkReport": "windup.tools.robot.walk_report",
     "WindupError": "windup.hal",
     "load_robot": "windup.robots",
     "robot_names": "windup.robots",

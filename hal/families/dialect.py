@@ -5,17 +5,17 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from windup.hal.adapter import MARGIN, Probe
+from windup.hal.port.adapter import MARGIN, Probe
 from windup.hal.errors import CorruptAnswerError, HardwareError, NoAnswerError, RefusedError
-from windup.hal.port import BITS, Port
+from windup.hal.port.port import BITS, Port
 from windup.hal.protocols import protocol1, protocol2
 from windup.hal.protocols.batched import BlockRead, BlockWrite
 from windup.hal.protocols.batched1 import ChainRead, GoalWrite, bulk_read, sync_read
 from windup.hal.protocols.cyclic import CyclicRead, CyclicWrite
 from windup.hal.protocols.protocol2 import Span
 from windup.hal.registers import Register
-from windup.hal.sdk import DynamixelLink, Link
-from windup.hal.sdk1 import Dynamixel1Link, FeetechLink
+from windup.hal.families.configurator import DynamixelLink, Link
+from windup.hal.families.configurator1 import Dynamixel1Link, FeetechLink
 
 PING_SLOT = 3e-3
 """Servos answer a broadcast ping of protocol 2 one after the other, each in its slot of this, s."""

@@ -4,7 +4,7 @@ from windup.hal.families.dialect import Dynamixel1
 from windup.hal.families.family import Block, Family, Mark, Want
 from windup.hal.families.gain import Gain, slope_pair, slope_steps
 from windup.hal.protocols.protocol1 import LONGEST_DYNAMIXEL
-from windup.hal.servo_model import ServoModel
+from windup.hal.servos.servo_model import ServoModel
 from windup.hal.servos.mx_registers import (
     BAUD_CODES,
     COMMON,

@@ -4,7 +4,7 @@ from windup.hal.families.dialect import Protocol2
 from windup.hal.families.family import Block, Family, Mark, Want
 from windup.hal.families.gain import Gain
 from windup.hal.registers import Register
-from windup.hal.servo_model import ServoModel
+from windup.hal.servos.servo_model import ServoModel
 from windup.hal.servos.x_series_registers import (
     BAUD_CODES,
     COMMON,

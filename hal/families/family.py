@@ -18,7 +18,7 @@ from windup.hal.families.gain import Gain
 from windup.hal.families.usual import Usual, protective_limits
 from windup.hal.protocols.protocol2 import Span
 from windup.hal.registers import Register, RegisterTable
-from windup.hal.servo_model import ServoModel
+from windup.hal.servos.servo_model import ServoModel
 
 
 class Want(NamedTuple):

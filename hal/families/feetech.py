@@ -8,7 +8,7 @@ from windup.hal.families.dialect import Feetech
 from windup.hal.families.family import Block, Family, Mark, Want
 from windup.hal.families.gain import Gain
 from windup.hal.families.usual import Usual, protective_limits
-from windup.hal.servo_model import ServoModel
+from windup.hal.servos.servo_model import ServoModel
 from windup.hal.servos.feetech_registers import (
     BAUD_CODES,
     HARDWARE_ERRORS,

@@ -6,7 +6,7 @@ a profile velocity (e-Manual, 38 and 44), and in position mode without a profile
 
 from typing import NamedTuple
 
-from windup.hal.servo_model import ServoModel
+from windup.hal.servos.servo_model import ServoModel
 
 
 class Usual(NamedTuple):

@@ -7,7 +7,7 @@ from enum import IntEnum
 import numpy as np
 
 from windup.hal.joints import Array
-from windup.hal.servo_model import OwnLimits, ServoModel, ServoMount
+from windup.hal.servos.servo_model import OwnLimits, ServoModel, ServoMount
 
 COOLER = (15.0, 8.0)
 """Warning and stop below the temperature at which a servo switches off, degrees C. An XM430 at

@@ -6,11 +6,11 @@ from windup.hal.errors import UsageError
 from windup.hal.guard.levels import HealthLevels, Kind
 from windup.hal.guardian.order import Charge
 from windup.hal.joints import Array
-from windup.hal.network_port import NETWORK
-from windup.hal.open_port import stable_url
-from windup.hal.port import DevicePort
-from windup.hal.servo_backend import ServoBackend
-from windup.hal.servo_link import ServoLink
+from windup.hal.port.network_port import NETWORK
+from windup.hal.port.open_port import stable_url
+from windup.hal.port.port import DevicePort
+from windup.hal.servo_bus.servo_backend import ServoBackend
+from windup.hal.servo_bus.bus_connection import ServoLink
 
 
 def charges_of(

@@ -17,7 +17,7 @@ import msgspec
 
 from windup.hal.clock import PRIORITY
 from windup.hal.guardian.host import Host
-from windup.hal.guardian.in_words import in_words
+from windup.hal.in_words import in_words
 from windup.hal.guardian.order import HAND_OVER, IDLE, READY, RELEASE, SILENCE, TICK, Order
 from windup.hal.guardian.signals import ignore_signals
 from windup.hal.guardian.takeover import Takeover

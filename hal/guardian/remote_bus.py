@@ -4,16 +4,16 @@ from contextlib import suppress
 
 import numpy as np
 
-from windup.hal.bus import Bus
+from windup.hal.bus.bus import Bus
 from windup.hal.errors import HardwareError
 from windup.hal.families import family_of
-from windup.hal.guardian.in_words import in_words
+from windup.hal.in_words import in_words
 from windup.hal.guardian.order import Charge
 from windup.hal.joints import Array, Mask
-from windup.hal.open_port import open_port
-from windup.hal.servo_line import ServoLine
-from windup.hal.servo_model import ServoMount
-from windup.hal.servo_torque import ServoTorque
+from windup.hal.port.open_port import open_port
+from windup.hal.servo_bus.bus_readout import ServoLine
+from windup.hal.servos.servo_model import ServoMount
+from windup.hal.servo_bus.servo_torque import ServoTorque
 from windup.hal.servos import servo_model
 
 UNLIMITED = (np.inf, -np.inf)

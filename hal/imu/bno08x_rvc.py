@@ -24,7 +24,7 @@ from windup.hal.imu.frame_clock import FrameClock
 from windup.hal.imu.quaternion import between, conjugate, euler_zxy, multiply, rotate
 from windup.hal.joints import Array
 from windup.hal.observation import ImuState
-from windup.hal.port import Port
+from windup.hal.port.port import Port
 
 HEADER = b"\xaa\xaa"
 LENGTH = 19

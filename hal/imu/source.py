@@ -3,7 +3,7 @@
 from typing import Protocol
 
 from windup.hal.observation import ImuState
-from windup.hal.port import Port
+from windup.hal.port.port import Port
 
 
 class ImuSource(Protocol):

@@ -14,7 +14,7 @@ STS3215's armature and friction by stall torque. Identify it before trusting a t
 
 from math import pi
 
-from windup.hal.servo_model import OwnLimits, Row, ServoModel
+from windup.hal.servos.servo_model import OwnLimits, Row, ServoModel
 
 GAIN = 4096 / (2.0 * pi) / 4000
 """Duty per rad and unit of P: 0.16297."""

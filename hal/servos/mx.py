@@ -11,7 +11,7 @@ fit of AX-12A or MX-28: their lines scale the MX-64's by stall torque.
 
 from math import pi
 
-from windup.hal.servo_model import OwnLimits, Row, ServoModel
+from windup.hal.servos.servo_model import OwnLimits, Row, ServoModel
 
 GAIN = 4096 / (2.0 * pi) / 8 / 511
 """Duty per rad and unit of P: 0.1595."""

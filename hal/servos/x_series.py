@@ -16,7 +16,7 @@ with the square of the gear ratio, friction with the ratio.
 
 from math import pi
 
-from windup.hal.servo_model import OwnLimits, Row, ServoModel
+from windup.hal.servos.servo_model import OwnLimits, Row, ServoModel
 
 COUNTS_PER_RAD = 4096 / (2.0 * pi)
 FULL_SCALE = 885

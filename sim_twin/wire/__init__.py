@@ -2,10 +2,10 @@
 
 import serial
 
-from windup.sim_twin.wire.address import Address, parse_address
-from windup.sim_twin.wire.build import build_world
-from windup.sim_twin.wire.world import World
-from windup.sim_twin.wire.worlds import drop_world, find_world, put_world
+from windup.sim_twin.wire.world.address import Address, parse_address
+from windup.sim_twin.wire.world.build import build_world
+from windup.sim_twin.wire.world.bus_world import World
+from windup.sim_twin.wire.world.worlds import drop_world, find_world, put_world
 
 if __name__ not in serial.protocol_handler_packages:
     serial.protocol_handler_packages.append(__name__)

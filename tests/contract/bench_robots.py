@@ -9,16 +9,16 @@ import numpy as np
 
 from windup.hal.coupling import Coupling, Couplings
 from windup.hal.joints import Joint, Joints
-from windup.hal.servo_backend import BusPort, ServoBackend
-from windup.hal.servo_model import ServoMount
+from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
+from windup.hal.servos.servo_model import ServoMount
 from windup.hal.servos import servo_model
 from windup.sim_twin.wire import put_world
-from windup.sim_twin.wire.bus import Bus
+from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.device import Device
-from windup.sim_twin.wire.families import PROTOCOLS, make_language, make_servo
+from windup.sim_twin.wire.world.families import PROTOCOLS, make_language, make_servo
 from windup.sim_twin.wire.schedule import Schedule
-from windup.sim_twin.wire.shaft import InertiaShaft
-from windup.sim_twin.wire.world import Bench, World
+from windup.sim_twin.wire.shafts.shaft import InertiaShaft
+from windup.sim_twin.wire.world.bus_world import Bench, World
 
 BAUD = 1_000_000
 REACH = 1.0  # rad, of every joint, both ways

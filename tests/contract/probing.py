@@ -8,9 +8,9 @@ import numpy as np
 
 from windup.hal.backend import Backend
 from windup.hal.joints import Array
-from windup.hal.servo_backend import ServoBackend
+from windup.hal.servo_bus.servo_backend import ServoBackend
 from windup.robots import load_robot
-from windup.tools.stack import servo_backend
+from windup.tools.robot.stack import servo_backend
 
 TICK: Final = 0.008
 """Between two ticks, s."""

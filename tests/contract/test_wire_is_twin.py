@@ -8,7 +8,7 @@ from tests.contract.probing import COUNT, TICK, wired
 from windup.hal.backend import Backend
 from windup.hal.command import JointCommand
 from windup.hal.joints import Array
-from windup.hal.servo_backend import ServoBackend
+from windup.hal.servo_bus.servo_backend import ServoBackend
 from windup.robots import load_robot
 from windup.sim_twin.backend import TwinBackend
 from windup.sim_twin.twin import Twin

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 import mujoco
 import numpy as np
 
-from windup.control.estimator import BaseEstimator
-from windup.control.foot_load import FootLoad
-from windup.control.soles import Soles
+from windup.control.estimation.estimator import BaseEstimator
+from windup.control.estimation.foot_load import FootLoad
+from windup.control.kinematics.soles import Soles
 from windup.hal.contacts import ContactSensors
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState, ImuState, JointState, Observation

@@ -3,8 +3,8 @@
 from tests.hal.fake_bus import FakeSerial
 from tests.hal.fake_bus1 import MX, SCS, STS, FakeSerial1
 from windup.hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FEETECH_SCS, FEETECH_STS, Family
-from windup.hal.port import Port
-from windup.hal.servo_model import ServoModel
+from windup.hal.port.port import Port
+from windup.hal.servos.servo_model import ServoModel
 
 
 class Adapter(FakeSerial):

@@ -5,8 +5,8 @@ from math import pi
 from tests.hal.fake_bus import FakeSerial, fake_port
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.joints import Joint, Joints
-from windup.hal.servo_backend import BusPort, ServoBackend
-from windup.hal.servo_model import ServoMount
+from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
+from windup.hal.servos.servo_model import ServoMount
 from windup.hal.servos import servo_model
 
 XM430 = servo_model("XM430-W350")

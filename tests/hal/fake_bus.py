@@ -6,7 +6,7 @@ are plain bytes without any rules. What goes wrong is said by attributes.
 
 from collections.abc import Callable
 
-from windup.hal.port import Port
+from windup.hal.port.port import Port
 from windup.hal.protocols import protocol2
 from windup.hal.protocols.crc16 import crc16
 

@@ -2,9 +2,9 @@
 
 from tests.hal.fake_bus import FakeSerial, VirtualClock
 from windup.hal.families import family_of
-from windup.hal.port import Port
+from windup.hal.port.port import Port
 from windup.hal.protocols import protocol1
-from windup.hal.servo_model import ServoModel
+from windup.hal.servos.servo_model import ServoModel
 from windup.hal.servos import servo_model
 
 STS = servo_model("STS3215-7.4V")

@@ -7,9 +7,9 @@ from tests.hal.fake_bus import FakeSerial, VirtualClock
 from tests.hal.fake_bus1 import FakeSerial1
 from windup.hal.errors import PortError
 from windup.hal.joints import Joint, Joints
-from windup.hal.port import Port
-from windup.hal.servo_backend import BusPort, ServoBackend
-from windup.hal.servo_model import ServoModel, ServoMount
+from windup.hal.port.port import Port
+from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
+from windup.hal.servos.servo_model import ServoModel, ServoMount
 
 
 class Wires:

@@ -8,7 +8,7 @@ from windup.hal.command import JointCommand
 from windup.hal.guard import HealthLevels, HealthWatch
 from windup.hal.joints import Joint, Joints
 from windup.hal.observation import JointState, Observation
-from windup.hal.servo_model import ServoMount
+from windup.hal.servos.servo_model import ServoMount
 from windup.hal.servos import servo_model
 
 NAMES = ("hip", "knee", "ankle")

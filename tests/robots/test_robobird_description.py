@@ -4,7 +4,7 @@ import pytest
 
 from windup import Robot
 from windup.robots import RobotDescription, load_robot
-from windup.tools.walk_options import WalkOptions
+from windup.tools.assembly.walk_options import WalkOptions
 
 DENSITY = 1000.0  # kg/m3
 

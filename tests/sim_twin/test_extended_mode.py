@@ -8,13 +8,13 @@ import pytest
 
 from tests.shapes import Limb, Shape, write_shape
 from windup import Robot
-from windup.control.play import PoseHolder
+from windup.control.motions.play import PoseHolder
 from windup.hal.backend import BusHealth
 from windup.hal.guardian.order import Charge
 from windup.hal.guardian.remote_bus import RemoteBus
 from windup.robots import RobotDescription, load_robot
 from windup.sim_twin.twin import Twin
-from windup.tools.servo_bus import ServoBus
+from windup.tools.testing.servo_bus import ServoBus
 
 ONE = Shape("one", (Limb("arm", "0 0 0.03", 1, "z", down=False),), floats=False, height=0.03)
 FAR = 15.0

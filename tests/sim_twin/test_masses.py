@@ -10,7 +10,7 @@ from tests.shapes import SHAPES, Shape, write_shape
 from windup.robots import load_robot
 from windup.sim_twin.masses import keep_masses
 from windup.sim_twin.plant import Plant
-from windup.sim_twin.world import World, build_model
+from windup.sim_twin.environment import World, build_model
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.name)

@@ -56,8 +56,8 @@ def nothing_opens(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[N
     def opened(*arguments: object, **named: object) -> None:
         raise AssertionError(f"opened: {arguments} {named}")
 
-    monkeypatch.setattr("windup.hal.open_port._open", opened)
-    monkeypatch.setattr("windup.sim_twin.wire.worlds.build_world", opened)
+    monkeypatch.setattr("windup.hal.port.open_port._open", opened)
+    monkeypatch.setattr("windup.sim_twin.wire.world.worlds.build_world", opened)
     monkeypatch.setattr(Twin, "__init__", opened)
     monkeypatch.chdir(tmp_path)
     before = signal.getsignal(signal.SIGTERM)

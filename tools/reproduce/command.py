@@ -7,12 +7,12 @@ from typing import Annotated
 import tyro
 
 from windup.hal.errors import UnknownNameError
-from windup.tools.command import Command
-from windup.tools.output import console, write_json
-from windup.tools.quantities import Jobs
+from windup.tools.terminal.command import Command
+from windup.tools.terminal.output import console, write_json
+from windup.tools.terminal.quantities import Jobs
 from windup.tools.reproduce.report import record, reproduce
 from windup.tools.reproduce.studies import studies
-from windup.tools.writing import check_folder
+from windup.tools.terminal.writing import check_folder
 
 
 @dataclass(frozen=True, kw_only=True)

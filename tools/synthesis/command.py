@@ -8,26 +8,26 @@ from typing import Annotated, Any
 import msgspec
 import tyro
 
-from windup.control.gait_file import GaitFile
+from windup.control.pose_graph.gait_file import GaitFile
 from windup.hal.config import load_toml
 from windup.hal.errors import UsageError
 from windup.hal.ranges import Range
 from windup.robots import load_robot
-from windup.tools.build import build_walk
-from windup.tools.command import Command
-from windup.tools.gaits import gait_path
-from windup.tools.output import console, write_json
-from windup.tools.parallel import Workers
-from windup.tools.quantities import Count, Jobs, Noise, Seed, Some, Speed
-from windup.tools.shape import check_walks
+from windup.tools.assembly.build import build_walk
+from windup.tools.terminal.command import Command
+from windup.tools.assembly.gaits import gait_path
+from windup.tools.terminal.output import console, write_json
+from windup.tools.terminal.parallel import Workers
+from windup.tools.terminal.quantities import Count, Jobs, Noise, Seed, Some, Speed
+from windup.tools.assembly.shape import check_walks
 from windup.tools.synthesis.gait_toml import write_gait
 from windup.tools.synthesis.genes import Genome
 from windup.tools.synthesis.log import Entry, SearchLog
 from windup.tools.synthesis.score import Objective, objective
 from windup.tools.synthesis.search import Search, Values
 from windup.tools.synthesis.trial import Trial, walk_trial
-from windup.tools.walk_options import WalkOptions
-from windup.tools.writing import check_writable
+from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.terminal.writing import check_writable
 
 FINALISTS = 5
 Positional = Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]

@@ -5,9 +5,9 @@ from typing import Any
 
 import msgspec
 
-from windup.control.gait_file import GaitFile
+from windup.control.pose_graph.gait_file import GaitFile
 from windup.hal.errors import UsageError
-from windup.tools.writing import writing
+from windup.tools.terminal.writing import writing
 
 
 def write_gait(path: Path, file: GaitFile) -> None:

@@ -20,7 +20,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from windup.control.gait_file import GaitFile, State
+from windup.control.pose_graph.gait_file import GaitFile, State
 from windup.hal.errors import UsageError
 from windup.hal.joints import Array, Joints
 from windup.hal.mirror import Mirror, other_side

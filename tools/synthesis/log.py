@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from windup.hal.errors import UsageError
-from windup.tools.output import plain
-from windup.tools.writing import writing
+from windup.tools.terminal.output import plain
+from windup.tools.terminal.writing import writing
 
 Entry = dict[str, Any]
 

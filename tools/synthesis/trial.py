@@ -5,11 +5,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from windup.control.gait_file import GaitFile
+from windup.control.pose_graph.gait_file import GaitFile
 from windup.hal.errors import WindupError
-from windup.tools.robot import Robot
+from windup.tools.robot.robot import Robot
 from windup.tools.synthesis.gait_toml import write_gait
-from windup.tools.walk_options import WalkOptions
+from windup.tools.assembly.walk_options import WalkOptions
 
 KEPT = (
     "steps",

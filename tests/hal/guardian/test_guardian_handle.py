@@ -13,9 +13,9 @@ from windup.hal.errors import GuardianError, HardwareError, PortError, UsageErro
 from windup.hal.guard.levels import HealthLevels, Kind
 from windup.hal.guardian.charges import charge_of
 from windup.hal.guardian.handle import Guardian, guardian_for
-from windup.hal.open_port import open_port
+from windup.hal.port.open_port import open_port
 from windup.hal.servos import servo_model
-from windup.tools.robot import Robot
+from windup.tools.robot.robot import Robot
 
 
 @pytest.fixture

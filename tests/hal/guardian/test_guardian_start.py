@@ -15,7 +15,7 @@ from windup.hal.errors import HardwareError, PortError
 from windup.hal.guardian import handle
 from windup.hal.guardian.handle import Guardian
 from windup.hal.guardian.launch import launch
-from windup.hal.guardian.lock import AdapterLock
+from windup.hal.port.lock import AdapterLock
 from windup.hal.guardian.order import Order
 
 

@@ -10,11 +10,11 @@ from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
-from windup.hal.bus import Bus
+from windup.hal.bus.bus import Bus
 from windup.hal.errors import HardwareError
 from windup.hal.families import FEETECH_STS
 from windup.hal.guardian.order import Charge
-from windup.hal.open_port import open_port
+from windup.hal.port.open_port import open_port
 from windup.hal.registers import Register
 
 NAMES = {1: "l_knee", 2: "r_knee"}

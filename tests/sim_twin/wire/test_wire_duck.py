@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from windup.hal.command import JointCommand
-from windup.hal.servo_backend import BusPort, ServoBackend
+from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
 from windup.robots import load_robot
 from windup.sim_twin.twin import Twin
-from windup.tools.servo_bus import ServoBus
+from windup.tools.testing.servo_bus import ServoBus
 
 PERIOD = 0.008
 TICKS = 250

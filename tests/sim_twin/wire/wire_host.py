@@ -7,10 +7,10 @@ from typing import Any
 import serial
 
 import windup.sim_twin.wire  # noqa: F401 - makes twin:// known to pyserial
-from windup.sim_twin.wire.frames import BROADCAST, Frame, Parser, encode
-from windup.sim_twin.wire.servo import Servo
-from windup.sim_twin.wire.shaft import InertiaShaft
-from windup.sim_twin.wire.world import Bench, World
+from windup.sim_twin.wire.protocols.frames import BROADCAST, Frame, Parser, encode
+from windup.sim_twin.wire.servos.servo import Servo
+from windup.sim_twin.wire.shafts.shaft import InertiaShaft
+from windup.sim_twin.wire.world.bus_world import Bench, World
 
 
 class Host:

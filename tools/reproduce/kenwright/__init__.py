@@ -44,7 +44,8 @@ KENWRIGHT = Study(
         folder_of(robots) / "op3",
         Path(work.__file__),
         Path(recorder.__file__),
-        *(Path(work.__file__).parents[2] / f"{name}.py" for name in ("push_trial", "striding")),
+        Path(work.__file__).parents[2] / "behaviours" / "push_trial.py",
+        Path(work.__file__).parents[2] / "behaviours" / "striding.py",
     ),
     missing={
         "7, 8": "pictures of the paper's skeleton: ours is the model of the robot",

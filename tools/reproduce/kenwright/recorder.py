@@ -5,15 +5,15 @@ from typing import Final
 
 import numpy as np
 
-from windup.control.footing import Footing
-from windup.control.momenta import capture_point
-from windup.control.rotation import yaw_of
-from windup.control.stepper import Stepper
+from windup.control.stepping.footing import Footing
+from windup.control.kinematics.momenta import capture_point
+from windup.control.kinematics.rotation import yaw_of
+from windup.control.stepping.stepper import Stepper
 from windup.hal.controller import Controller
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
 from windup.tools.reproduce.figure import Result
-from windup.tools.robot import Robot
+from windup.tools.robot.robot import Robot
 
 EVERY = 2  # ticks
 PHASES: Final = ("stand", "swing", "land", "comfort")

@@ -8,15 +8,15 @@ import numpy as np
 
 from windup.robots import load_robot
 from windup.sim_twin.impact import ImpactGauge
-from windup.sim_twin.touch import TouchWatch
-from windup.tools.fall_report import fall_result
-from windup.tools.push import Push
-from windup.tools.push_trial import push_robot
+from windup.sim_twin.ground.touch import TouchWatch
+from windup.tools.measures.fall_report import fall_result
+from windup.tools.commands.push import Push
+from windup.tools.behaviours.push_trial import push_robot
 from windup.tools.reproduce.figure import Job, Result
 from windup.tools.reproduce.kenwright.recorder import Recorder
-from windup.tools.robot import Robot
-from windup.tools.stepping import find_stepping, footing_of, stepping_stance
-from windup.tools.stride import Stride
+from windup.tools.robot.robot import Robot
+from windup.tools.assembly.stepping import find_stepping, footing_of, stepping_stance
+from windup.tools.commands.stride import Stride
 
 ARMS = ("l_el_link", "r_el_link")
 PLAN = ("impulse", "way", "height", "duration", "every", "body", "stance", "support", "forbid")

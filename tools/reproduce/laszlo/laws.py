@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from windup.control.balancer import Balancer
-from windup.control.course import Course
-from windup.control.speed import SpeedControl
+from windup.control.limit_cycle.balancer import Balancer
+from windup.control.steering.course import Course
+from windup.control.steering.speed import SpeedControl
 from windup.hal.joints import Array
 
 

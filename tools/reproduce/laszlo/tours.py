@@ -7,13 +7,13 @@ import numpy as np
 
 from windup.hal.errors import DivergedError
 from windup.hal.observation import Observation
-from windup.tools.build import body_of, build_walk
-from windup.tools.gauges import Gauges
+from windup.tools.assembly.build import body_of, build_walk
+from windup.tools.measures.gauges import Gauges
 from windup.tools.reproduce.figure import Job, Result
 from windup.tools.reproduce.laszlo.recorder import Recorder
-from windup.tools.robot import Robot
-from windup.tools.walk_end import WalkEnd
-from windup.tools.walk_options import WalkOptions
+from windup.tools.robot.robot import Robot
+from windup.tools.measures.walk_end import WalkEnd
+from windup.tools.assembly.walk_options import WalkOptions
 
 NOISE = 0.2  # degrees
 BEND = "spine"  # the joint that bends a human over; of the others the first one

@@ -25,10 +25,10 @@ WU_ZORDAN = Study(
         folder_of(robots) / "human",
         folder_of(robots) / "human_handstand",
         Path(work.__file__),
-        Path(work.__file__).parents[2] / "push_trial.py",
-        Path(work.__file__).parents[2] / "directed.py",
+        Path(work.__file__).parents[2] / "behaviours" / "push_trial.py",
+        Path(work.__file__).parents[2] / "behaviours" / "directed.py",
     ),
     missing={
-        "2, 3": "curves of the model itself: ours are control/swing.py",
+        "2, 3": "curves of the model itself: ours are control/footprints/swing.py",
     },
 )

@@ -1,0 +1,1 @@
+"""From IMU, joints and foot contacts to the state of the base."""

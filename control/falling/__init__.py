@@ -1,0 +1,1 @@
+"""Foreseeing a fall, and falling softly."""

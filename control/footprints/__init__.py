@@ -1,0 +1,1 @@
+"""Directed steps: footprints, the swing to them, and the limbs that follow."""

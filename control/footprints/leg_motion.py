@@ -1,0 +1,223 @@
+"""Two legs on position servos that follow a plan of the weight and of the foot in the air.
+
+What is on the ground is measured anew at every tick, so that errors do not pile up. The goals
+carry what the servos need to hold the weight, and run ahead of the swinging leg.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from windup.control.kinematics.body import Body, heading
+from windup.control.footprints.footprints import ground_places
+from windup.control.kinematics.limb_ik import LimbIk, Pose
+from windup.control.kinematics.rotation import quaternion_matrix, turn, turn_between
+from windup.control.footprints.weight import holding_torque
+from windup.hal.command import JointCommand
+from windup.hal.errors import StateMissingError
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
+
+MOST_SHIFT, MOST_TILT = 0.02, 0.1
+"""Most that is made up for, m and rad."""
+PRESS = 0.002
+"""How far into the ground a foot is put, so that it touches with certainty, m."""
+FAST, SMOOTH = 4.8, 0.02
+"""Most speed of a goal that is told beforehand, rad/s, and the time it is smoothed in, s."""
+ITERATIONS = 3
+"""Of the inverse kinematics in a tick; each one begins where the last tick ended."""
+
+
+class Gains(Protocol):
+    """How hard errors are made up for; a file's record has it."""
+
+    @property
+    def hold(self) -> float:
+        """Part of the error of the centre of mass that the goals go too far."""
+        ...
+
+    @property
+    def brake(self) -> float:
+        """Time by which its speed moves the goals against it, s."""
+        ...
+
+    @property
+    def level(self) -> float:
+        """Part of the tilt of the base that the goals lean against it."""
+        ...
+
+    @property
+    def steady(self) -> float:
+        """Time by which the rate of that tilt does so, s."""
+        ...
+
+    @property
+    def follow(self) -> float:
+        """Rate at which what lasts of either is made up for, 1/s."""
+        ...
+
+    @property
+    def slow(self) -> float:
+        """Time constant of the torques that hold the weight, s."""
+        ...
+
+
+TAKE_OFF = 0.2
+"""Part of the swing in which the leg goes over from bearing to flying."""
+
+
+@dataclass
+class Aim:
+    """What is planned for now.
+
+    Attributes:
+        com: (2,) where the centre of mass should be, m.
+        speed: (2,) of it, m/s.
+        height: Of the base above the ground, m.
+        yaw: Heading of the base, rad.
+        share: Part of the weight that the second foot bears.
+        flying: The foot that is in the air, or has just come down.
+        standing: 0: that leg moves as one in the air; 1: as one on the ground.
+    """
+
+    com: Array
+    speed: Array
+    height: float
+    yaw: float
+    share: float
+    flying: int | None = None
+    standing: float = 1.0
+
+
+class LegMotion(ABC):
+    """Follows a plan with both legs.
+
+    Args:
+        joints: The robot's joints.
+        body: Kinematics of the robot.
+        base: Name of the body with the free joint.
+        limbs: Inverse kinematics of its two legs, in the order of its soles.
+        stance: (n,) rad, the pose to start from; joints of no leg keep it.
+        gains: How hard errors are made up for.
+
+    Attributes:
+        places: (2, 3) where the feet are now.
+    """
+
+    places: Array
+
+    def __init__(
+        self,
+        joints: Joints,
+        body: Body,
+        base: str,
+        limbs: Sequence[LimbIk],
+        stance: Array,
+        gains: Gains,
+    ) -> None:
+        self.joints, self.body, self.base, self.limbs = joints, body, base, limbs
+        self.stance, self.gains = stance, gains
+
+    @abstractmethod
+    def plan(self, now: float, dt: float) -> Aim:
+        """Return what to do now; the robot has been measured."""
+
+    @abstractmethod
+    def sole(self, foot: int) -> Pose:
+        """Return where the sole of a foot on the ground should be."""
+
+    @abstractmethod
+    def flying(self, foot: int) -> Pose:
+        """Return where the sole of a foot in the air should be."""
+
+    def reset(self, observation: Observation) -> None:
+        """Begin where the feet are."""
+        self.look(observation)
+        self._hold = JointCommand.hold(self.joints, self.stance)
+        self._last = [observation.joints.position.copy() for _ in self.limbs]
+        self._before: Array | None = None
+        self._lead = np.zeros(len(self.joints))
+        self._torque = np.zeros(len(self.joints))
+        self._shift, self._tilt = np.zeros(2), np.zeros(3)
+
+    def step(self, observation: Observation, dt: float) -> JointCommand:
+        """Return the command of now."""
+        self.look(observation)
+        aim = self.plan(observation.time, dt)
+        base = self._base(aim, dt)
+        goals = self.stance.copy()
+        for foot in range(2):
+            self._solve(goals, foot, self.sole(foot).seen_from(base))
+        if aim.flying is not None:
+            self._fly(goals, aim.flying, aim.standing)
+        block = self._hold.block.copy()
+        np.clip(goals, self.joints.lower, self.joints.upper, out=block[0])
+        block[1] = self._run_ahead(block[0], dt)
+        torque = holding_torque(self.body, self.base, (1.0 - aim.share, aim.share))
+        self._torque += min(dt / self.gains.slow, 1.0) * (torque - self._torque)
+        block[2] = self._torque
+        return JointCommand(block)
+
+    def look(self, observation: Observation) -> None:
+        """Measure the feet, the centre of mass and the base.
+
+        Raises:
+            StateMissingError: The observation has no base.
+        """
+        state = observation.base
+        if state is None:
+            raise StateMissingError("the base state is missing; run with `--state estimated`")
+        out = self.body.measure(observation)
+        axes = self.body.data.site_xmat[self.body.soles]
+        self.places = ground_places(out.feet[0], axes)
+        self.mass, self.speed = out.com[0], out.com_velocity[0, :2]
+        self.pose = Pose(state.position, quaternion_matrix(state.orientation))
+        self._rate = self.pose.rotation @ state.angular_velocity * np.array([1.0, 1.0, 0.0])
+        self.turned = float(heading(state.orientation))
+        self.heights = out.feet[0, :, 2]
+        self.ground = float(self.heights.min())
+
+    def _base(self, aim: Aim, dt: float) -> Pose:
+        """Return where the base should be for that, with what is lasting made up for."""
+        gains = self.gains
+        error, slow = aim.com - self.mass[:2], self.speed - aim.speed
+        self._shift = np.clip(self._shift + gains.follow * dt * error, -MOST_SHIFT, MOST_SHIFT)
+        wanted = turn(aim.yaw)
+        lean = turn_between(self.pose.rotation, wanted)
+        self._tilt = np.clip(self._tilt + gains.follow * dt * lean, -MOST_TILT, MOST_TILT)
+        offset = wanted @ self.pose.rotation.T @ (self.pose.position - self.mass)
+        place = aim.com + offset[:2] + self._shift + gains.hold * error - gains.brake * slow
+        tilt = self._tilt + gains.level * lean - gains.steady * self._rate
+        return Pose(np.array([*place, self.ground + aim.height]), _small(tilt) @ wanted)
+
+    def _run_ahead(self, goals: Array, dt: float) -> Array:
+        """Return how fast (n,) the goals move, rad/s: servos that know it lag less."""
+        if self._before is not None:
+            speed = (goals - self._before) / dt
+            self._lead += min(dt / SMOOTH, 1.0) * (np.clip(speed, -FAST, FAST) - self._lead)
+        self._before = goals.copy()
+        return self._lead
+
+    def _fly(self, goals: Array, foot: int, standing: float) -> None:
+        """Set the leg in the air, from where the base is; on the ground from where it should be."""
+        limb = self.limbs[foot]
+        stood = goals[limb.joints].copy()
+        self._solve(goals, foot, self.flying(foot).seen_from(self.pose))
+        goals[limb.joints] += standing * (stood - goals[limb.joints])
+
+    def _solve(self, goals: Array, foot: int, target: Pose) -> None:
+        limb = self.limbs[foot]
+        angles = limb.solve(target, self._last[foot], ITERATIONS)
+        self._last[foot][limb.joints] = angles
+        goals[limb.joints] = angles
+
+
+def _small(turned: Array) -> Array:
+    """Return the rotation (3, 3) of a small turn (3,) rad."""
+    x, y, z = turned
+    matrix = np.array([[1.0, -z, y], [z, 1.0, -x], [-y, x, 1.0]])
+    q, r = np.linalg.qr(matrix)
+    return q * np.sign(np.diag(r))

@@ -1,0 +1,70 @@
+"""Rotation matrices (3, 3): made from headings and quaternions, and what lies between two."""
+
+from math import atan2, cos, hypot, sin
+
+import mujoco
+import numpy as np
+
+from windup.hal.joints import Array
+
+
+def yaw_of(rotation: Array) -> float:
+    """Return the heading of a rotation matrix, rad."""
+    return atan2(rotation[1, 0], rotation[0, 0])
+
+
+def facing(rotation: Array) -> float:
+    """Return where a base with that rotation matrix faces, rad.
+
+    See `windup.control.kinematics.body.heading`.
+    """
+    return atan2(-rotation[0, 1], rotation[1, 1])
+
+
+def turn(yaw: float) -> Array:
+    """Return the rotation matrix (3, 3) of a turn about the vertical, rad."""
+    c, s = cos(yaw), sin(yaw)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def heading_between(one: float, other: float, part: float) -> float:
+    """Return the heading after a `part` of the shorter way from `one` to `other`, rad."""
+    return one + part * way_round(one, other)
+
+
+def turn_about_y(pitch: float) -> Array:
+    """Return the rotation matrix (3, 3) of a turn about the y axis, rad; positive leans forward."""
+    c, s = cos(pitch), sin(pitch)
+    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+
+
+def quaternion_matrix(orientation: Array) -> Array:
+    """Return the rotation matrix (3, 3) of a quaternion (4,) wxyz."""
+    matrix = np.empty(9)
+    mujoco.mju_quat2Mat(matrix, orientation)
+    return matrix.reshape(3, 3)
+
+
+def turn_between(one: Array, other: Array) -> Array:
+    """Return the turn (3,) rad, in the frame that both are seen from, from `one` to `other`."""
+    (a, b, c), (d, e, f), (g, h, i) = (other @ one.T).tolist()
+    x, y, z = 0.5 * (h - f), 0.5 * (c - g), 0.5 * (d - b)
+    size = hypot(x, y, z)
+    factor = 1.0 if size < 1e-9 else atan2(size, 0.5 * (a + e + i - 1.0)) / size
+    return np.array([factor * x, factor * y, factor * z])
+
+
+def way_round(one: float, other: float) -> float:
+    """Return the shorter way from one direction to another, rad."""
+    return atan2(sin(other - one), cos(other - one))
+
+
+def lying(normal: Array, yaw: float) -> Array:
+    """Return the rotation (3, 3) of what lies on ground of a unit `normal` (3,), heading `yaw` rad.
+
+    Seen from above it has that heading.
+    """
+    c, s = cos(yaw), sin(yaw)
+    along = np.array([c, s, -(c * normal[0] + s * normal[1]) / normal[2]])
+    along /= np.linalg.norm(along)
+    return np.column_stack([along, np.cross(normal, along), normal])

@@ -1,0 +1,1 @@
+"""Pose control graphs and gaits: their files, their tracking, their styles."""

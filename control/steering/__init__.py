@@ -1,0 +1,1 @@
+"""Where a walk goes: speed, side, turns, courses, slopes and slipping feet."""

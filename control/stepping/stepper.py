@@ -1,0 +1,280 @@
+"""Stands, and steps where a push asks for it: the momentum supervisor on position servos.
+
+Wu & Zordan 2010, section 4, decides; the step itself is what servos that turn slowly and late can
+do: the stance leg is held stiffly and the robot tips over it, the other foot goes up as fast as it
+can, and the target is decided anew while there is time. Once it stands still, comfort steps bring
+the feet back to the stance (Kenwright 2012, section IV).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from shapely.geometry.base import BaseGeometry
+
+from windup.control.stepping.comfort import STILL, ComfortStep
+from windup.control.stepping.footing import Footing
+from windup.control.kinematics.momenta import capture_point
+from windup.control.footprints.keep_out import NoStep
+from windup.control.kinematics.rotation import facing, heading_between, turn
+from windup.control.stepping.step_decision import (
+    Placement,
+    StepRule,
+    choose,
+    landing_point,
+    needs_step,
+    place,
+    trigger_point,
+)
+from windup.control.stepping.stepping_file import Stepping
+from windup.control.footprints.swing import gaussian_progress
+from windup.hal.command import JointCommand
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
+
+Phase = Literal["stand", "swing", "land", "comfort"]
+MOST_SHIFT = 0.06
+"""How far the base is drawn at most, m."""
+MOST_PITCH = 0.8
+"""How far the trunk turns at most, rad."""
+TAKE = 0.6
+"""Time in which a robot that was walking takes on the stance's height, its arms and head, s."""
+
+
+@dataclass
+class Flight:
+    """A step in the air: by which rule, which foot, since when, s, from where and to where (2,) m.
+
+    Attributes:
+        centre: Where (2,) m the base was over the stance leg when it began.
+    """
+
+    rule: StepRule
+    foot: int
+    began: float
+    start: Array
+    target: Array
+    centre: Array
+
+
+class Stepper:
+    """Stands in its stance and steps to prevent a fall.
+
+    Args:
+        joints: The robot's joints.
+        footing: Its feet.
+        stance: (n,) rad, the pose to stand in.
+        rule: When and where to step; None balances with the feet alone.
+        stepping: How.
+        no_step: Where no foot may come down.
+
+    Attributes:
+        steps: Steps that were taken to prevent a fall.
+        comforts: Comfort steps.
+        phase: What it is at.
+    """
+
+    def __init__(
+        self,
+        joints: Joints,
+        footing: Footing,
+        stance: Array,
+        rule: StepRule | None,
+        stepping: Stepping,
+        no_step: NoStep | None = None,
+    ) -> None:
+        self.joints, self.footing, self.stance = joints, footing, stance
+        self.rule, self.stepping = rule, stepping
+        self.no_step = no_step or NoStep()
+        self._reach = stepping.reach.reach()
+        self.phase: Phase = "stand"
+        self.steps = self.comforts = 0
+
+    def reset(self, observation: Observation) -> None:
+        """Begin to stand; the robot is in its stance."""
+        self.phase = "stand"
+        self.steps = self.comforts = 0
+        self._hold = JointCommand.hold(self.joints, self.stance)
+        self._landed = self._taken = -np.inf
+        self._before, self._above = self.stance, self.footing.height
+        self._moved = observation.time
+        self.footing.look(observation)
+        self._planted = self.footing.planted()
+        self.footing.rounded = self.stepping.support == "capsule"
+        self.no_step.begin(self.footing.feet, [self.footing.ground(foot) for foot in (0, 1)])
+
+    def take(self, observation: Observation) -> None:
+        """Begin in the middle of a walk, from wherever the robot is: a foot in the air steps."""
+        self.reset(observation)
+        now, footing = observation.time, self.footing
+        self._landed = self._taken = now
+        self._before = observation.joints.position.copy()
+        lowest = min(foot.position[2] for foot in footing.feet)
+        self._above = float(footing.base.position[2] - lowest)
+        if self.rule is not None and not all(footing.down):
+            self._begin(self.rule, now, [footing.down.index(False)])
+
+    def step(self, observation: Observation, dt: float) -> JointCommand:
+        """Return the goals of now.
+
+        Raises:
+            StateMissingError: The observation has no base.
+        """
+        now = observation.time
+        self.footing.look(observation)
+        self._decide(now)
+        command = JointCommand(self._hold.block.copy())
+        part = min((now - self._taken) / TAKE, 1.0)
+        command.position[:] = self._before + part * (self.stance - self._before)
+        self._height = self._above + part * (self.footing.height - self._above)
+        self._pose(command.position, now)
+        return command
+
+    @property
+    def stepping_foot(self) -> int:
+        """The foot of the step that it is at, or of the last one."""
+        return self._flight.foot
+
+    def _decide(self, now: float) -> None:
+        """Go over to the next phase where it is time."""
+        stepping = self.stepping
+        if self.phase == "swing":
+            self._fly(now)
+            return
+        if self.phase == "land" and now - self._landed < stepping.dwell:
+            return
+        if self.rule is not None and self._falls(self.rule):
+            self._begin(self.rule, now)
+        elif self.phase == "land":
+            self.phase = "stand"
+        elif self.phase == "comfort" and self._comfort.done(now):
+            self._planted = self.footing.planted()
+            # What the legs cannot do now they cannot do until something moves the robot.
+            self.phase, self._moved = "stand", np.inf if self._comfort.given_up else now
+        elif self.phase == "stand":
+            self._settle(now)
+
+    def _falls(self, rule: StepRule) -> bool:
+        """Return whether both feet as they stand cannot prevent a fall."""
+        support = self.footing.support((0, 1))
+        return needs_step(trigger_point(rule, self.footing.momenta), support, self.stepping.slack)
+
+    def _fly(self, now: float) -> None:
+        """Aim anew, or land."""
+        flight, stepping = self._flight, self.stepping
+        part = (now - flight.began) / stepping.duration
+        if part < stepping.update:
+            left = stepping.duration * (1.0 - part)
+            if (better := self._placement(flight.rule, flight.foot, left)) is not None:
+                flight.target = better.target
+        if part >= 1.0 or (part > stepping.early and self.footing.down[flight.foot]):
+            self.phase, self._landed, self._moved = "land", now, now
+            self._plant(1 - flight.foot)
+
+    def _plant(self, floated: int) -> None:
+        """Keep both feet where they are; near forbidden ground one that floated goes back.
+
+        Where the robot tipped over it, the foot that stood has left the ground as well. It comes
+        down nearer to the other one than it stood, which saves a comfort step half its way, but
+        nobody has looked at what is there.
+        """
+        before, self._planted = self._planted, self.footing.planted()
+        if self.no_step:
+            stood = before.places[floated], before.yaws[floated]
+            self._planted = self._planted.step(floated, *stood)
+
+    def _begin(self, rule: StepRule, now: float, feet: Sequence[int] = (0, 1)) -> None:
+        """Choose one of `feet` and lift it, if there is a place for it."""
+        placements = [self._placement(rule, foot, self.stepping.duration) for foot in feet]
+        possible = [found for found in placements if found is not None]
+        if not possible:
+            return
+        footing = self.footing
+        chosen = choose(possible, footing.places, self._wanted)
+        start = footing.places[chosen.foot].copy()
+        self._flight = Flight(rule, chosen.foot, now, start, chosen.target, self._centre(now))
+        self._planted = footing.planted()
+        self.phase, self.steps = "swing", self.steps + 1
+
+    def _placement(self, rule: StepRule, foot: int, left: float) -> Placement | None:
+        """Return where `foot` should land in `left` s, or None where it cannot."""
+        footing, momenta = self.footing, self.footing.momenta
+        pivot = footing.support((1 - foot,)).nearest(capture_point(momenta))
+        wanted = landing_point(rule, momenta, pivot, left)
+        self._wanted = pivot + self.stepping.gain * (wanted - pivot)
+        region = self._reach.region(footing.places[1 - foot], footing.yaw, 1 - 2 * foot)
+        return place(foot, self._wanted, region, self._holes(foot))
+
+    def _holes(self, foot: int) -> list[BaseGeometry]:
+        """Return where a foot must not be sent."""
+        flying = self.phase == "swing"
+        start = self._flight.start if flying else self.footing.places[foot]
+        return self.no_step.holes(foot, self.footing.yaw, start)
+
+    def _settle(self, now: float) -> None:
+        """Take a comfort step when the robot has stood still for long enough off its stance."""
+        footing, stepping = self.footing, self.stepping
+        if np.linalg.norm(footing.momenta.velocity[:2]) > STILL:
+            self._moved = now
+        if now - self._moved < stepping.patience:
+            return
+        self._moved = now  # where nothing is to do, it looks again as long after
+        comfort = ComfortStep(footing, now, stepping)
+        foot, yaw = comfort.foot, footing.yaw
+        free = self.no_step.allows(foot, yaw, footing.places[foot], comfort.target)
+        if comfort.needed and free:
+            self._comfort = comfort
+            self.phase, self.comforts = "comfort", self.comforts + 1
+
+    def _pose(self, goals: Array, now: float) -> None:
+        """Set the legs' joints in `goals` (n,) rad."""
+        footing = self.footing
+        if self.phase == "comfort":
+            self._comfort.pose(goals, now)
+            return
+        if self.phase == "swing":
+            self._swing(goals, now)
+            return
+        against = self._against(footing.places.mean(axis=0))
+        place = self._centre(now) - against
+        base = footing.upright(place, self._heading(now), height=self._height)
+        for foot in (0, 1):
+            footing.keep(goals, foot, self._planted, base)
+
+    def _swing(self, goals: Array, now: float) -> None:
+        """Tip over one leg, and put the other foot where it should be `lead` s from now."""
+        footing, stepping, flight = self.footing, self.stepping, self._flight
+        gone = now - flight.began
+        way = gaussian_progress((gone + stepping.lead) / stepping.duration)
+        at = np.zeros(3)
+        at[:2] = flight.start + way * (flight.target - flight.start)
+        # Up at once and down at once: the servos are too slow for anything finer.
+        at[2] = stepping.lift if gone < stepping.up * stepping.duration else 0.0
+        # By then the trunk has turned on, and the foot should face as it does.
+        seen = footing.ahead(stepping.lead)
+        footing.put(goals, flight.foot, at, facing(seen.rotation), seen)
+        pivot = footing.places[1 - flight.foot]
+        ahead = float(turn(footing.yaw)[:2, 0] @ (capture_point(footing.momenta) - pivot))
+        pitch = np.clip(-stepping.trunk * ahead, -MOST_PITCH, MOST_PITCH)
+        place = flight.centre - self._against(pivot)
+        base = footing.upright(place, footing.yaw, float(pitch), self._height)
+        footing.keep(goals, 1 - flight.foot, self._planted, base)
+
+    def _centre(self, now: float) -> Array:
+        """Return where (2,) m the base should be: over the feet, some time after a step."""
+        here = self.footing.base.position[:2]
+        return here + self._back(now) * (self.footing.home(self._planted) - here)
+
+    def _heading(self, now: float) -> float:
+        """Return where the base should face, rad: as the feet do, some time after a step."""
+        return heading_between(self.footing.yaw, self._planted.front, self._back(now))
+
+    def _back(self, now: float) -> float:
+        """Return how far the base has come back over the feet after a step, 0 to 1."""
+        return min((now - self._landed) / max(self.stepping.settle, 1e-6), 1.0)
+
+    def _against(self, middle: Array) -> Array:
+        """Return how far (2,) m the base is drawn from where the capture point runs to."""
+        away = self.stepping.balance * (capture_point(self.footing.momenta) - middle)
+        return np.clip(away, -MOST_SHIFT, MOST_SHIFT)

@@ -1,0 +1,1 @@
+"""Walking as a linear inverted pendulum plans it."""

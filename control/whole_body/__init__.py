@@ -1,0 +1,1 @@
+"""Inverse dynamics as a quadratic program over the whole body."""

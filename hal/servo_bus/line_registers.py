@@ -1,0 +1,105 @@
+"""Registers of the servos of one line: written to all and read back, until everybody has them."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from windup.hal.errors import HardwareError
+from windup.hal.joints import Array, Mask
+from windup.hal.registers import Register
+from windup.hal.servo_bus.bus_readout import Rows, ServoLine
+
+ATTEMPTS = 8
+BACKOFF = 4e-3
+"""How much longer to wait before each further attempt, s: adapters hold answers back for 16 ms."""
+
+
+class LineRegisters:
+    """One register at a time of some of the servos of a line; lost frames are sent again.
+
+    Args:
+        line: The line.
+    """
+
+    def __init__(self, line: ServoLine) -> None:
+        self.line = line
+        self._all = np.arange(len(line.ids))
+
+    def write(self, register: Register, value: int, rows: Rows = slice(None)) -> None:
+        """Send one value to the servos at `rows`. Nobody answers."""
+        self.line.bus.sync_write(register, dict.fromkeys(self._ids(self._all[rows]), value))
+
+    def ask(self, register: Register, rows: Rows, attempt: int = 0) -> tuple[Array, Mask]:
+        """Read a register once, and return (rows,) counts and whose are fresh; see `_parts`."""
+        counts: npt.NDArray[np.int64] = np.zeros(len(self._all), dtype=np.int64)
+        fresh: Mask = np.zeros(len(self._all), dtype=bool)
+        for part in self._parts(rows, attempt):
+            counts[part], fresh[part] = self.line.bus.sync_read(self._ids(part), register)
+        return counts[self._all[rows]].astype(np.float64), fresh[self._all[rows]]
+
+    def ask_torque(self, rows: Rows, attempt: int = 0) -> tuple[Mask, Mask]:
+        """Read once whose torque is on, and return that, (rows,) bool, and who answered."""
+        bus = self.line.bus
+        on: Mask = np.zeros(len(self._all), dtype=bool)
+        fresh: Mask = np.zeros_like(on)
+        for part in self._parts(rows, attempt):
+            answers = bus.bulk_read([bus.family.torque_span(id) for id in self._ids(part)])
+            for row in part:
+                if (data := answers.get(self.line.ids[row])) is not None:
+                    on[row], fresh[row] = data[0] != 0, True
+        return on[self._all[rows]], fresh[self._all[rows]]
+
+    def pause(self, attempt: int) -> None:
+        """Wait before an attempt that is not the first."""
+        if attempt:
+            self.line.bus.wait(BACKOFF * attempt)
+
+    def _parts(self, rows: Rows, attempt: int) -> list[npt.NDArray[np.intp]]:
+        """Return which servos are asked together.
+
+        One that is missing may silence all that come behind it in the same answer: the second
+        attempt asks in the other order, further ones ask one after the other.
+        """
+        chosen = self._all[rows]
+        if attempt < 2:
+            return [chosen if attempt == 0 else chosen[::-1]]
+        return np.split(chosen, len(chosen))
+
+    def read(self, register: Register, rows: Rows = slice(None)) -> Array:
+        """Return the (rows,) counts of one register.
+
+        Raises:
+            HardwareError: A servo does not answer.
+        """
+        chosen = self._all[rows]
+        counts, left = np.zeros(len(self._all)), chosen
+        for attempt in range(ATTEMPTS):
+            self.pause(attempt)
+            counts[left], fresh = self.ask(register, left, attempt)
+            left = left[~fresh]
+            if not left.size:
+                return counts[chosen]
+        url = self.line.bus.port.url
+        raise HardwareError(f"{url}: no answer from {self.line.who(left)}; run `windup scan {url}`")
+
+    def set(self, register: Register, values: Array, rows: Rows = slice(None)) -> None:
+        """Write the (rows,) `values`, counts, and read them back.
+
+        Raises:
+            HardwareError: A servo does not answer, or keeps another value.
+        """
+        chosen, wanted = self._all[rows], np.rint(values)
+        ids = self._ids(chosen)
+        frame = dict(zip(ids, wanted.astype(int).tolist(), strict=True))
+        for attempt in range(ATTEMPTS):
+            self.pause(attempt)
+            self.line.bus.sync_write(register, frame)
+            wrong = self.read(register, chosen) != wanted
+            if not wrong.any():
+                return
+        stubborn = self.line.who(chosen[wrong])
+        raise HardwareError(f"{self.line.bus.port.url}: {stubborn} does not take {register.name}")
+
+    def _ids(self, rows: Sequence[int] | npt.NDArray[np.intp]) -> list[int]:
+        return [self.line.ids[row] for row in rows]

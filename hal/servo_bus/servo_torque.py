@@ -1,0 +1,211 @@
+"""Torque on at the present pose, off and read back, and the servos' watch over their host."""
+
+import numpy as np
+
+from windup.hal.errors import HardwareError
+from windup.hal.joints import Array
+from windup.hal.servo_bus.line_registers import ATTEMPTS, LineRegisters
+from windup.hal.servo_bus.plausibility import MARGIN
+from windup.hal.registers import Register
+from windup.hal.servo_bus.bus_readout import Rows, ServoLine
+from windup.hal.servo_bus.torque_cause import Suspect, examine
+from windup.hal.torque_loss import SWITCHED_OFF, UNEXPLAINED
+from windup.hal.torque_state import TorqueState
+
+TRIPPED = -1
+"""What a Bus Watchdog reads that has fired.
+
+In position mode the servo holds the place where it was then, and refuses goals until the register
+is set to 0: the pose is frozen, the torque is not off.
+"""
+INRUSH = 5e-3
+"""Pause after a servo was switched on, s: all at once may pull the supply down."""
+OFF_TIME = 0.12
+"""How long servos are told to go off and read before those that answer are through with it, s."""
+
+
+class ServoTorque:
+    """The torque switch of one line, and the Bus Watchdog where its servos have one.
+
+    Attributes:
+        watchdog: Silence after which a servo freezes its pose, with torque on, s; 0 for none.
+        armed: Is the watchdog running?
+        powered: Has torque been switched on?
+    """
+
+    def __init__(self, line: ServoLine, watchdog: float) -> None:
+        self.line, self.watchdog = line, watchdog
+        self.armed = self.powered = False
+        self._registers = line.bus.family.registers
+        self._values = LineRegisters(line)
+        self._watch = self._registers.get("bus_watchdog")
+        self._first = np.array([mount.first_count for mount in line.mounts], dtype=np.float64)
+        self._last = np.array([mount.last_count for mount in line.mounts], dtype=np.float64)
+
+    def on(self, gains: Array) -> TorqueState:
+        """Switch torque on where the joints are now, one after the other.
+
+        The goal of each is its present position before its torque comes on, so that nothing moves.
+
+        Args:
+            gains: (servos,) P registers.
+
+        Raises:
+            HardwareError: A servo cannot be read, does not take its goal, or its torque does not
+                come on or stay on: others have torque.
+        """
+        self._prepare(gains)
+        self.powered = True
+        for row in range(len(self.line.ids)):
+            self._switch_on(row)
+        state = self.state()
+        if state.unknown.any():
+            silent = self.line.who(np.flatnonzero(state.unknown))
+            raise HardwareError(f"{self.line.bus.port.url}: no answer from {silent}")
+        if state.off.any():
+            raise HardwareError(self._off_again(int(np.argmax(state.off)), "stay"))
+        return state
+
+    def _prepare(self, gains: Array) -> None:
+        """Set all that torque needs to come on at the present pose."""
+        here = self._here()
+        mark = self.line.bus.family.mark
+        if self._watch is not None:
+            self._values.set(self._watch, np.zeros_like(here))
+        if mark is not None and mark.armed is not None:
+            self._values.set(self._registers[mark.name], np.full_like(here, mark.armed))
+        for gain, rows, _ in self.line.gains:
+            self._values.set(gain.register, gain.counts(gains[rows]), rows)
+        if not self.line.bus.family.goal_wakes:
+            self._values.set(self._registers["goal_position"], here)
+        if self._watch is not None and self.watchdog > 0.0:
+            self._values.set(self._watch, np.full_like(here, self._ticks(self._watch)))
+            self.armed = True
+
+    def _switch_on(self, row: int) -> None:
+        """Switch one servo on at its present position; the goal may be what does it."""
+        enable, rows = self._registers["torque_enable"], slice(row, row + 1)
+        self._values.set(self._registers["goal_position"], self._here(rows), rows)
+        for attempt in range(ATTEMPTS):
+            self._values.pause(attempt)
+            self._values.write(enable, 1, rows)
+            if self._values.ask_torque(rows)[0].all():
+                self.line.bus.wait(INRUSH)
+                return
+        raise HardwareError(self._off_again(row, "come"))
+
+    def _off_again(self, row: int, verb: str) -> str:
+        """Return that the torque of a servo does not `verb` on, with what it signals."""
+        url, id = self.line.bus.port.url, self.line.ids[row]
+        what = f"{url}: torque does not {verb} on at {self.line.who([row])}"
+        loss = examine(self.line, [Suspect(id, False)], self.armed).get(id)
+        if loss is None or loss in (SWITCHED_OFF, UNEXPLAINED):
+            return f"{what}; run `windup scan {url}`"
+        return f"{what}: {loss}; {loss.remedy}"
+
+    def send_off(self) -> None:
+        """Tell all servos to go off, and wait for nobody."""
+        self._values.write(self._registers["torque_enable"], 0)
+
+    def off(self, attempts: int = ATTEMPTS) -> TorqueState:
+        """Switch torque off and return what was read back of the servos.
+
+        Those that answer are off and read within 0.12 s, whoever else is silent.
+        """
+        self.send_off()
+        clock = self.line.bus.port.clock
+        until = clock.now() + OFF_TIME
+        state = TorqueState.unread(len(self.line.ids))
+        for attempt in range(attempts):
+            state = self.insist(state, attempt)
+            if state.all_off or clock.now() >= until:
+                break
+        self.armed = self.powered = False
+        if self._watch is not None:
+            self._values.write(self._watch, 0)
+        return state
+
+    def insist(self, state: TorqueState, attempt: int = 0) -> TorqueState:
+        """Switch off once more who was not read as off, and return what is known then."""
+        left = np.flatnonzero(~state.off)
+        self._values.write(self._registers["torque_enable"], 0, left)
+        return self._learn(state, left, attempt)
+
+    def _learn(self, state: TorqueState, rows: Rows, attempt: int) -> TorqueState:
+        """Return `state` with what the servos at `rows` say of their torque now."""
+        seen, fresh = self._values.ask_torque(rows, attempt)
+        on, unknown = state.on.copy(), state.unknown.copy()
+        on[rows] = np.where(fresh, seen, on[rows])
+        unknown[rows] &= ~fresh
+        return TorqueState(on, unknown)
+
+    def stay(self) -> Array:
+        """Have the servos stay where they are, watching no host, and return (servos,) counts.
+
+        Raises:
+            HardwareError: A servo has no torque, cannot be read, or does not take its goal.
+        """
+        if not self.state().all_on:
+            raise HardwareError(f"{self.line.bus.port.url}: a servo has no torque, or is silent")
+        if self._watch is not None:
+            self._values.set(self._watch, np.zeros(len(self.line.ids)))
+        here = self._here()
+        self._values.set(self._registers["goal_position"], here)
+        return here
+
+    def state(self, attempts: int = ATTEMPTS) -> TorqueState:
+        """Return what can be read of the servos' torque now."""
+        state = TorqueState.unread(len(self.line.ids))
+        for attempt in range(attempts):
+            self._values.pause(attempt)
+            state = self._learn(state, np.flatnonzero(state.unknown), attempt)
+            if not state.unknown.any():
+                break
+        return state
+
+    def _here(self, rows: Rows = slice(None)) -> Array:
+        """Return (rows,) present positions; behind a weak checksum two readings must agree.
+
+        Raises:
+            HardwareError: They do not, or a servo does not answer.
+        """
+        register = self._registers["present_position"]
+        first, last = self._first[rows], self._last[rows]
+        here = self._values.read(register, rows)
+        if not self.line.bus.family.dialect.weak:
+            return np.clip(here, first, last)
+        for _ in range(ATTEMPTS):
+            before, here = here, self._values.read(register, rows)
+            if (np.abs(here - before) <= MARGIN * last).all():
+                return np.clip(here, first, last)
+        raise HardwareError(
+            f"{self.line.bus.port.url}: positions that jump or cannot be; "
+            "hold the robot still and check the wiring"
+        )
+
+    def revive(self) -> int:
+        """Clear the watchdogs that have fired, at the present pose; return how many had.
+
+        The servos hold all the while, and then take goals again. Torque that a servo has switched
+        off stays off until `on`.
+        """
+        register = self._watch
+        if register is None:
+            return 0
+        counts, valid = self.line.bus.sync_read(self.line.ids, register)
+        fired = valid & (counts == TRIPPED)
+        if not fired.any():
+            return 0
+        ids = [id for id, has in zip(self.line.ids, fired, strict=True) if has]
+        bus = self.line.bus
+        bus.sync_write(register, dict.fromkeys(ids, 0))
+        here, known = bus.sync_read(ids, self._registers["present_position"])
+        here = np.clip(here, self._first[fired], self._last[fired])
+        at = {id: int(h) for id, h, k in zip(ids, here, known, strict=True) if k}
+        if at:
+            bus.sync_write(self._registers["goal_position"], at)
+        bus.sync_write(register, dict.fromkeys(ids, self._ticks(register)))
+        return len(ids)
+
+    def _ticks(self, register: Register) -> int:
+        return min(127, max(1, round(self.watchdog / register.unit)))

@@ -1,0 +1,1 @@
+"""What a run publishes in shared memory for everybody else."""

@@ -1,0 +1,106 @@
+"""The robot's MJCF, completed to something that can be simulated."""
+
+from dataclasses import dataclass, field
+from itertools import product
+
+import mujoco
+
+from windup.robots.completion import COM_VELOCITY
+from windup.robots.description import RobotDescription
+from windup.sim_twin.masses import keep_masses
+from windup.sim_twin.plant import Plant
+from windup.sim_twin.servo.servo_motor import add_actuators
+from windup.sim_twin.ground.terrain import Ground
+
+
+@dataclass(frozen=True)
+class World:
+    """What a twin lives in, and how it differs from its files.
+
+    Attributes:
+        ground: The ground.
+        plant: The robot's differences.
+        self_collision: The two legs collide with each other.
+    """
+
+    ground: Ground = field(default_factory=Ground)
+    plant: Plant = field(default_factory=Plant)
+    self_collision: bool = False
+
+
+def build_model(
+    robot: RobotDescription,
+    *,
+    delay: float | None = None,
+    supply: float | None = None,
+    bare: bool = False,
+    world: World | None = None,
+) -> mujoco.MjModel:
+    """Return the robot's model with actuators.
+
+    Args:
+        robot: The robot.
+        delay: From a write to the joint acting on it, s; the robot's own by default.
+        supply: Voltage of the servos, V; the robot's own by default.
+        bare: Leave out what a rollout, which ends with a fall, does not need.
+        world: Ground, plant and self-collision; flat, as the files say, and none by default.
+    """
+    world = world or World()
+    spec = robot.spec()
+    keep_masses(spec)
+    world.plant.change(spec)
+    world.ground.build(spec)
+    if world.self_collision:
+        _part_legs(spec, robot)
+    if bare:
+        _strip(spec, robot)
+    delay = robot.drive.command_delay if delay is None else delay
+    add_actuators(spec, robot, delay, robot.drive.supply if supply is None else supply)
+    # A twin that diverges says so; it does not quietly start again.
+    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+    # One robot is one island: looking for more costs a few percent.
+    spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
+    # MuJoCo 4.0's sparse Cholesky has a bug past our size; dense is faster here anyway.
+    spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    return spec.compile()
+
+
+def _strip(spec: mujoco.MjSpec, robot: RobotDescription) -> None:
+    """Keep the geoms of feet and floor, and of the sensors touch and CoM velocity.
+
+    Whatever else can touch the floor does so after the robot has fallen, and a rollout ends there.
+    """
+    feet = {foot.body for foot in robot.feet}
+    for geom in list(spec.geoms):
+        collides = geom.contype or geom.conaffinity
+        if not collides or geom.parent.name not in {*feet, "world"}:
+            spec.delete(geom)
+    kept = {*robot.contacts.names, COM_VELOCITY}
+    for sensor in list(spec.sensors):
+        if sensor.name not in kept:
+            spec.delete(sensor)
+
+
+def _part_legs(spec: mujoco.MjSpec, robot: RobotDescription) -> None:
+    """Let the left leg collide with the right one, the largest geom of each body.
+
+    The robots' geoms meet the floor only (floor contype 1, conaffinity 0; robot 0 and 1), so the
+    legs get explicit pairs.
+    """
+    left, right = (_leg(spec, robot, foot.body) for foot in robot.feet[:2])
+    for one, other in product(left, right):
+        spec.add_pair(geomname1=one, geomname2=other, condim=3)
+
+
+def _leg(spec: mujoco.MjSpec, robot: RobotDescription, foot: str) -> list[str]:
+    """Return the names of the largest geoms of the bodies from `foot` up to the base."""
+    names = []
+    body = spec.body(foot)
+    while body.name != robot.base:
+        solid = [geom for geom in body.geoms if geom.type != mujoco.mjtGeom.mjGEOM_PLANE]
+        if solid:
+            geom = max(solid, key=lambda geom: float(max(geom.size)))
+            geom.name = geom.name or f"{body.name}_hull"
+            names.append(geom.name)
+        body = body.parent
+    return names

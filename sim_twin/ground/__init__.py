@@ -1,0 +1,1 @@
+"""Ground, and what of a robot touches it."""

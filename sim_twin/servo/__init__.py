@@ -1,0 +1,1 @@
+"""The servo as physics."""

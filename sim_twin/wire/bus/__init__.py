@@ -1,0 +1,1 @@
+"""An emulated half-duplex bus: bytes in time, collisions, the host's adapter."""

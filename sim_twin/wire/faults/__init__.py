@@ -1,0 +1,1 @@
+"""What goes wrong on emulated buses, as text, as calls, and as it happens."""

@@ -1,0 +1,1 @@
+"""What an emulated IMU feels, and how it fails."""

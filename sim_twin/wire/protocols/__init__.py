@@ -1,0 +1,1 @@
+"""Protocols as an emulated device speaks them."""

@@ -1,0 +1,1 @@
+"""Emulated buses with their devices, physics and time, as one world."""

@@ -1,0 +1,1 @@
+"""`windup bench`: what is measured of the stack, by anybody."""

@@ -1,0 +1,36 @@
+"""Who is who among the processes around an armed robot."""
+
+from contextlib import suppress
+from pathlib import Path
+
+from windup.hal.port.lock import AdapterLock
+
+
+def guardian_of(port: str) -> int | None:
+    """Return the process number of the guardian of a port, or None where there is none."""
+    url = port.split(",")[0].partition("=")[2] if "=" in port else port
+    lock = AdapterLock(url)
+    try:
+        return lock.note().pid or None
+    finally:
+        lock.close()
+
+
+def child_with(parent: int, word: str) -> int | None:
+    """Return the process number of a child whose command line has a word in it, or None."""
+    for task in Path(f"/proc/{parent}/task").glob("*/children"):
+        with suppress(OSError):
+            for child in task.read_text().split():
+                if word.encode() in Path(f"/proc/{child}/cmdline").read_bytes():
+                    return int(child)
+    return None
+
+
+def alive(number: int | None) -> bool:
+    """Return whether a process runs, and is no zombie."""
+    if number is None:
+        return False
+    try:
+        return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False

@@ -1,0 +1,1 @@
+"""Looking for servos, and at the health of a robot."""

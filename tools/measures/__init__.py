@@ -1,0 +1,1 @@
+"""What is measured during runs, and said of them."""

@@ -1,0 +1,28 @@
+"""What a fall did to a twin, for reports."""
+
+from typing import Any
+
+from windup.sim_twin.impact import ImpactGauge
+from windup.tools.measures.load_gauge import load_said
+
+
+def fall_result(gauge: ImpactGauge) -> dict[str, Any]:
+    """Return what was measured: speeds m/s into the floor, loads as shares of stall torque, s."""
+    return {
+        "torso_impact_m_s": gauge.torso,
+        "head_impact_m_s": gauge.head,
+        "torso_knock_m_s": gauge.knock,
+        "peak_load": float(gauge.load.max()),
+        "peak_joint": gauge.busiest,
+        "overload_s": gauge.overload,
+    }
+
+
+def fall_said(result: dict[str, Any]) -> str:
+    """Return the same for people, from a result with it."""
+    return (
+        f"torso hits the floor at {result['torso_impact_m_s']:.2f} m/s, "
+        f"head at {result['head_impact_m_s']:.2f} m/s; "
+        f"the torso's speed changes by {result['torso_knock_m_s']:.2f} m/s in 10 ms at most; "
+        f"{load_said(result['peak_load'], result['peak_joint'])}"
+    )

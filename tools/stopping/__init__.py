@@ -1,0 +1,1 @@
+"""What asks a run to stop, and who is in charge meanwhile."""

@@ -1,0 +1,1 @@
+"""Any command over a grid of its options."""
