@@ -14,8 +14,8 @@ from windup.hal.errors import UnknownNameError, UsageError
 from windup.hal.guard import HealthLevels, StopPolicy
 from windup.hal.joints import Array, Joint, Joints
 from windup.hal.mirror import Mirror
-from windup.hal.servos.servo_model import ServoMount
 from windup.hal.servos import servo_model
+from windup.hal.servos.servo_model import ServoMount
 from windup.robots import mjcf, structure
 from windup.robots.checks import Checks, whole_steps
 from windup.robots.completion import complete, complete_for

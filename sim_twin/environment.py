@@ -7,14 +7,14 @@ import mujoco
 
 from windup.robots.completion import COM_VELOCITY
 from windup.robots.description import RobotDescription
+from windup.sim_twin.ground.terrain import Ground
 from windup.sim_twin.masses import keep_masses
 from windup.sim_twin.plant import Plant
 from windup.sim_twin.servo.servo_motor import add_actuators
-from windup.sim_twin.ground.terrain import Ground
 
 
 @dataclass(frozen=True)
-class World:
+class Environment:
     """What a twin lives in, and how it differs from its files.
 
     Attributes:
@@ -34,7 +34,7 @@ def build_model(
     delay: float | None = None,
     supply: float | None = None,
     bare: bool = False,
-    world: World | None = None,
+    world: Environment | None = None,
 ) -> mujoco.MjModel:
     """Return the robot's model with actuators.
 
@@ -45,7 +45,7 @@ def build_model(
         bare: Leave out what a rollout, which ends with a fall, does not need.
         world: Ground, plant and self-collision; flat, as the files say, and none by default.
     """
-    world = world or World()
+    world = world or Environment()
     spec = robot.spec()
     keep_masses(spec)
     world.plant.change(spec)

@@ -18,9 +18,9 @@ from windup.hal.controller import BatchPolicy, Outcomes, Plane, PolicyInput, Rol
 from windup.hal.joints import Array, Mask
 from windup.robots.completion import COM_VELOCITY
 from windup.robots.description import RobotDescription
+from windup.sim_twin.environment import Environment, build_model
 from windup.sim_twin.ground.foot_level import FootLevel
 from windup.sim_twin.ground.terrain import Ground
-from windup.sim_twin.environment import World, build_model
 
 KNOWN: Plane = (0.0, 0.0, 0.0)
 STAGE = int(mujoco.mjtStage.mjSTAGE_VEL)
@@ -57,7 +57,7 @@ class RolloutPredictor:
             delay = robot.drive.command_delay + robot.drive.sensor_delay
         self.delay = delay
         self.model = build_model(
-            robot, delay=delay, supply=supply, bare=True, world=World(self.ground)
+            robot, delay=delay, supply=supply, bare=True, world=Environment(self.ground)
         )
         self._let_tilt(self.model)
         self.threads = threads

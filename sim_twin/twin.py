@@ -12,11 +12,11 @@ from windup.hal.joints import Array
 from windup.hal.observation import BaseState
 from windup.robots.couplings import bring_in_step
 from windup.robots.description import RobotDescription
+from windup.sim_twin.environment import Environment, build_model
 from windup.sim_twin.lowest import lowest_point
 from windup.sim_twin.places import JointPlaces
 from windup.sim_twin.push import Push
 from windup.sim_twin.runaway import WILD, fastest_dof
-from windup.sim_twin.environment import World, build_model
 
 STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 LOST = 1e6  # sum of positions that no robot has
@@ -60,10 +60,10 @@ class Twin:
         *,
         delay: float | None = None,
         supply: float | None = None,
-        world: World | None = None,
+        world: Environment | None = None,
     ) -> None:
         self.robot = robot
-        self.world = world or World()
+        self.world = world or Environment()
         plant = self.world.plant
         supply = supply if plant.supply is None else plant.supply
         delay = delay if plant.delay is None else plant.delay

@@ -6,15 +6,15 @@ from pathlib import Path
 from typing import Any
 
 from windup.hal.errors import UnwellError, UsageError, WindupError
-from windup.tools.command_line.table import COMMANDS
-from windup.tools.stopping.interrupts import end_on_signals, ignore_signals
 from windup.tools.command_line.near_word import near_word
-from windup.tools.terminal.output import console, error_record, print_result, write_json
 from windup.tools.command_line.overview import overview
+from windup.tools.command_line.sweep_line import separate
+from windup.tools.command_line.table import COMMANDS
+from windup.tools.command_line.version import installed_version
+from windup.tools.stopping.interrupts import end_on_signals, ignore_signals
+from windup.tools.terminal.output import console, error_record, print_result, write_json
 from windup.tools.terminal.run_notes import NOTES
 from windup.tools.terminal.streams import drop_unwritten, fill_closed_streams
-from windup.tools.command_line.sweep_line import separate
-from windup.tools.command_line.version import installed_version
 from windup.tools.terminal.writing import check_writable
 
 
@@ -109,7 +109,9 @@ def parse(arguments: list[str]) -> Any:
     if (name := arguments[0]) not in COMMANDS:
         near = near_word(name, (*COMMANDS, "--help"))
         raise UsageError(f"unknown command {name!r}{near}; `windup --help` lists all")
-    from windup.tools.command_line.parsing import parse_options  # only now: it takes longer than the help
+    from windup.tools.command_line.parsing import (
+        parse_options,  # only now: it takes longer than the help
+    )
 
     kind = COMMANDS[name].load()
     return parse_options(name, kind, separate(arguments)[1:])

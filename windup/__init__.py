@@ -25,9 +25,9 @@ if TYPE_CHECKING:
         WindupError,
     )
     from windup.robots import RobotDescription, load_robot, robot_names
-    from windup.tools.robot.walk_report import WalkReport
-    from windup.tools.robot.robot import Robot
     from windup.tools.assembly.walk_options import WalkOptions
+    from windup.tools.robot.robot import Robot
+    from windup.tools.robot.walk_report import WalkReport
 
 PLACES = {
     "BaseState": "windup.hal",

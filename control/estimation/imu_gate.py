@@ -68,7 +68,7 @@ class ImuGate:
             ImuError: The IMU cannot be trusted, and the controller needs it.
         """
         watch, imu = self._watch, observation.imu
-        found = watch.look(observation)
+        found = watch.update(observation)
         if found is not None and not found.stop:
             found = None
         if found is not None and self._needed:

@@ -65,7 +65,7 @@ class FallPredictor:
         self.toward: float | None = None
         self._since: float | None = None
 
-    def look(self, observation: Observation) -> bool:
+    def update(self, observation: Observation) -> bool:
         """Return whether a fall is certain; once it is, it stays so until `reset`.
 
         Raises:

@@ -132,7 +132,7 @@ class Protected:
         """
         self._clear()
         self.predictor.reset()
-        self.predictor.look(observation)
+        self.predictor.update(observation)
         self.controller.reset(observation)
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
@@ -141,7 +141,7 @@ class Protected:
         Raises:
             StateMissingError: The observation has no base.
         """
-        if not self.active and not self.predictor.look(observation):
+        if not self.active and not self.predictor.update(observation):
             return self.controller.step(observation, dt)
         if self.way is None or self.began is None:
             self.way, self.began = self._choose(), observation.time

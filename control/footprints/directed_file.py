@@ -43,8 +43,8 @@ class ServoDirected(Directed, frozen=True, kw_only=True):
     """How a robot with position servos does so.
 
     Attributes:
-        hold: Part of the error of the centre of mass that the goals go too far.
-        brake: Time by which its speed moves the goals against it, s.
+        hold: Proportional gain on the CoM error.
+        brake: Derivative gain on the CoM, s.
         level: Part of the tilt of the base that the goals lean against it.
         steady: Time by which the rate of that tilt does so, s.
         follow: Rate at which what lasts of either is made up for, 1/s.

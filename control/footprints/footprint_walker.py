@@ -8,20 +8,20 @@ from typing import Literal
 
 import numpy as np
 
-from windup.control.kinematics.body import Body
 from windup.control.footprints.directed_file import ServoDirected
 from windup.control.footprints.footprints import Footprint, between, onto, seen_from
 from windup.control.footprints.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
+from windup.control.footprints.swing import gaussian_progress, lift, smooth_progress
+from windup.control.kinematics.body import Body
 from windup.control.kinematics.limb_ik import LimbIk, Pose
 from windup.control.kinematics.rotation import turn, way_round
-from windup.control.footprints.swing import gaussian_progress, lift, smooth_progress
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
 Phase = Literal["shift", "swing", "land", "rest"]
 
 
-class DirectedSteps(LegMotion):
+class FootprintWalker(LegMotion):
     """Takes the steps of a list of footprints, and comes to rest between the feet.
 
     Args:
@@ -86,7 +86,7 @@ class DirectedSteps(LegMotion):
             speed=pace * (end.com - begin.com),
             height=begin.height + s * (end.height - begin.height),
             yaw=begin.yaw + s * (end.yaw - begin.yaw),
-            share=begin.share + s * (end.share - begin.share),
+            right_load=begin.right_load + s * (end.right_load - begin.right_load),
         )
 
     def _enter(self, phase: Phase, now: float) -> None:
@@ -166,7 +166,7 @@ class DirectedSteps(LegMotion):
     def _creep(self, foot: int) -> Array:
         """Return how far (3,) a foot on the ground should go back, m and rad."""
         one, other = self.places
-        share = self._aim.share
+        share = self._aim.right_load
         if self._phase == "swing":
             return np.zeros(3)
         if foot == 1:

@@ -20,7 +20,7 @@ PARTS = (0.65, 0.75, 0.85, 0.95, 1.0, 1.1)
 """Parts of the way at which a foot may come down that was sent all of it; OP3's fall short."""
 
 
-class NoStep:
+class KeepOutRegions:
     """Regions of the ground that soles keep off, for `step_decision.place`.
 
     Kenwright 2012, section IV-A.4: a foot must not come down in an undesired location, such as a

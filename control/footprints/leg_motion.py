@@ -11,11 +11,11 @@ from typing import Protocol
 
 import numpy as np
 
-from windup.control.kinematics.body import Body, heading
 from windup.control.footprints.footprints import ground_places
+from windup.control.footprints.weight import holding_torque
+from windup.control.kinematics.body import Body, heading
 from windup.control.kinematics.limb_ik import LimbIk, Pose
 from windup.control.kinematics.rotation import quaternion_matrix, turn, turn_between
-from windup.control.footprints.weight import holding_torque
 from windup.hal.command import JointCommand
 from windup.hal.errors import StateMissingError
 from windup.hal.joints import Array, Joints
@@ -36,12 +36,12 @@ class Gains(Protocol):
 
     @property
     def hold(self) -> float:
-        """Part of the error of the centre of mass that the goals go too far."""
+        """Proportional gain on the CoM error."""
         ...
 
     @property
     def brake(self) -> float:
-        """Time by which its speed moves the goals against it, s."""
+        """Derivative gain on the CoM, s."""
         ...
 
     @property
@@ -78,7 +78,7 @@ class Aim:
         speed: (2,) of it, m/s.
         height: Of the base above the ground, m.
         yaw: Heading of the base, rad.
-        share: Part of the weight that the second foot bears.
+        right_load: Share of the weight on the second foot, the right one.
         flying: The foot that is in the air, or has just come down.
         standing: 0: that leg moves as one in the air; 1: as one on the ground.
     """
@@ -87,7 +87,7 @@ class Aim:
     speed: Array
     height: float
     yaw: float
-    share: float
+    right_load: float
     flying: int | None = None
     standing: float = 1.0
 
@@ -135,7 +135,7 @@ class LegMotion(ABC):
 
     def reset(self, observation: Observation) -> None:
         """Begin where the feet are."""
-        self.look(observation)
+        self.update(observation)
         self._hold = JointCommand.hold(self.joints, self.stance)
         self._last = [observation.joints.position.copy() for _ in self.limbs]
         self._before: Array | None = None
@@ -145,7 +145,7 @@ class LegMotion(ABC):
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the command of now."""
-        self.look(observation)
+        self.update(observation)
         aim = self.plan(observation.time, dt)
         base = self._base(aim, dt)
         goals = self.stance.copy()
@@ -156,12 +156,12 @@ class LegMotion(ABC):
         block = self._hold.block.copy()
         np.clip(goals, self.joints.lower, self.joints.upper, out=block[0])
         block[1] = self._run_ahead(block[0], dt)
-        torque = holding_torque(self.body, self.base, (1.0 - aim.share, aim.share))
+        torque = holding_torque(self.body, self.base, (1.0 - aim.right_load, aim.right_load))
         self._torque += min(dt / self.gains.slow, 1.0) * (torque - self._torque)
         block[2] = self._torque
         return JointCommand(block)
 
-    def look(self, observation: Observation) -> None:
+    def update(self, observation: Observation) -> None:
         """Measure the feet, the centre of mass and the base.
 
         Raises:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from windup.control.footprints.footprints import ground_places
-from windup.control.kinematics.rotation import turn, turn_between, yaw_of
 from windup.control.footprints.swing import gaussian_progress, lift
+from windup.control.kinematics.rotation import turn, turn_between, yaw_of
 from windup.control.whole_body.whole_body import Objectives, Plan, WholeBody
 from windup.hal.command import JointCommand
 from windup.hal.joints import Array, Joints
@@ -74,7 +74,7 @@ class TorqueMotion(ABC):
 
     def reset(self, observation: Observation) -> None:
         """Begin to stand; the robot is in its stance."""
-        self.dynamics.look(observation)
+        self.dynamics.update(observation)
         self._swing = None
         self._height = float(self.dynamics.momenta.com[2])
         self._due = observation.time
@@ -88,7 +88,7 @@ class TorqueMotion(ABC):
             WindupError: The optimisation found no answer.
         """
         now = observation.time
-        self.dynamics.look(observation)
+        self.dynamics.update(observation)
         if self._plan is None or now >= self._due - 0.5 * dt:
             self._due = max(self._due + PERIOD, now)
             self._decide(now)

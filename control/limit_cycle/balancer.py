@@ -11,17 +11,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from windup.control.kinematics.body import Body
-from windup.control.regulation.footfalls import Footfalls
-from windup.control.pose_graph.gait import Gait
-from windup.control.pose_graph.goal_limits import GoalLimits
 from windup.control.limit_cycle.planner import Planner, StepRequest
 from windup.control.limit_cycle.policy import policy_input
+from windup.control.pose_graph.gait import Gait
+from windup.control.pose_graph.goal_limits import GoalLimits
 from windup.control.pose_graph.pose_tracker import PoseTracker
-from windup.control.regulation.variables import RegulationVariable
-from windup.control.regulation.disturbance_detector import Shaken
-from windup.control.steering.steering import Steering
-from windup.control.regulation.step_record import StepRecord, StepStart
 from windup.control.pose_graph.torso_servo import TorsoServo
+from windup.control.regulation.disturbance_detector import DisturbanceDetector
+from windup.control.regulation.footfalls import Footfalls
+from windup.control.regulation.step_record import StepRecord, StepStart
+from windup.control.regulation.variables import RegulationVariable
+from windup.control.steering.steering import Steering
 from windup.hal.command import JointCommand
 from windup.hal.contacts import ContactSensors
 from windup.hal.controller import Outcomes, RolloutStart
@@ -81,7 +81,7 @@ class Balancer:
     targets: dict[str, float] = field(default_factory=dict)
     fixed_targets: dict[str, float] = field(default_factory=dict)
     torso_servo: TorsoServo | None = None
-    shaken: Shaken | None = None
+    shaken: DisturbanceDetector | None = None
     footfalls: Footfalls | None = None
     replans: int = field(default=0, init=False)
     records: list[StepRecord] = field(default_factory=list, init=False)
@@ -190,7 +190,7 @@ class Balancer:
         self._ask(observation, start, before, dt)
 
     def _look_again(
-        self, observation: Observation, start: StepStart, shaken: Shaken, dt: float
+        self, observation: Observation, start: StepStart, shaken: DisturbanceDetector, dt: float
     ) -> None:
         """Plan the rest of the step anew, if something has happened since it began."""
         state = int(self._tracker.state[0])
@@ -201,7 +201,7 @@ class Balancer:
             self.footfalls.see(observation)
         if self.steering.slip is not None:
             self.steering.slip.entered(state, here.feet[0, start.stance])
-        if shaken.by(state, here.com_velocity[0], start.heading) and self.planner is not None:
+        if shaken.detect(state, here.com_velocity[0], start.heading) and self.planner is not None:
             self.replans += 1
             self._ask(observation, start, self._tracker.scale[0], dt)
 

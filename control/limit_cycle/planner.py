@@ -11,14 +11,14 @@ from typing import Protocol
 import numpy as np
 
 from windup.control.kinematics.body import Body
+from windup.control.limit_cycle.policy import StepPolicy
+from windup.control.limit_cycle.step_model import StepModel
 from windup.control.pose_graph.gait import Gait
 from windup.control.pose_graph.goal_limits import GoalLimits
-from windup.control.limit_cycle.policy import StepPolicy
 from windup.control.pose_graph.pose_tracker import PoseTracker, TrackerState
-from windup.control.regulation.variables import RegulationVariable
-from windup.control.limit_cycle.step_model import StepModel
-from windup.control.regulation.step_record import StepStart
 from windup.control.pose_graph.torso_servo import TorsoServo
+from windup.control.regulation.step_record import StepStart
+from windup.control.regulation.variables import RegulationVariable
 from windup.hal.contacts import ContactSensors
 from windup.hal.controller import Predictor, RolloutStart
 from windup.hal.joints import Array, Joints, Mask

@@ -156,7 +156,7 @@ class Approach:
             if moves or observation.time > self._began + self._seconds + SETTLING + WATCH:
                 self._following = None
             else:
-                self._following.look(observation, self._goal)
+                self._following.update(observation, self._goal)
         return command
 
     def _is_there(self, command: JointCommand, observation: Observation) -> bool:
@@ -191,8 +191,8 @@ class Approach:
         if passed >= self._seconds + SETTLING:
             self._following.conclude(observation.joints.position)
             return self._hand_over(observation, goal, dt)
-        self._following.look(observation, goal)
-        if self._planted is not None and (wrong := self._planted.look(observation)) is not None:
+        self._following.update(observation, goal)
+        if self._planted is not None and (wrong := self._planted.update(observation)) is not None:
             raise FirstMotionError(wrong)
         self.motion.share = self._share + smooth * (1.0 - self._share)
         command = JointCommand.hold(self.joints, goal)

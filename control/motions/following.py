@@ -52,7 +52,7 @@ class Following:
         self._late = np.zeros(len(joints), dtype=np.int64)
         self._before: list[tuple[float, Array]] = []
 
-    def look(self, observation: Observation, goal: Array) -> None:
+    def update(self, observation: Observation, goal: Array) -> None:
         """Judge the joints beside the goals (n,) rad that they have had.
 
         Raises:

@@ -72,7 +72,7 @@ class Planted:
         self._ticks, self._looks, self._worst = 0, 0, 0.0
         self._sum: Array = np.zeros(len(self._guesses))
 
-    def look(self, observation: Observation) -> str | None:
+    def update(self, observation: Observation) -> str | None:
         """Return what must be wrong in robot.toml, for people, or None; call it every tick."""
         self._ticks += 1
         base = observation.base

@@ -6,9 +6,9 @@ before the next one begins; what is not true in time is tried again, and given u
 
 import numpy as np
 
-from windup.control.pose_graph.gait import Gait
 from windup.control.motions.reach import Condition
 from windup.control.motions.upright import UprightFeedback
+from windup.control.pose_graph.gait import Gait
 from windup.hal.command import JointCommand
 from windup.hal.contacts import ContactSensors
 from windup.hal.joints import Array, Joints

@@ -7,8 +7,8 @@ ankle gains the stiffness that it lacks to hold the robot up.
 
 import numpy as np
 
-from windup.control.pose_graph.gait_file import Upright
 from windup.control.motions.reach import lean
+from windup.control.pose_graph.gait_file import Upright
 from windup.hal.errors import StateMissingError
 from windup.hal.joints import Array, Joints, Mask
 from windup.hal.observation import Observation

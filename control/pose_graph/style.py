@@ -14,7 +14,7 @@ STEPS = 8.0
 
 
 @dataclass(frozen=True)
-class Spell:
+class StyleInterval:
     """An amount of a style for some time.
 
     Attributes:
@@ -54,7 +54,7 @@ class Styling:
 
     gait: Gait
     wanted: dict[str, float] = field(default_factory=dict)
-    spells: tuple[Spell, ...] = ()
+    spells: tuple[StyleInterval, ...] = ()
     present: dict[str, float] = field(default_factory=dict, init=False)
     _began: float | None = field(default=None, init=False)
 

@@ -8,7 +8,7 @@ from windup.hal.joints import Array
 
 
 @dataclass
-class Shaken:
+class DisturbanceDetector:
     """Compares the velocity of the centre of mass with that of the same state two steps ago.
 
     Attributes:
@@ -29,7 +29,7 @@ class Shaken:
         new, self._state = state != self._state, state
         return new
 
-    def by(self, state: int, velocity: Array, heading: float) -> bool:
+    def detect(self, state: int, velocity: Array, heading: float) -> bool:
         """Return True if `velocity` (3,) m/s at the start of a state is unusual there."""
         c, s = np.cos(heading), np.sin(heading)
         now = np.array([c * velocity[0] + s * velocity[1], c * velocity[1] - s * velocity[0]])

@@ -4,15 +4,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from windup.control.steering.course import Course
 from windup.control.pose_graph.gait import Gait
+from windup.control.pose_graph.style import Styling
+from windup.control.regulation.step_record import StepRecord, StepStart
+from windup.control.steering.course import Course
 from windup.control.steering.guide import Guide, Place, WalkCommand
 from windup.control.steering.incline import InclineControl
 from windup.control.steering.side import SideControl
 from windup.control.steering.slip import SlipControl
 from windup.control.steering.speed import SpeedControl
-from windup.control.regulation.step_record import StepRecord, StepStart
-from windup.control.pose_graph.style import Styling
 from windup.hal.joints import Array
 
 QUIET = 3  # steps on the spot before the feet may stay where they are

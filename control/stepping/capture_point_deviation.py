@@ -13,7 +13,7 @@ SHARE, DRIFT = 0.3, 0.004
 
 
 @dataclass
-class Throw:
+class CapturePointDeviation:
     """Compares a point with where it was at the same moment of the last steps alike.
 
     A moment is a state of the pose graph and the tick in it. What is usual follows slowly, so that
@@ -28,7 +28,7 @@ class Throw:
         self._usual.clear()
         self._seen.clear()
 
-    def by(self, state: int, tick: int, point: Array) -> Array:
+    def detect(self, state: int, tick: int, point: Array) -> Array:
         """Return how far (2,) m a point is from where it usually is; zero where nobody knows.
 
         Args:

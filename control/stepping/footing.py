@@ -96,7 +96,7 @@ class Footing:
         self.height = -float(np.mean([home[2] for home in self.homes]))
         self._offset = -np.mean([home[:2] for home in self.homes], axis=0)
 
-    def look(self, observation: Observation) -> None:
+    def update(self, observation: Observation) -> None:
         """Measure everything anew.
 
         Raises:

@@ -13,11 +13,12 @@ from typing import Literal
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
+from windup.control.footprints.keep_out import KeepOutRegions
+from windup.control.footprints.swing import gaussian_progress
+from windup.control.kinematics.momenta import capture_point
+from windup.control.kinematics.rotation import facing, heading_between, turn
 from windup.control.stepping.comfort import STILL, ComfortStep
 from windup.control.stepping.footing import Footing
-from windup.control.kinematics.momenta import capture_point
-from windup.control.footprints.keep_out import NoStep
-from windup.control.kinematics.rotation import facing, heading_between, turn
 from windup.control.stepping.step_decision import (
     Placement,
     StepRule,
@@ -28,7 +29,6 @@ from windup.control.stepping.step_decision import (
     trigger_point,
 )
 from windup.control.stepping.stepping_file import Stepping
-from windup.control.footprints.swing import gaussian_progress
 from windup.hal.command import JointCommand
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
@@ -82,11 +82,11 @@ class Stepper:
         stance: Array,
         rule: StepRule | None,
         stepping: Stepping,
-        no_step: NoStep | None = None,
+        no_step: KeepOutRegions | None = None,
     ) -> None:
         self.joints, self.footing, self.stance = joints, footing, stance
         self.rule, self.stepping = rule, stepping
-        self.no_step = no_step or NoStep()
+        self.no_step = no_step or KeepOutRegions()
         self._reach = stepping.reach.reach()
         self.phase: Phase = "stand"
         self.steps = self.comforts = 0
@@ -99,7 +99,7 @@ class Stepper:
         self._landed = self._taken = -np.inf
         self._before, self._above = self.stance, self.footing.height
         self._moved = observation.time
-        self.footing.look(observation)
+        self.footing.update(observation)
         self._planted = self.footing.planted()
         self.footing.rounded = self.stepping.support == "capsule"
         self.no_step.begin(self.footing.feet, [self.footing.ground(foot) for foot in (0, 1)])
@@ -122,7 +122,7 @@ class Stepper:
             StateMissingError: The observation has no base.
         """
         now = observation.time
-        self.footing.look(observation)
+        self.footing.update(observation)
         self._decide(now)
         command = JointCommand(self._hold.block.copy())
         part = min((now - self._taken) / TAKE, 1.0)

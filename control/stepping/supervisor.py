@@ -9,14 +9,14 @@ from typing import Any, Literal
 
 import numpy as np
 
-from windup.control.limit_cycle.balancer import Balancer
-from windup.control.stepping.comfort import STILL
 from windup.control.kinematics.momenta import capture_point
-from windup.control.motions.play import PoseHolder
 from windup.control.kinematics.rotation import turn
+from windup.control.limit_cycle.balancer import Balancer
+from windup.control.motions.play import PoseHolder
+from windup.control.stepping.capture_point_deviation import CapturePointDeviation
+from windup.control.stepping.comfort import STILL
 from windup.control.stepping.stepper import Stepper
 from windup.control.stepping.stepping_file import CatchTable
-from windup.control.stepping.capture_point_deviation import Throw
 from windup.hal.command import JointCommand
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
@@ -83,7 +83,7 @@ class Supervisor:
     def __init__(self, walker: Balancer, stepper: Stepper, start: Array, table: CatchTable) -> None:
         self.walker, self.stepper, self.table = walker, stepper, table
         self._back = PoseHolder(walker.joints, start, RETURN)
-        self._throw = Throw()
+        self._throw = CapturePointDeviation()
         self.holder: Holder = "walk"
         self.catches: list[Catch] = []
 
@@ -130,7 +130,7 @@ class Supervisor:
         away = capture_point(walker.body.momenta()) - here.feet[0, moment.stance, :2]
         heading = turn(walker.heading)[:2, :2].T
         tick = round(moment.elapsed / dt) - 1  # the tick that the state was entered in is over
-        return self._throw.by(moment.state, tick, heading @ away)
+        return self._throw.detect(moment.state, tick, heading @ away)
 
     def _lost(self, thrown: Array, now: float) -> bool:
         """Return whether a push has just thrown it too far."""

@@ -8,11 +8,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from windup.control.stepping.comfort import ASKEW
 from windup.control.footprints.footprints import Footprint, onto, seen_from
+from windup.control.footprints.torque_directed import TorqueDirected
 from windup.control.kinematics.momenta import capture_point
 from windup.control.kinematics.support import SupportRegion
-from windup.control.footprints.torque_directed import TorqueDirected
+from windup.control.stepping.comfort import ASKEW
 from windup.hal.joints import Array
 
 

@@ -8,10 +8,13 @@ from typing import Literal
 
 import numpy as np
 
-from windup.control.stepping.comfort import STILL
+from windup.control.footprints.keep_out import KeepOutRegions
+from windup.control.footprints.swing import bezier, gaussian_progress
+from windup.control.footprints.torque_motion import PERIOD, Swing, TorqueMotion
 from windup.control.kinematics.momenta import capture_point
-from windup.control.footprints.keep_out import NoStep
 from windup.control.kinematics.rotation import yaw_of
+from windup.control.kinematics.support import SupportRegion
+from windup.control.stepping.comfort import STILL
 from windup.control.stepping.step_decision import (
     Placement,
     StepRule,
@@ -23,10 +26,7 @@ from windup.control.stepping.step_decision import (
     trigger_point,
 )
 from windup.control.stepping.stepping_file import Stepping
-from windup.control.kinematics.support import SupportRegion
-from windup.control.footprints.swing import bezier, gaussian_progress
 from windup.control.stepping.torque_comfort import TorqueComfort
-from windup.control.footprints.torque_motion import PERIOD, Swing, TorqueMotion
 from windup.control.whole_body.whole_body import WholeBody
 from windup.hal.command import JointCommand
 from windup.hal.joints import Array, Joints
@@ -62,10 +62,10 @@ class TorqueStepper(TorqueMotion):
         stance: Array,
         rule: StepRule | None,
         stepping: Stepping,
-        no_step: NoStep | None = None,
+        no_step: KeepOutRegions | None = None,
         comfort: TorqueComfort | None = None,
     ) -> None:
-        self.no_step, self._comfort = no_step or NoStep(), comfort
+        self.no_step, self._comfort = no_step or KeepOutRegions(), comfort
         super().__init__(joints, body, stance, stepping.lift)
         self._rule, self._stepping = rule, stepping
         self._reach = stepping.reach.reach()

@@ -20,7 +20,7 @@ from windup.hal.joints import Array
 
 
 @dataclass(frozen=True)
-class Order:
+class VelocityCommand:
     """Where somebody wants a robot to walk.
 
     Attributes:
@@ -35,7 +35,7 @@ class Order:
 
 
 @dataclass(frozen=True)
-class Pace:
+class StepTiming:
     """What steps a robot takes.
 
     Attributes:
@@ -62,7 +62,7 @@ class Pace:
         return self.single + self.double
 
 
-def next_place(stance: Array, foot: int, order: Order, pace: Pace) -> Array:
+def next_place(stance: Array, foot: int, order: VelocityCommand, pace: StepTiming) -> Array:
     """Return where (3,) `foot` (0 left) goes from beside the other one, at `stance` (3,).
 
     As far from there as the body goes in the time of a step, and no farther than it reaches.
@@ -80,7 +80,7 @@ def next_place(stance: Array, foot: int, order: Order, pace: Pace) -> Array:
 
 
 @dataclass(frozen=True)
-class Stretch:
+class PressureSegment:
     """A stretch of the way of the centre of pressure.
 
     Attributes:
@@ -99,7 +99,7 @@ class Stretch:
         return np.asarray(self.begin + part * (self.end - self.begin))
 
 
-def capture_on_way(way: Sequence[Stretch], omega: float, time: float) -> Array:
+def capture_on_way(way: Sequence[PressureSegment], omega: float, time: float) -> Array:
     """Return where (2,) the capture point is on a way of the pressure that ends in rest.
 
     Args:
@@ -118,8 +118,8 @@ def capture_on_way(way: Sequence[Stretch], omega: float, time: float) -> Array:
 
 
 def future(
-    stance: Array, foot: int, landing: Array, order: Order, pace: Pace, steps: int
-) -> list[Stretch]:
+    stance: Array, foot: int, landing: Array, order: VelocityCommand, pace: StepTiming, steps: int
+) -> list[PressureSegment]:
     """Return the way of the pressure after the present swing, which ends in rest.
 
     Args:
@@ -133,9 +133,9 @@ def future(
     way = []
     for _ in range(steps):
         way += [
-            Stretch(stance[:2], landing[:2], pace.double),
-            Stretch(landing[:2], landing[:2], pace.single),
+            PressureSegment(stance[:2], landing[:2], pace.double),
+            PressureSegment(landing[:2], landing[:2], pace.single),
         ]
         foot = 1 - foot
         stance, landing = landing, next_place(landing, foot, order, pace)
-    return [*way, Stretch(stance[:2], 0.5 * (stance[:2] + landing[:2]), pace.period)]
+    return [*way, PressureSegment(stance[:2], 0.5 * (stance[:2] + landing[:2]), pace.period)]

@@ -1,6 +1,6 @@
 """`stride.toml` of a robot: how it walks as the inverted pendulum plans it. SI units."""
 
-from windup.control.stride.pendulum import Pace
+from windup.control.stride.pendulum import StepTiming
 from windup.hal.config import NotNegative as Gain
 from windup.hal.config import Part, Positive, Record
 
@@ -33,8 +33,8 @@ class Stride(Record, frozen=True, kw_only=True):
         most: Most that a foot lands elsewhere, m.
         keep: Time in which it makes up for being behind where it should be, s.
         feel: Time in which the standing sole tells how the ground lies, s.
-        hold: Part of the error of the centre of mass that the goals go too far.
-        brake: Time by which its speed moves the goals against it, s.
+        hold: Proportional gain on the CoM error.
+        brake: Derivative gain on the CoM, s.
         level: Part of the tilt of the base that the goals lean against it.
         steady: Time by which the rate of that tilt does so, s.
         follow: Rate at which what lasts of either is made up for, 1/s.
@@ -70,9 +70,9 @@ class Stride(Record, frozen=True, kw_only=True):
     slow: Positive
 
     @property
-    def pace(self) -> Pace:
+    def pace(self) -> StepTiming:
         """Its steps."""
-        return Pace(
+        return StepTiming(
             self.single,
             self.double,
             self.width,

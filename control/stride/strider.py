@@ -12,15 +12,21 @@ from typing import Literal
 
 import numpy as np
 
-from windup.control.kinematics.body import Body
 from windup.control.footprints.footprints import between, onto, seen_from
 from windup.control.footprints.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
+from windup.control.footprints.swing import gaussian_progress, lift
+from windup.control.kinematics.body import Body
 from windup.control.kinematics.limb_ik import LimbIk, Pose
 from windup.control.kinematics.momenta import GRAVITY
-from windup.control.stride.pendulum import Order, Stretch, capture_on_way, future, next_place
 from windup.control.kinematics.rotation import lying, turn, way_round
+from windup.control.stride.pendulum import (
+    PressureSegment,
+    VelocityCommand,
+    capture_on_way,
+    future,
+    next_place,
+)
 from windup.control.stride.stride_file import Stride
-from windup.control.footprints.swing import gaussian_progress, lift
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
@@ -60,7 +66,7 @@ class Strider(LegMotion):
         base: str,
         limbs: Sequence[LimbIk],
         stance: Array,
-        orders: Callable[[float], Order],
+        orders: Callable[[float], VelocityCommand],
         how: Stride,
     ) -> None:
         super().__init__(joints, body, base, limbs, stance, how)
@@ -85,7 +91,7 @@ class Strider(LegMotion):
         self._yaws = (self._facing, self._facing)
         self._share, self._ending = 0.5, False
         self._pull = np.zeros(2)
-        self._order = Order()
+        self._order = VelocityCommand()
         self._landing = self._target = self._left = self._feet[0]
         self._enter("stand", observation.time)
 
@@ -113,7 +119,7 @@ class Strider(LegMotion):
             speed=turn(com[2] - yaw)[:2, :2] @ pace,
             height=self._tall + rise * (self.how.height - self._tall),
             yaw=com[2],
-            share=self._share,
+            right_load=self._share,
             flying=self._foot if self.phase in ("swing", "land", "halt") else None,
             standing=max(1.0 - part / TAKE_OFF, 0.0) if self.phase == "swing" else part,
         )
@@ -138,7 +144,7 @@ class Strider(LegMotion):
         level = self.heights[self._bears] - float(slope @ (np.array([x, y]) - stands[:2]))
         return Pose(np.array([x, y, level + up]), lying(self._normal, yaw))
 
-    def _asked(self, now: float) -> Order:
+    def _asked(self, now: float) -> VelocityCommand:
         """Return the order of now in the plan's world, with what it is behind made up for."""
         order = self.orders(now - self._origin)
         heading, face = self._facing + order.heading, self._facing + order.face
@@ -151,7 +157,7 @@ class Strider(LegMotion):
         behind *= min(MOST_BEHIND / max(float(np.linalg.norm(behind)), 1e-9), 1.0)
         self._wanted = between(*self.places)[:2] + behind
         way += behind / self.how.keep
-        return Order(float(np.linalg.norm(way)), atan2(way[1], way[0]), face)
+        return VelocityCommand(float(np.linalg.norm(way)), atan2(way[1], way[0]), face)
 
     def _advance(self, now: float) -> None:
         """Go on to the next phase when it is time."""
@@ -202,31 +208,31 @@ class Strider(LegMotion):
         towards = between(stance, self._landing)[2]
         self._yaws = (self._yaws[1], self._yaws[1] + way_round(self._yaws[1], towards))
 
-    def _stretches(self) -> tuple[float, list[Stretch]]:
+    def _stretches(self) -> tuple[float, list[PressureSegment]]:
         """Return how long the phase lasts, s, and the way of the pressure from there on."""
         pace, middle = self.pace, between(*self._feet)[:2]
         stance, other = self._feet[self._bears], self._feet[self._foot]
         if self.phase == "stand":
-            return self.how.begin, [Stretch(middle, middle, self.how.begin)]
+            return self.how.begin, [PressureSegment(middle, middle, self.how.begin)]
         if self.phase == "halt":
-            return pace.period, [Stretch(stance[:2], middle, pace.period)]
+            return pace.period, [PressureSegment(stance[:2], middle, pace.period)]
         if self.phase == "land":
-            first = Stretch(stance[:2], other[:2], pace.double)
+            first = PressureSegment(stance[:2], other[:2], pace.double)
             stance, foot = other, 1 - self._foot
             landing = next_place(stance, foot, self._order, pace)
         elif self.phase == "shift":
-            first, foot = Stretch(middle, stance[:2], self.how.begin), self._foot
+            first, foot = PressureSegment(middle, stance[:2], self.how.begin), self._foot
             landing = next_place(stance, foot, self._order, pace)
         else:
             return pace.single, self._swing_way()
-        swing = Stretch(stance[:2], stance[:2], pace.single)
+        swing = PressureSegment(stance[:2], stance[:2], pace.single)
         ahead = future(stance, foot, landing, self._order, pace, AHEAD)
         return first.duration, [first, swing, *ahead]
 
-    def _swing_way(self) -> list[Stretch]:
+    def _swing_way(self) -> list[PressureSegment]:
         """Return the way of the pressure from a swing on."""
         stance, steps = self._feet[self._bears], 0 if self._ending else AHEAD
-        swing = Stretch(stance[:2], stance[:2], self.pace.single)
+        swing = PressureSegment(stance[:2], stance[:2], self.pace.single)
         ahead = future(stance, self._foot, self._landing, self._order, self.pace, steps)
         return [swing, *ahead]
 

@@ -53,7 +53,7 @@ class Dynamics:
         self._grounds: list[Array] = []
         self.corners = [self._find_corners(site) for site in self._sites]
 
-    def look(self, observation: Observation) -> None:
+    def update(self, observation: Observation) -> None:
         """Measure everything anew.
 
         Raises:

@@ -12,8 +12,8 @@ from typing import Final
 import daqp
 import numpy as np
 
-from windup.control.whole_body.dynamics import Dynamics
 from windup.control.kinematics.momenta import GRAVITY
+from windup.control.whole_body.dynamics import Dynamics
 from windup.hal.errors import WindupError
 from windup.hal.joints import Array
 

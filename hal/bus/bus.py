@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from windup.hal.port.adapter import get_to_know
+from windup.hal.bus.transactions import BusTransactions
 from windup.hal.errors import HardwareError, NoAnswerError, UsageError
-from windup.hal.bus.transactions import Exchange
 from windup.hal.families import DYNAMIXEL_X, Family
 from windup.hal.heartbeat import Heartbeat
 from windup.hal.joints import Mask
+from windup.hal.port.adapter import get_to_know
 from windup.hal.port.port import Port
 from windup.hal.protocols.cyclic import CyclicRead
 from windup.hal.protocols.protocol2 import Span, Status
@@ -57,7 +57,7 @@ class Bus:
 
     def __init__(self, port: Port, family: Family = DYNAMIXEL_X) -> None:
         self.port, self.family = port, family
-        self.exchange = Exchange(port)
+        self.exchange = BusTransactions(port)
         self._link = family.dialect.link(port)
         self._fast: dict[tuple[int, ...], bool] = {}
 
@@ -159,7 +159,7 @@ class Bus:
         return {id: status.params for id, status in self.statuses(spans).items()}
 
     def statuses(self, spans: Sequence[Span], rest: bool = False) -> dict[int, Status]:
-        """Return the same with the error bytes of the answers; `rest` as of `Exchange.request`."""
+        """Return the same with the error bytes of the answers; `rest` as of `request`."""
         self.heartbeat()
         read = self.family.dialect.read(spans, self.fast([span.id for span in spans]))
         self.exchange.request(read, rest)

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from windup.hal.bus.bus import Bus
-from windup.hal.families.family import Family, Want
+from windup.hal.families.family import Family, RequiredSetting
 from windup.hal.registers import Register
 from windup.hal.servos.servo_model import ServoModel, ServoMount
 
@@ -33,7 +33,7 @@ def differences(bus: Bus, mount: ServoMount) -> list[Setting]:
     return found
 
 
-def wanted_of(family: Family, mount: ServoMount) -> list[Want]:
+def wanted_of(family: Family, mount: ServoMount) -> list[RequiredSetting]:
     """Return what the registers of a servo have to be, in the order in which they are written."""
     other = family.extended if mount.extended else None
     usual = family.wanted(mount.model)

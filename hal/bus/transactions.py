@@ -34,7 +34,7 @@ DOUBTS = 2
 _NOBODY: Mask = np.zeros(0, dtype=bool)
 
 
-class Exchange:
+class BusTransactions:
     """The cyclic traffic of one port.
 
     The time on the wire of everything sent is kept in mind, so that a request behind a long

@@ -3,7 +3,7 @@
 from windup.hal.errors import UnknownNameError
 from windup.hal.families.dynamixel_1 import DYNAMIXEL_1
 from windup.hal.families.dynamixel_x import DYNAMIXEL_X
-from windup.hal.families.family import Block, Family, Want
+from windup.hal.families.family import Block, Family, RequiredSetting
 from windup.hal.families.feetech import FEETECH_SCS, FEETECH_STS
 
 FAMILIES = (DYNAMIXEL_X, DYNAMIXEL_1, FEETECH_STS, FEETECH_SCS)
@@ -35,6 +35,6 @@ __all__ = [
     "FEETECH_STS",
     "Block",
     "Family",
-    "Want",
+    "RequiredSetting",
     "family_of",
 ]

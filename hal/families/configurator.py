@@ -138,7 +138,7 @@ def keep_received(packets: Any) -> deque[Sequence[int]]:
     return got
 
 
-class Link(ABC):
+class ServoConfigurator(ABC):
     """One servo at a time, verified and slow: what configuration needs.
 
     Everything raises `NoAnswerError`, `CorruptAnswerError`, `RefusedError` or `PortError`.
@@ -243,7 +243,7 @@ class Link(ABC):
             self._port.is_using = False
 
 
-class DynamixelLink(Link):
+class DynamixelConfigurator(ServoConfigurator):
     """Protocol 2, through dynamixel-sdk."""
 
     def __init__(self, port: Port) -> None:

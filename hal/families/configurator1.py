@@ -16,10 +16,10 @@ from scservo_sdk import COMM_RX_TIMEOUT
 from scservo_sdk.protocol_packet_handler import protocol_packet_handler
 
 from windup.hal.errors import RefusedError, UsageError
+from windup.hal.families.configurator import ATTEMPTS, ServoConfigurator
 from windup.hal.port.port import Port
 from windup.hal.protocols.protocol1 import Instruction
 from windup.hal.registers import Register
-from windup.hal.families.configurator import ATTEMPTS, Link
 
 REFUSALS = {
     1: "says the goal is beyond its angle limits",
@@ -30,7 +30,7 @@ REFUSALS = {
 """Bit of a Dynamixel's error byte that means "no"; the others say how the servo is."""
 
 
-class Protocol1Link(Link):
+class Protocol1Configurator(ServoConfigurator):
     """What both makers have alike.
 
     Args:
@@ -93,7 +93,7 @@ class Protocol1Link(Link):
         """A servo's health rides in every error byte; it refuses nothing."""
 
 
-class Dynamixel1Link(Protocol1Link):
+class Dynamixel1Configurator(Protocol1Configurator):
     """AX and MX."""
 
     def __init__(self, port: Port, model_number: Register) -> None:
@@ -104,7 +104,7 @@ class Dynamixel1Link(Protocol1Link):
             raise RefusedError(f"id {id} on {self._port.port.url} {' and '.join(no)}")
 
 
-class FeetechLink(Protocol1Link):
+class FeetechConfigurator(Protocol1Configurator):
     """STS, SMS and SCS."""
 
     timed_out = COMM_RX_TIMEOUT

@@ -5,8 +5,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from windup.hal.port.adapter import MARGIN, Probe
 from windup.hal.errors import CorruptAnswerError, HardwareError, NoAnswerError, RefusedError
+from windup.hal.families.configurator import DynamixelConfigurator, ServoConfigurator
+from windup.hal.families.configurator1 import Dynamixel1Configurator, FeetechConfigurator
+from windup.hal.port.adapter import MARGIN, Probe
 from windup.hal.port.port import BITS, Port
 from windup.hal.protocols import protocol1, protocol2
 from windup.hal.protocols.batched import BlockRead, BlockWrite
@@ -14,8 +16,6 @@ from windup.hal.protocols.batched1 import ChainRead, GoalWrite, bulk_read, sync_
 from windup.hal.protocols.cyclic import CyclicRead, CyclicWrite
 from windup.hal.protocols.protocol2 import Span
 from windup.hal.registers import Register
-from windup.hal.families.configurator import DynamixelLink, Link
-from windup.hal.families.configurator1 import Dynamixel1Link, FeetechLink
 
 PING_SLOT = 3e-3
 """Servos answer a broadcast ping of protocol 2 one after the other, each in its slot of this, s."""
@@ -35,7 +35,7 @@ class Answered(NamedTuple):
     firmware: int
 
 
-class Dialect(ABC):
+class ServoProtocol(ABC):
     """One protocol as one maker speaks it.
 
     Attributes:
@@ -47,7 +47,7 @@ class Dialect(ABC):
     weak: bool
 
     @abstractmethod
-    def link(self, port: Port) -> Link:
+    def link(self, port: Port) -> ServoConfigurator:
         """Return what speaks to one servo at a time."""
 
     @abstractmethod
@@ -67,7 +67,7 @@ class Dialect(ABC):
         """Return a request to one servo whose answer cannot be taken for its echo."""
 
     @abstractmethod
-    def who(self, port: Port, link: Link) -> list[Answered]:
+    def who(self, port: Port, link: ServoConfigurator) -> list[Answered]:
         """Return who is there at the port's present baud rate."""
 
     def estranged(self, port: Port, id: int) -> int | None:
@@ -75,14 +75,14 @@ class Dialect(ABC):
         return None
 
 
-class Protocol2(Dialect):
+class Protocol2(ServoProtocol):
     """Dynamixel protocol 2. Fast is the fast sync read."""
 
     last_id, weak = protocol2.LAST_ID, False
 
-    def link(self, port: Port) -> Link:
+    def link(self, port: Port) -> ServoConfigurator:
         """Return what speaks to one servo at a time."""
-        return DynamixelLink(port)
+        return DynamixelConfigurator(port)
 
     def read(self, spans: Sequence[Span], fast: bool = False) -> CyclicRead:
         """Return a sync read, or a bulk read where the spans differ."""
@@ -101,7 +101,7 @@ class Protocol2(Dialect):
         answer = protocol2.status(id, bytes(3))
         return Probe(protocol2.ping(id), len(answer), answer[:8])
 
-    def who(self, port: Port, link: Link) -> list[Answered]:
+    def who(self, port: Port, link: ServoConfigurator) -> list[Answered]:
         """Ping everybody at once; every reply that is whole counts."""
         port.flush_input()
         port.write(protocol2.ping())
@@ -118,11 +118,11 @@ class Protocol2(Dialect):
     def estranged(self, port: Port, id: int) -> int | None:
         """Return the model number of a servo that answers in protocol 1 instead, or None."""
         with contextlib.suppress(NoAnswerError, CorruptAnswerError, RefusedError):
-            return Dynamixel1Link(port, MODEL_NUMBER).ping(id, attempts=1)
+            return Dynamixel1Configurator(port, MODEL_NUMBER).ping(id, attempts=1)
         return None
 
 
-class Protocol1(Dialect):
+class Protocol1(ServoProtocol):
     """What Dynamixel protocol 1 and Feetech have alike.
 
     Args:
@@ -156,7 +156,7 @@ class Protocol1(Dialect):
         request = protocol1.read(id, self.model_number.address, 1)
         return Probe(request, len(answer), answer[:4])
 
-    def who(self, port: Port, link: Link) -> list[Answered]:
+    def who(self, port: Port, link: ServoConfigurator) -> list[Answered]:
         """Ping one id after the other: all who hear a common ping would answer at once.
 
         Where one answers while another is asked, the adapter is slower than was thought: then all
@@ -190,9 +190,9 @@ class Protocol1(Dialect):
 class Dynamixel1(Protocol1):
     """AX and MX. The common read is the bulk read, which no AX knows."""
 
-    def link(self, port: Port) -> Link:
+    def link(self, port: Port) -> ServoConfigurator:
         """Return what speaks to one servo at a time."""
-        return Dynamixel1Link(port, self.model_number)
+        return Dynamixel1Configurator(port, self.model_number)
 
     def _common(self, spans: Sequence[Span]) -> CyclicRead:
         return bulk_read(spans)
@@ -214,9 +214,9 @@ class Feetech(Protocol1):
         super().__init__(model_number, firmware, protocol1.LONGEST_FEETECH)
         self.always_sync = always_sync
 
-    def link(self, port: Port) -> Link:
+    def link(self, port: Port) -> ServoConfigurator:
         """Return what speaks to one servo at a time."""
-        return FeetechLink(port, self.model_number)
+        return FeetechConfigurator(port, self.model_number)
 
     def read(self, spans: Sequence[Span], fast: bool = False) -> CyclicRead:
         """Return a sync read where all know one, else single reads."""

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from windup.hal.errors import UsageError
-from windup.hal.families.dialect import Dialect
+from windup.hal.families.dialect import ServoProtocol
 from windup.hal.families.gain import Gain
 from windup.hal.families.usual import Usual, protective_limits
 from windup.hal.protocols.protocol2 import Span
@@ -21,7 +21,7 @@ from windup.hal.registers import Register, RegisterTable
 from windup.hal.servos.servo_model import ServoModel
 
 
-class Want(NamedTuple):
+class RequiredSetting(NamedTuple):
     """What the stack needs a register to be; `mask` says which bits matter, None all."""
 
     name: str
@@ -130,7 +130,7 @@ class Family:
 
     name: str
     protocol: str
-    dialect: Dialect
+    dialect: ServoProtocol
     registers: Mapping[str, Register]
     table: Callable[[str], RegisterTable]
     numbers: Mapping[int, str]
@@ -138,7 +138,7 @@ class Family:
     state: Block
     health: Block | None
     check: Block
-    wanted: Callable[[ServoModel], Sequence[Want]]
+    wanted: Callable[[ServoModel], Sequence[RequiredSetting]]
     gain: Callable[[str], Gain]
     alert: int
     errors: Mapping[int, str]
@@ -149,7 +149,7 @@ class Family:
     weakening: int = 0
     latching: bool = False
     current: Block | None = None
-    extended: Want | None = None
+    extended: RequiredSetting | None = None
     usual: Callable[[ServoModel], Sequence[Usual]] = protective_limits
     check_alone: bool = False
     errors_in_answers: bool = True

@@ -5,10 +5,9 @@ until the power goes, so the loop may change gains without wearing anything.
 """
 
 from windup.hal.families.dialect import Feetech
-from windup.hal.families.family import Block, Family, Mark, Want
+from windup.hal.families.family import Block, Family, Mark, RequiredSetting
 from windup.hal.families.gain import Gain
 from windup.hal.families.usual import Usual, protective_limits
-from windup.hal.servos.servo_model import ServoModel
 from windup.hal.servos.feetech_registers import (
     BAUD_CODES,
     HARDWARE_ERRORS,
@@ -20,6 +19,7 @@ from windup.hal.servos.feetech_registers import (
     STS_NUMBERS,
     feetech_registers,
 )
+from windup.hal.servos.servo_model import ServoModel
 
 FULL = 1000
 """Torque limit that limits nothing."""
@@ -33,32 +33,32 @@ LARGEST_P = 254
 _ALERT = sum(1 << bit for bit in HARDWARE_ERRORS)
 
 
-def _sts_wanted(model: ServoModel) -> tuple[Want, ...]:
+def _sts_wanted(model: ServoModel) -> tuple[RequiredSetting, ...]:
     return (
         *_wanted(model),
-        Want("phase", STEP_SPEED, STEP_SPEED | MULTI_TURN),  # steps a second, one turn
-        Want("operating_mode", 0),
-        Want("angular_resolution", 1),  # else a count is several steps
-        Want("cw_dead_zone", 1),
-        Want("ccw_dead_zone", 1),
-        Want("acceleration", 0),  # no profile
-        Want("torque_limit", MARKED),
+        RequiredSetting("phase", STEP_SPEED, STEP_SPEED | MULTI_TURN),  # steps a second, one turn
+        RequiredSetting("operating_mode", 0),
+        RequiredSetting("angular_resolution", 1),  # else a count is several steps
+        RequiredSetting("cw_dead_zone", 1),
+        RequiredSetting("ccw_dead_zone", 1),
+        RequiredSetting("acceleration", 0),  # no profile
+        RequiredSetting("torque_limit", MARKED),
     )
 
 
-def _wanted(model: ServoModel) -> tuple[Want, ...]:
+def _wanted(model: ServoModel) -> tuple[RequiredSetting, ...]:
     return (
-        Want("return_delay", 0),
-        Want("status_return_level", 1),
-        Want("min_position_limit", 0),
-        Want("max_position_limit", model.last_count),
-        Want("max_torque", FULL),
-        Want("unloading_condition", GUARDED, GUARDED),
-        Want("position_d_gain", 0),
-        Want("position_i_gain", 0),
-        Want("goal_time", 0),
-        Want("goal_speed", 0),  # no limit
-        Want("lock", 1),
+        RequiredSetting("return_delay", 0),
+        RequiredSetting("status_return_level", 1),
+        RequiredSetting("min_position_limit", 0),
+        RequiredSetting("max_position_limit", model.last_count),
+        RequiredSetting("max_torque", FULL),
+        RequiredSetting("unloading_condition", GUARDED, GUARDED),
+        RequiredSetting("position_d_gain", 0),
+        RequiredSetting("position_i_gain", 0),
+        RequiredSetting("goal_time", 0),
+        RequiredSetting("goal_speed", 0),  # no limit
+        RequiredSetting("lock", 1),
     )
 
 

@@ -165,7 +165,7 @@ class GuardedBackend:
         self._last = observation
         self._presence.check(observation.joints.age, self.limits.max_age)
         if self.watch is not None:
-            unwell = self.watch.look(observation, self._obeyed)
+            unwell = self.watch.update(observation, self._obeyed)
             if unwell is not None and (self._driven or self._obeyed is not None):
                 raise self.watch.error(unwell)
         return observation

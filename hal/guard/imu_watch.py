@@ -51,7 +51,7 @@ class ImuWatch:
         """What there was to warn about: one finding a kind, with its worst value and its count."""
         return list(self._warnings.values())
 
-    def look(self, observation: Observation) -> Finding | None:
+    def update(self, observation: Observation) -> Finding | None:
         """Return what is wrong with the IMU now, or None."""
         now = observation.time
         passed = now - self._time
@@ -93,7 +93,7 @@ class ImuWatch:
                 self.gyro.compare(sample, self._sample, now)
             self._sample, self._taken = sample, self._heard
             self._changed, self._pose = now, joints.position
-            if (stuck := self._axis.look(sample, now)) is not None:
+            if (stuck := self._axis.update(sample, now)) is not None:
                 return stuck, True
         elif same > FROZEN and np.abs(joints.position - self._pose).max() > MOVED:
             return (STUCK, same, FROZEN), True

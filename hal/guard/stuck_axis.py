@@ -32,7 +32,7 @@ class StuckAxis:
         self._last: Sequence[float] = ()
         self._since, self._count = [0.0] * 3, [0] * 3
 
-    def look(self, sample: Sequence[float], now: float) -> tuple[Saying, float, float] | None:
+    def update(self, sample: Sequence[float], now: float) -> tuple[Saying, float, float] | None:
         """Return what is wrong with a new sample: (6,), its rates come first, rad/s."""
         for axis in range(3):
             rate = sample[axis]

@@ -45,7 +45,9 @@ class HealthWatch:
         self._first = np.full(len(Kind), np.nan)
         self._worst: Array = np.full_like(self._values, np.nan)
 
-    def look(self, observation: Observation, command: JointCommand | None = None) -> Finding | None:
+    def update(
+        self, observation: Observation, command: JointCommand | None = None
+    ) -> Finding | None:
         """Judge an observation; collect warnings, and return the reason to stop, if there is one.
 
         Args:

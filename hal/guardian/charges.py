@@ -9,8 +9,8 @@ from windup.hal.joints import Array
 from windup.hal.port.network_port import NETWORK
 from windup.hal.port.open_port import stable_url
 from windup.hal.port.port import DevicePort
+from windup.hal.servo_bus.bus_connection import BusConnection
 from windup.hal.servo_bus.servo_backend import ServoBackend
-from windup.hal.servo_bus.bus_connection import ServoLink
 
 
 def charges_of(
@@ -33,7 +33,7 @@ def charges_of(
     return [charge_of(link, goals, levels) for link in links]
 
 
-def charge_of(link: ServoLink, goals: Array | None, levels: HealthLevels | None) -> Charge:
+def charge_of(link: BusConnection, goals: Array | None, levels: HealthLevels | None) -> Charge:
     """Return what a guardian has to know of a bus; `goals` are (n,) counts of the crouch."""
     port, line = link.bus.port, link.line
     counts = {} if goals is None else dict(zip(line.ids, goals[line.rows].tolist(), strict=True))
@@ -56,13 +56,13 @@ def charge_of(link: ServoLink, goals: Array | None, levels: HealthLevels | None)
     )
 
 
-def _outside(link: ServoLink) -> bool:
+def _outside(link: BusConnection) -> bool:
     """Return whether another process can reach the servos of a bus."""
     port = link.bus.port
     return isinstance(port, DevicePort) or port.url.startswith(NETWORK)
 
 
-def _check_network(link: ServoLink) -> None:
+def _check_network(link: BusConnection) -> None:
     """Refuse a network where its loss would leave nobody who can stop the servos.
 
     Raises:

@@ -18,13 +18,13 @@ from windup.hal.errors import GuardianError, HardwareError
 from windup.hal.guard.levels import HealthLevels
 from windup.hal.guard.limits import StopPolicy
 from windup.hal.guardian.charges import charges_of
-from windup.hal.in_words import in_words
 from windup.hal.guardian.launch import launch
-from windup.hal.port.lock import AdapterLock
 from windup.hal.guardian.order import FIRST, HAND_OVER, IDLE, READY, RELEASE, TICK, Charge, Order
 from windup.hal.guardian.signals import held_back
 from windup.hal.guardian.traceback_signal import show_traceback_on_signal
+from windup.hal.in_words import in_words
 from windup.hal.joints import Array
+from windup.hal.port.lock import AdapterLock
 from windup.hal.servo_bus.servo_backend import ServoBackend
 
 NOT_STARTED = (

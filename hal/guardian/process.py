@@ -17,11 +17,11 @@ import msgspec
 
 from windup.hal.clock import PRIORITY
 from windup.hal.guardian.host import Host
-from windup.hal.in_words import in_words
 from windup.hal.guardian.order import HAND_OVER, IDLE, READY, RELEASE, SILENCE, TICK, Order
 from windup.hal.guardian.signals import ignore_signals
 from windup.hal.guardian.takeover import Takeover
 from windup.hal.guardian.words import Words, standard_error
+from windup.hal.in_words import in_words
 
 ABOVE = 5
 """By how much it precedes the loop among real-time processes."""

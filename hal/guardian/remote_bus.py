@@ -7,14 +7,14 @@ import numpy as np
 from windup.hal.bus.bus import Bus
 from windup.hal.errors import HardwareError
 from windup.hal.families import family_of
-from windup.hal.in_words import in_words
 from windup.hal.guardian.order import Charge
+from windup.hal.in_words import in_words
 from windup.hal.joints import Array, Mask
 from windup.hal.port.open_port import open_port
-from windup.hal.servo_bus.bus_readout import ServoLine
-from windup.hal.servos.servo_model import ServoMount
+from windup.hal.servo_bus.bus_readout import BusReadout
 from windup.hal.servo_bus.servo_torque import ServoTorque
 from windup.hal.servos import servo_model
+from windup.hal.servos.servo_model import ServoMount
 
 UNLIMITED = (np.inf, -np.inf)
 """Levels of a servo that has none."""
@@ -54,7 +54,7 @@ class RemoteBus:
             bus = Bus(port, family_of(self._mounts[0].model.name))
             rows, known = range(len(self._mounts)), self.charge.names
             names = [known[id] for id in self.charge.servos] if known else ()
-            line = ServoLine(bus, self._mounts, rows, names=names)
+            line = BusReadout(bus, self._mounts, rows, names=names)
             self._torque = ServoTorque(line, 0.0)
         return self._torque
 

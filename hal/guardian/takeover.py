@@ -7,11 +7,11 @@ from contextlib import suppress
 from windup.hal.guardian.crouch import crouch
 from windup.hal.guardian.held import hold
 from windup.hal.guardian.host import Host
-from windup.hal.in_words import in_words
-from windup.hal.port.lock import Note, write_note
 from windup.hal.guardian.order import Order
 from windup.hal.guardian.remote_bus import RemoteBus
 from windup.hal.guardian.words import Say
+from windup.hal.in_words import in_words
+from windup.hal.port.lock import Note, write_note
 
 PAUSES = 2e-3, 1.0
 """Between two attempts, s: the first, and the longest."""

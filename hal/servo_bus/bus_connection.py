@@ -11,9 +11,9 @@ from windup.hal.bus.bus import Bus
 from windup.hal.errors import PortError
 from windup.hal.joints import Array, Mask
 from windup.hal.port.port import Port
-from windup.hal.protocols.cyclic import CyclicWrite
 from windup.hal.port.replug import RETRY, Opener, Replug
-from windup.hal.servo_bus.bus_readout import ServoLine
+from windup.hal.protocols.cyclic import CyclicWrite
+from windup.hal.servo_bus.bus_readout import BusReadout
 from windup.hal.servo_bus.servo_torque import ServoTorque
 from windup.hal.servo_bus.torque_check import TorqueCheck
 from windup.hal.torque_loss import UNPLUGGED
@@ -28,7 +28,7 @@ class BusPort:
     baud: int
 
 
-class ServoLink:
+class BusConnection:
     """A line of servos, its torque switch and its port.
 
     While the port is gone nothing raises and nothing is sent. When it is back, torque is switched
@@ -46,7 +46,7 @@ class ServoLink:
     """
 
     def __init__(
-        self, where: BusPort, opener: Opener, line: Callable[[Port], ServoLine], watchdog: float
+        self, where: BusPort, opener: Opener, line: Callable[[Port], BusReadout], watchdog: float
     ) -> None:
         self._replug = Replug(where.url, where.baud, opener)
         self.line = line(self._replug.opened)
@@ -82,7 +82,7 @@ class ServoLink:
                 self._lose(error)
 
     def collect(self, counts: Array, health: Array, error: npt.NDArray[np.uint8]) -> Mask:
-        """Return (servos,) bool: whose answers came; see `ServoLine.collect`."""
+        """Return (servos,) bool: whose answers came; see `BusReadout.collect`."""
         if self.lost is None:
             try:
                 valid = self.line.collect(counts, health, error)

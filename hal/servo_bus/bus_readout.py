@@ -9,11 +9,11 @@ import numpy.typing as npt
 from windup.hal.bus.bus import Bus
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.joints import Array, Mask
+from windup.hal.protocols.cyclic import CyclicWrite
 from windup.hal.servo_bus.line_reads import Asked, LineReads, Longer
 from windup.hal.servo_bus.plausibility import Plausibility
-from windup.hal.protocols.cyclic import CyclicWrite
-from windup.hal.servos.servo_model import ServoMount
 from windup.hal.servo_bus.units import gain_groups
+from windup.hal.servos.servo_model import ServoMount
 
 LOWEST_OF = 2.0
 """How far back `lowest_supply` looks, s."""
@@ -23,7 +23,7 @@ ATTEMPTS = 5
 Rows = slice | npt.NDArray[np.intp]
 
 
-class ServoLine:
+class BusReadout:
     """The servos of one bus within a robot of n joints.
 
     Attributes:

@@ -9,7 +9,7 @@ from windup.hal.coupling import Couplings
 from windup.hal.imu.source import ImuSource
 from windup.hal.joints import Array, Mask
 from windup.hal.observation import ImuState, JointState, Observation
-from windup.hal.servo_bus.bus_connection import ServoLink
+from windup.hal.servo_bus.bus_connection import BusConnection
 from windup.hal.servo_bus.units import Units
 
 
@@ -37,7 +37,7 @@ class JointReadings:
         self._imu_at = -np.inf
         self.answered: Array = np.full(n, -np.inf)
 
-    def collect(self, link: ServoLink, error: npt.NDArray[np.uint8]) -> None:
+    def collect(self, link: BusConnection, error: npt.NDArray[np.uint8]) -> None:
         """Take in the answers on one bus, error bytes into `error` (n,), and date them."""
         valid: Mask = link.collect(self._counts, self._health, error)
         line = link.line
@@ -45,12 +45,12 @@ class JointReadings:
         if line.imu_fresh:
             self._imu_at = link.heard
 
-    def read_health(self, links: Sequence[ServoLink]) -> None:
+    def read_health(self, links: Sequence[BusConnection]) -> None:
         """Read voltage and temperature of all servos at once; the cycle refreshes them."""
         for link in links:
             link.read_health(self._health)
 
-    def observe(self, now: float, links: Sequence[ServoLink]) -> Observation:
+    def observe(self, now: float, links: Sequence[BusConnection]) -> Observation:
         """Return the state of the joints as of `now` s."""
         position, velocity, torque = self._units.si(self._counts)
         voltage, temperature, measured = self._health.copy()
@@ -63,7 +63,7 @@ class JointReadings:
         state = JointState(position, velocity, torque, voltage, temperature, age, now - measured)
         return Observation(now, state, self.imu_state(now, links), self._contacts, None)
 
-    def imu_state(self, now: float, links: Sequence[ServoLink]) -> ImuState | None:
+    def imu_state(self, now: float, links: Sequence[BusConnection]) -> ImuState | None:
         """Return what the IMU last said as of `now` s, or None where there is none."""
         if self._imu is not None:
             return self._imu.state(now)

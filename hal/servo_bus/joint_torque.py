@@ -8,7 +8,7 @@ from windup.hal.coupling import Couplings
 from windup.hal.errors import HardwareError
 from windup.hal.heartbeat import Heartbeat
 from windup.hal.joints import Array, Joints, Mask
-from windup.hal.servo_bus.bus_connection import ServoLink
+from windup.hal.servo_bus.bus_connection import BusConnection
 from windup.hal.torque_loss import SILENT, Loss
 from windup.hal.torque_state import TorqueState
 
@@ -29,7 +29,7 @@ class JointTorque:
     def __init__(self, joints: Joints, couplings: Couplings) -> None:
         self._joints, self._couplings = joints, couplings
 
-    def on(self, links: Sequence[ServoLink], gains: Array, heartbeat: Heartbeat) -> TorqueState:
+    def on(self, links: Sequence[BusConnection], gains: Array, heartbeat: Heartbeat) -> TorqueState:
         """Switch torque on at the present pose, P registers (n,) `gains`.
 
         Raises:
@@ -46,7 +46,7 @@ class JointTorque:
             now = f"is not known to be off at {where}" if where else "is off"
             raise type(error)(f"{error}; torque {now}") from None
 
-    def off(self, links: Sequence[ServoLink], heartbeat: Heartbeat) -> TorqueState:
+    def off(self, links: Sequence[BusConnection], heartbeat: Heartbeat) -> TorqueState:
         """Switch torque off and return what was read back.
 
         Whoever answers is off and read at once; then the silent ones are given time to boot.
@@ -61,7 +61,7 @@ class JointTorque:
             states = [link.insist_off(s) for link, s in zip(links, states, strict=True)]
         return self._joined(links, states)
 
-    def _check_armable(self, links: Sequence[ServoLink]) -> None:
+    def _check_armable(self, links: Sequence[BusConnection]) -> None:
         if barred := [link.bus.port.url for link in links if link.barred]:
             raise HardwareError(
                 f"{', '.join(barred)} went away since the robot was armed; arm it again by `rearm`"
@@ -71,7 +71,7 @@ class JointTorque:
                 f"{', '.join(lost)} lost torque since the robot was armed; arm it again by `rearm`"
             )
 
-    def losses(self, links: Sequence[ServoLink]) -> dict[str, Loss]:
+    def losses(self, links: Sequence[BusConnection]) -> dict[str, Loss]:
         """Return joint name to how it has lost its torque since the robot was armed."""
         lost: dict[str, Loss] = {}
         for link in links:
@@ -79,7 +79,7 @@ class JointTorque:
                 lost |= dict.fromkeys(self._moved_by(link, [row]), loss)
         return lost
 
-    def doubts(self, links: Sequence[ServoLink]) -> dict[str, str]:
+    def doubts(self, links: Sequence[BusConnection]) -> dict[str, str]:
         """Return the joints of which nobody knows whether they have torque, and what to do."""
         doubts: dict[str, str] = {}
         for link in links:
@@ -91,13 +91,13 @@ class JointTorque:
                 doubts |= dict.fromkeys(self._moved_by(link, rows), SILENT)
         return doubts
 
-    def _moved_by(self, link: ServoLink, rows: Sequence[int]) -> list[str]:
+    def _moved_by(self, link: BusConnection, rows: Sequence[int]) -> list[str]:
         """Return the names of the joints that the servos in some `rows` of a line move."""
         servos: Mask = np.zeros(len(self._joints), dtype=bool)
         servos[link.line.rows[list(rows)]] = True
         return np.array(self._joints.names)[self._couplings.any(servos)].tolist()
 
-    def _joined(self, links: Sequence[ServoLink], states: Sequence[TorqueState]) -> TorqueState:
+    def _joined(self, links: Sequence[BusConnection], states: Sequence[TorqueState]) -> TorqueState:
         """Return the torque of the joints from that of the servos of each bus.
 
         A joint that two servos move is on, or unknown, if one of them is.
@@ -110,7 +110,7 @@ class JointTorque:
         return TorqueState(on, unknown & ~on)
 
 
-def _worth_waiting(links: Sequence[ServoLink], states: Sequence[TorqueState]) -> bool:
+def _worth_waiting(links: Sequence[BusConnection], states: Sequence[TorqueState]) -> bool:
     """Return whether a servo that is not known to be off may still answer this process."""
     pairs = zip(links, states, strict=True)
     return any(not state.all_off and not link.gone_for_good for link, state in pairs)

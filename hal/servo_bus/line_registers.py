@@ -8,7 +8,7 @@ import numpy.typing as npt
 from windup.hal.errors import HardwareError
 from windup.hal.joints import Array, Mask
 from windup.hal.registers import Register
-from windup.hal.servo_bus.bus_readout import Rows, ServoLine
+from windup.hal.servo_bus.bus_readout import BusReadout, Rows
 
 ATTEMPTS = 8
 BACKOFF = 4e-3
@@ -22,7 +22,7 @@ class LineRegisters:
         line: The line.
     """
 
-    def __init__(self, line: ServoLine) -> None:
+    def __init__(self, line: BusReadout) -> None:
         self.line = line
         self._all = np.arange(len(line.ids))
 

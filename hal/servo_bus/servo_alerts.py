@@ -9,8 +9,8 @@ import numpy.typing as npt
 from windup.hal.errors import PortError
 from windup.hal.families import family_of
 from windup.hal.joints import Joints
-from windup.hal.servo_bus.bus_readout import ServoLine
-from windup.hal.servo_bus.bus_connection import ServoLink
+from windup.hal.servo_bus.bus_connection import BusConnection
+from windup.hal.servo_bus.bus_readout import BusReadout
 from windup.hal.servos.servo_model import ServoMount
 
 UNKNOWN = "unknown"
@@ -37,12 +37,12 @@ class ServoAlerts:
         self._mask = np.zeros_like(self.errors)
         self.now: dict[str, tuple[str, ...]] = {}
 
-    def watch(self, lines: Sequence[ServoLine]) -> None:
+    def watch(self, lines: Sequence[BusReadout]) -> None:
         """Take note of which bits mean an alert on each line."""
         for line in lines:
             self._mask[line.rows] = line.bus.family.alert
 
-    def update(self, links: Sequence[ServoLink]) -> None:
+    def update(self, links: Sequence[BusConnection]) -> None:
         """Explain the servos that newly signal an error, and forget those that do not any more."""
         if not self.now and not self.errors.any():
             return
@@ -54,10 +54,10 @@ class ServoAlerts:
                 with suppress(PortError):  # the next request sees that too
                     self._explain(line, new)
 
-    def _name(self, line: ServoLine, row: int) -> str:
+    def _name(self, line: BusReadout, row: int) -> str:
         return self._joints.names[line.rows[row]]
 
-    def _explain(self, line: ServoLine, rows: Sequence[int]) -> None:
+    def _explain(self, line: BusReadout, rows: Sequence[int]) -> None:
         """Take down what the servos in `rows` of a line signal; who does not say is asked again."""
         family = line.bus.family
         bits = self.errors[line.rows[rows]] & family.alert
@@ -70,7 +70,7 @@ class ServoAlerts:
             self.now[self._name(line, row)] = family.explain(code) or (UNKNOWN,)
 
 
-def count_errors(links: Sequence[ServoLink], watchdog_trips: int) -> dict[str, int]:
+def count_errors(links: Sequence[BusConnection], watchdog_trips: int) -> dict[str, int]:
     """Return kind of error to how often it has happened; the kinds are always the same."""
     counts = dict.fromkeys(ERROR_KINDS, 0)
     for link in links:

@@ -7,31 +7,31 @@ import numpy as np
 
 from windup.hal.backend import Clock
 from windup.hal.bus.bus import Bus
+from windup.hal.bus.transactions import TURNAROUND
 from windup.hal.clock import WallClock
 from windup.hal.command import JointCommand, shifted_goal
 from windup.hal.coupling import Coupling, Couplings
 from windup.hal.errors import HardwareError, PortError
-from windup.hal.bus.transactions import TURNAROUND
 from windup.hal.heartbeat import Heartbeat, beating, no_heartbeat
+from windup.hal.imu.imu_link import ImuLink
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.imu.source import ImuSource
-from windup.hal.imu.imu_link import ImuLink
-from windup.hal.servo_bus.joint_readings import JointReadings
-from windup.hal.servo_bus.joint_torque import JointTorque
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 from windup.hal.port.open_port import open_port
 from windup.hal.port.port import Port
+from windup.hal.servo_bus.bus_connection import BusConnection, BusPort
+from windup.hal.servo_bus.bus_readout import BusReadout
+from windup.hal.servo_bus.joint_readings import JointReadings
+from windup.hal.servo_bus.joint_torque import JointTorque
 from windup.hal.servo_bus.servo_alerts import ServoAlerts, count_errors
-from windup.hal.servo_bus.bus_readout import ServoLine
-from windup.hal.servo_bus.bus_connection import BusPort, ServoLink
-from windup.hal.servos.servo_model import ServoMount
 from windup.hal.servo_bus.servo_setup import lines_of, names_of, open_links, set_up
 from windup.hal.servo_bus.stop_button import StopButton
-from windup.hal.torque_loss import Loss
-from windup.hal.torque_state import TorqueState
 from windup.hal.servo_bus.units import Units
 from windup.hal.servo_bus.wiring import check_mounts
+from windup.hal.servos.servo_model import ServoMount
+from windup.hal.torque_loss import Loss
+from windup.hal.torque_state import TorqueState
 
 __all__ = ["BusPort", "ServoBackend"]
 
@@ -93,7 +93,7 @@ class ServoBackend:
         check_mounts(joints, self.mounts, ports, self.units, self._couplings)
         self._ports, self._opener, self._watchdog = dict(ports), opener, watchdog
         self.clock: Clock = WallClock()
-        self.links: list[ServoLink] = []
+        self.links: list[BusConnection] = []
         self._imu_link: ImuLink | None = None
         self._alerts = ServoAlerts(joints, self.mounts)
         self.button = StopButton()
@@ -110,7 +110,7 @@ class ServoBackend:
         self.heartbeat: Heartbeat = no_heartbeat
 
     @property
-    def lines(self) -> list[ServoLine]:
+    def lines(self) -> list[BusReadout]:
         """The servos of each bus."""
         return [link.line for link in self.links]
 
@@ -195,7 +195,7 @@ class ServoBackend:
         if not calm or self._alerts.now:
             self._see_to(self.links)
         if self.board is not None:
-            self.button.look(self.links)
+            self.button.update(self.links)
         if self._imu_link is not None:
             self._imu_link.poll()
         return self.readings.observe(self.clock.now(), self.links)
@@ -282,7 +282,7 @@ class ServoBackend:
             self._imu_link.close()
         self.links, self._imu_link = [], None
 
-    def _see_to(self, links: Sequence[ServoLink]) -> None:
+    def _see_to(self, links: Sequence[BusConnection]) -> None:
         """Look after whoever was silent, signals an error or has lost its torque."""
         self.lost_joints = self._torque.losses(links)
         if any(link.check.woke for link in links):

@@ -7,26 +7,26 @@ import numpy as np
 
 from windup.hal.backend import Clock
 from windup.hal.bus.bus import Bus
+from windup.hal.bus.servo_settings import assert_settings
+from windup.hal.bus.setting_words import in_words
 from windup.hal.clock import WallClock
 from windup.hal.errors import UsageError
 from windup.hal.families import family_of
-from windup.hal.port.lock import EMULATED, wait_while_guarded
+from windup.hal.imu.imu_link import ImuLink
 from windup.hal.imu.opencr import POWER, POWER_UP_TIME, OpenCr
 from windup.hal.imu.source import ImuSource
-from windup.hal.imu.imu_link import ImuLink
 from windup.hal.joints import Joints, Mask
-from windup.hal.servo_bus.plausibility import Plausibility
+from windup.hal.port.lock import EMULATED, wait_while_guarded
 from windup.hal.port.port import Port
 from windup.hal.port.replug import Opener
-from windup.hal.servo_bus.bus_readout import ServoLine
-from windup.hal.servo_bus.bus_connection import BusPort, ServoLink
-from windup.hal.servos.servo_model import ServoMount
-from windup.hal.bus.servo_settings import assert_settings
-from windup.hal.bus.setting_words import in_words
+from windup.hal.servo_bus.bus_connection import BusConnection, BusPort
+from windup.hal.servo_bus.bus_readout import BusReadout
+from windup.hal.servo_bus.plausibility import Plausibility
 from windup.hal.servo_bus.units import Units
 from windup.hal.servo_bus.wiring import check_servos, row_groups
+from windup.hal.servos.servo_model import ServoMount
 
-BuildLine = Callable[[Port], ServoLine]
+BuildLine = Callable[[Port], BusReadout]
 
 
 def one_clock(clocks: Sequence[Clock]) -> Clock:
@@ -55,7 +55,7 @@ def lines_of(
         check = Plausibility(*bounds, weak=family.dialect.weak, first=units.first[rows])
         ours = board if board is not None and board.bus == name else None
         names = [joints.names[row] for row in rows]
-        return lambda port: ServoLine(Bus(port, family), here, rows, ours, check, names)
+        return lambda port: BusReadout(Bus(port, family), here, rows, ours, check, names)
 
     return {name: build(name, rows) for name, rows in row_groups(mounts).items()}
 
@@ -66,19 +66,19 @@ def open_links(
     imu: ImuSource | None,
     watchdog: float,
     opener: Opener,
-) -> tuple[list[ServoLink], ImuLink | None, Clock]:
+) -> tuple[list[BusConnection], ImuLink | None, Clock]:
     """Return the open buses, the IMU's port if it has one, and the clock they live on.
 
     Raises:
         PortError: One cannot be opened; the others are closed again.
         UsageError: They do not live on one clock.
     """
-    links: list[ServoLink] = []
+    links: list[BusConnection] = []
     beside: ImuLink | None = None
     try:
         for name, build in lines.items():
             wait_while_guarded(ports[name].url)
-            links.append(ServoLink(ports[name], opener, build, watchdog))
+            links.append(BusConnection(ports[name], opener, build, watchdog))
         if imu is not None:
             beside = ImuLink(imu, opener)
         clocks = [link.clock for link in (*links, beside) if link is not None]

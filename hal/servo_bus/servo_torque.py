@@ -4,10 +4,10 @@ import numpy as np
 
 from windup.hal.errors import HardwareError
 from windup.hal.joints import Array
+from windup.hal.registers import Register
+from windup.hal.servo_bus.bus_readout import BusReadout, Rows
 from windup.hal.servo_bus.line_registers import ATTEMPTS, LineRegisters
 from windup.hal.servo_bus.plausibility import MARGIN
-from windup.hal.registers import Register
-from windup.hal.servo_bus.bus_readout import Rows, ServoLine
 from windup.hal.servo_bus.torque_cause import Suspect, examine
 from windup.hal.torque_loss import SWITCHED_OFF, UNEXPLAINED
 from windup.hal.torque_state import TorqueState
@@ -33,7 +33,7 @@ class ServoTorque:
         powered: Has torque been switched on?
     """
 
-    def __init__(self, line: ServoLine, watchdog: float) -> None:
+    def __init__(self, line: BusReadout, watchdog: float) -> None:
         self.line, self.watchdog = line, watchdog
         self.armed = self.powered = False
         self._registers = line.bus.family.registers

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from windup.hal.servo_bus.bus_connection import ServoLink
+from windup.hal.servo_bus.bus_connection import BusConnection
 
 
 class StopButton:
@@ -20,7 +20,7 @@ class StopButton:
         self.held: tuple[str, ...] = ()
         self.pressed: str | None = None
 
-    def look(self, links: Iterable[ServoLink]) -> None:
+    def update(self, links: Iterable[BusConnection]) -> None:
         """Take in the last answer of the board, if it was fresh."""
         for link in links:
             line = link.line

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from windup.hal.bus.bus import Bus
 from windup.hal.families import Family
-from windup.hal.servo_bus.bus_readout import ServoLine
+from windup.hal.servo_bus.bus_readout import BusReadout
 from windup.hal.torque_loss import SWITCHED_OFF, UNEXPLAINED, Loss, restarted, shut_down, weakened
 
 UNNAMED = "an error that its manual does not name"
@@ -59,7 +59,7 @@ class Evidence(NamedTuple):
     unloading: int
 
 
-def examine(line: ServoLine, suspects: Sequence[Suspect], watched: bool) -> dict[int, Loss | None]:
+def examine(line: BusReadout, suspects: Sequence[Suspect], watched: bool) -> dict[int, Loss | None]:
     """Return id to how its torque was lost, None where it is there; who is silent is left out.
 
     Args:

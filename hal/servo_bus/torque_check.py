@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from windup.hal.joints import Array, Mask
-from windup.hal.servo_bus.bus_readout import ServoLine
+from windup.hal.servo_bus.bus_readout import BusReadout
 from windup.hal.servo_bus.torque_cause import Suspect, examine
 from windup.hal.torque_loss import Loss
 
@@ -38,7 +38,7 @@ class TorqueCheck:
         woke: Has somebody answered the last cycle whose Bus Watchdog may have fired?
     """
 
-    def __init__(self, line: ServoLine) -> None:
+    def __init__(self, line: BusReadout) -> None:
         self.line = line
         self.clear()
 

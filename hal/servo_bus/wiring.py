@@ -7,8 +7,10 @@ from math import degrees
 import numpy as np
 
 from windup.hal.bus.bus import Bus
-from windup.hal.coupling import Couplings
 from windup.hal.bus.differs import Differs
+from windup.hal.bus.servo_settings import Setting, differences, limits
+from windup.hal.bus.status_level import make_answer
+from windup.hal.coupling import Couplings
 from windup.hal.errors import (
     ConfigError,
     CorruptAnswerError,
@@ -19,10 +21,8 @@ from windup.hal.errors import (
 from windup.hal.families import DYNAMIXEL_X, Family, family_of
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.joints import Joints
-from windup.hal.servos.servo_model import ServoMount
-from windup.hal.bus.servo_settings import Setting, differences, limits
-from windup.hal.bus.status_level import make_answer
 from windup.hal.servo_bus.units import Units
+from windup.hal.servos.servo_model import ServoMount
 
 PROTOCOL_1 = "speaks protocol 1: set its Protocol Type (register 13) to 2 with DYNAMIXEL Wizard"
 """What is wrong with a servo of the X series that answers in protocol 1."""

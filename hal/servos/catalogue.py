@@ -1,9 +1,9 @@
 """All servos that Windup knows, by the name printed on them."""
 
 from windup.hal.errors import UnknownNameError
-from windup.hal.servos.servo_model import ServoModel
 from windup.hal.servos.feetech import FEETECH
 from windup.hal.servos.mx import MX
+from windup.hal.servos.servo_model import ServoModel
 from windup.hal.servos.x_series import X_SERIES
 
 _MODELS = {model.name: model for model in (*X_SERIES, *MX, *FEETECH)}

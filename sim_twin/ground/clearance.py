@@ -27,7 +27,7 @@ class FootClearance:
         self._geoms = [_largest(model, foot.body) for foot in robot.feet]
         self.smallest = float("inf")
 
-    def look(self) -> float:
+    def update(self) -> float:
         """Measure now, and return the distance, m."""
         left, right = self._geoms[:2]
         found = mujoco.mj_geomDistance(self.model, self.data, left, right, self.REACH, None)

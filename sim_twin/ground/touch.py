@@ -31,7 +31,7 @@ class TouchWatch:
         self._feet = {model.body(name).id for name in names}
         self.touched: list[str] = []
 
-    def look(self) -> None:
+    def update(self) -> None:
         """Note what touches the ground now."""
         count = self._data.ncon
         if not count:

@@ -4,15 +4,16 @@ import serial
 
 from windup.sim_twin.wire.world.address import Address, parse_address
 from windup.sim_twin.wire.world.build import build_world
-from windup.sim_twin.wire.world.bus_world import World
+from windup.sim_twin.wire.world.bus_world import BusWorld
 from windup.sim_twin.wire.world.worlds import drop_world, find_world, put_world
 
-if __name__ not in serial.protocol_handler_packages:
-    serial.protocol_handler_packages.append(__name__)
+HANDLERS = f"{__name__}.serve"
+if HANDLERS not in serial.protocol_handler_packages:
+    serial.protocol_handler_packages.append(HANDLERS)
 
 __all__ = [
     "Address",
-    "World",
+    "BusWorld",
     "build_world",
     "drop_world",
     "find_world",

@@ -71,6 +71,6 @@ def tipping(seconds: float, begin: float, height: float = 0.25) -> list[Observat
 def found(watch: ImuWatch, run: Sequence[Observation]) -> tuple[float, Finding] | None:
     """Return when something is first wrong, and what."""
     for observation in run:
-        if (finding := watch.look(observation)) is not None:
+        if (finding := watch.update(observation)) is not None:
             return observation.time, finding
     return None

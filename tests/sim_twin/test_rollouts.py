@@ -10,8 +10,8 @@ from windup.hal.joints import Array, Mask
 from windup.hal.observation import Observation
 from windup.robots import RobotDescription
 from windup.sim_twin.backend import TwinBackend
-from windup.sim_twin.rollouts import RolloutPredictor
 from windup.sim_twin.ground.terrain import Ground
+from windup.sim_twin.rollouts import RolloutPredictor
 from windup.sim_twin.twin import Twin
 
 BEFORE = 20  # ticks that the twin has moved when the prediction begins

@@ -5,30 +5,30 @@ from dataclasses import replace
 import msgspec
 import numpy as np
 
-from windup.control.limit_cycle.balancer import Balancer
-from windup.control.kinematics.body import Body
 from windup.control.estimation.estimator import BaseEstimator
 from windup.control.estimation.foot_load import FootLoad
-from windup.control.regulation.footfalls import Footfalls
-from windup.control.pose_graph.gait import Gait
-from windup.control.pose_graph.gait_file import Balance, Sampling
-from windup.control.limit_cycle.planner import Planner, StepPlanner
-from windup.control.regulation.variables import RegulationVariable, regulation_variables
-from windup.control.regulation.disturbance_detector import Shaken
+from windup.control.estimation.tilt_filter import GRAVITY, ImuNoise
+from windup.control.kinematics.body import Body
 from windup.control.kinematics.soles import Soles
+from windup.control.limit_cycle.balancer import Balancer
+from windup.control.limit_cycle.planner import Planner, StepPlanner
 from windup.control.limit_cycle.step_memory import Memory
 from windup.control.limit_cycle.step_model import StepModel
-from windup.control.estimation.tilt_filter import GRAVITY, ImuNoise
+from windup.control.pose_graph.gait import Gait
+from windup.control.pose_graph.gait_file import Balance, Sampling
 from windup.control.pose_graph.torso_servo import TorsoServo
+from windup.control.regulation.disturbance_detector import DisturbanceDetector
+from windup.control.regulation.footfalls import Footfalls
+from windup.control.regulation.variables import RegulationVariable, regulation_variables
 from windup.hal.controller import Predictor
 from windup.hal.errors import StateMissingError, UnknownNameError, UsageError
 from windup.hal.ranges import Range, read_number
 from windup.robots import RobotDescription
 from windup.tools.assembly.gaits import find_gait
 from windup.tools.assembly.shape import can_estimate, check_walks
-from windup.tools.assembly.style_intervals import blended
 from windup.tools.assembly.steer import steering_of
 from windup.tools.assembly.step_models import memory_for
+from windup.tools.assembly.style_intervals import blended
 from windup.tools.assembly.walk_options import WalkOptions
 
 TARGET = Range(-1_000.0, 1_000.0)
@@ -152,11 +152,13 @@ def _footfalls(
     return Footfalls(body, robot.contacts, balance.footfalls)
 
 
-def _shaken(balance: Balance, options: WalkOptions, one_rollout: bool) -> Shaken | None:
+def _shaken(
+    balance: Balance, options: WalkOptions, one_rollout: bool
+) -> DisturbanceDetector | None:
     """Return who says when to plan again in mid-step; nobody where a step may take one rollout."""
     if balance.replan is None or options.rv or one_rollout:
         return None
-    return Shaken(balance.replan)
+    return DisturbanceDetector(balance.replan)
 
 
 def _resampled(balance: Balance, sampling: Sampling) -> Balance:

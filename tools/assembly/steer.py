@@ -2,16 +2,16 @@
 
 from math import radians
 
-from windup.control.steering.course import Course
 from windup.control.pose_graph.gait import Gait
+from windup.control.pose_graph.style import Styling
+from windup.control.regulation.variables import RegulationVariable
+from windup.control.steering.course import Course
 from windup.control.steering.guide import Steady, WalkCommand
 from windup.control.steering.incline import InclineControl
-from windup.control.regulation.variables import RegulationVariable
 from windup.control.steering.side import SideControl
 from windup.control.steering.slip import SlipControl
 from windup.control.steering.speed import SpeedControl
 from windup.control.steering.steering import Steering
-from windup.control.pose_graph.style import Styling
 from windup.hal.errors import UsageError
 from windup.robots import RobotDescription
 from windup.tools.assembly.route import guide_of

@@ -2,10 +2,10 @@
 
 import os
 
-from windup.control.pose_graph.gait_hash import gait_hash
 from windup.control.limit_cycle.learnt_models import LearntModels
-from windup.control.regulation.variables import RegulationVariable
 from windup.control.limit_cycle.step_memory import Memory, memory_of
+from windup.control.pose_graph.gait_hash import gait_hash
+from windup.control.regulation.variables import RegulationVariable
 from windup.robots import RobotDescription
 from windup.tools.assembly.gaits import gait_path
 from windup.tools.assembly.walk_options import WalkOptions

@@ -8,17 +8,17 @@ import numpy as np
 from shapely.geometry.base import BaseGeometry
 
 from windup.control.footprints.directed_file import Directed
-from windup.control.whole_body.dynamics import Dynamics
-from windup.control.stepping.footing import Footing
 from windup.control.footprints.footprints import Footprint
-from windup.control.footprints.keep_out import NoStep
-from windup.control.motions.play import PoseHolder
+from windup.control.footprints.keep_out import KeepOutRegions
 from windup.control.kinematics.soles import Soles
+from windup.control.motions.play import PoseHolder
+from windup.control.stepping.footing import Footing
 from windup.control.stepping.step_decision import RULES
 from windup.control.stepping.stepper import Stepper
 from windup.control.stepping.stepping_file import Stepping, Support
 from windup.control.stepping.torque_comfort import ComfortWalk, TorqueComfort
 from windup.control.stepping.torque_stepper import TorqueStepper
+from windup.control.whole_body.dynamics import Dynamics
 from windup.control.whole_body.whole_body import WholeBody
 from windup.hal.controller import Controller
 from windup.hal.errors import UnknownNameError
@@ -89,7 +89,7 @@ def build_stepper(
         robot: The robot.
         way: Which way.
         stance: The pose.
-        forbid: Ground where no foot may come down; see `windup.control.footprints.keep_out.NoStep`.
+        forbid: Ground where no foot may come down; see `KeepOutRegions`.
         support: What the soles are taken to support; what its stepping says by default.
         delay: From a state being measured to a command for it acting, s; where torques are.
 
@@ -105,7 +105,7 @@ def build_stepper(
     rule = None if way == FEET else stepping.find_rule(way)
     if support is not None:
         stepping = msgspec.structs.replace(stepping, support=support)
-    no_step = NoStep(forbid, stepping.clear)
+    no_step = KeepOutRegions(forbid, stepping.clear)
     if robot.drive.kind == "torque":
         body = whole_body_of(robot, delay)
         comfort = comfort_of(robot, body, stance, stepping)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from windup.control.pose_graph.blend import blend_name, with_blend
 from windup.control.pose_graph.gait import Gait
-from windup.control.pose_graph.style import Spell
+from windup.control.pose_graph.style import StyleInterval
 from windup.hal.errors import UsageError
 from windup.hal.ranges import Range, read_number
 from windup.robots import RobotDescription
@@ -15,7 +15,7 @@ from windup.tools.assembly.walk_options import WalkOptions
 AMOUNT = Range(-1_000.0, 1_000.0)
 
 
-def styles_of_walk(options: WalkOptions) -> tuple[Spell, ...]:
+def styles_of_walk(options: WalkOptions) -> tuple[StyleInterval, ...]:
     """Return the styles of a walk, and its blends.
 
     Raises:
@@ -25,7 +25,7 @@ def styles_of_walk(options: WalkOptions) -> tuple[Spell, ...]:
     return (*styles, *(_blend(text) for text in options.blend))
 
 
-def _blend(text: str) -> Spell:
+def _blend(text: str) -> StyleInterval:
     """Return the spell of the style that blends a gait in."""
     found = spell(text, "--blend")
     return replace(found, name=blend_name(Path(found.name).stem))
@@ -44,11 +44,11 @@ def blended(robot: RobotDescription, gait: Gait, options: WalkOptions) -> Gait:
     return gait
 
 
-def spell(text: str, option: str) -> Spell:
+def spell(text: str, option: str) -> StyleInterval:
     """Return what "NAME=AMOUNT@BEGIN:END" says: amounts are 1, and times all, if left away.
 
     >>> spell("duck=1@5:12", "--style")
-    Spell(name='duck', amount=1.0, begin=5.0, end=12.0)
+    StyleInterval(name='duck', amount=1.0, begin=5.0, end=12.0)
 
     Raises:
         UsageError: It says nothing that can be.
@@ -57,7 +57,7 @@ def spell(text: str, option: str) -> Spell:
     name, equals, value = what.partition("=")
     begin, colon, end = times.partition(":")
     where = f"{option} {text}"
-    found = Spell(
+    found = StyleInterval(
         name,
         read_number(where, value, AMOUNT) if equals else 1.0,
         read_number(where, begin) if at else 0.0,

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+from windup.control.limit_cycle.step_memory import Reuse
 from windup.control.pose_graph.gait_file import Sampling
 from windup.control.steering.guide import Guide
-from windup.control.limit_cycle.step_memory import Reuse
 from windup.tools.terminal.quantities import Metres, Speed, TurnRate
 
 

@@ -8,24 +8,24 @@ from typing import Any, Protocol
 import mujoco
 import numpy as np
 
-from windup.control.kinematics.body import Body
 from windup.control.footprints.directed_file import Directed, ServoDirected
-from windup.control.footprints.footprint_walker import DirectedSteps
 from windup.control.footprints.footprint_checks import FootprintChecks, outline
+from windup.control.footprints.footprint_walker import FootprintWalker
 from windup.control.footprints.footprints import Footprint, between, ground_places, seen_from
+from windup.control.footprints.torque_directed import TorqueDirected
+from windup.control.kinematics.body import Body
 from windup.control.kinematics.limb_ik import LimbIk
 from windup.control.kinematics.soles import Soles
-from windup.control.footprints.torque_directed import TorqueDirected
 from windup.hal.controller import Controller
 from windup.hal.errors import UnknownNameError
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
 from windup.robots import RobotDescription
 from windup.tools.assembly.build import body_of
-from windup.tools.robot.robot import Robot
 from windup.tools.assembly.robot_file import load_beside
 from windup.tools.assembly.shape import check_walks
 from windup.tools.assembly.stepping import FOOTPRINTS, find_stepping, whole_body_of
+from windup.tools.robot.robot import Robot
 
 
 class DirectedController(Controller, Protocol):
@@ -131,7 +131,7 @@ def build_directed(robot: RobotDescription, prints: Sequence[Footprint]) -> Dire
         return TorqueDirected(robot.joints, body, stance, prints, how, robot.contacts)
     kinematics = body_of(robot)
     limbs = limbs_of(robot, kinematics)
-    return DirectedSteps(robot.joints, kinematics, robot.base, limbs, stance, prints, how)
+    return FootprintWalker(robot.joints, kinematics, robot.base, limbs, stance, prints, how)
 
 
 @dataclass

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
-from windup.control.stepping.footing import Footing
-from windup.control.footprints.keep_out import NoStep
+from windup.control.footprints.keep_out import KeepOutRegions
 from windup.control.kinematics.rotation import yaw_of
+from windup.control.stepping.footing import Footing
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
 from windup.tools.robot.robot import Robot
@@ -43,7 +43,7 @@ class Landings:
         self._bodies = [model.body(foot.body).id for foot in description.feet]
         self._sites = [model.site(foot.site).id for foot in description.feet]
 
-    def look(self, observation: Observation) -> None:
+    def update(self, observation: Observation) -> None:
         """Look at the feet now."""
         now = observation.time
         if not self._touched:
@@ -72,8 +72,8 @@ class Landings:
         return {"landings": self.falls, "landed_forbidden": landed, "on_forbidden": self.inside}
 
     def _begin(self, observation: Observation) -> None:
-        self.footing.look(replace(observation, base=self.robot.twin.base))
-        self._no_step = NoStep(self.regions)
+        self.footing.update(replace(observation, base=self.robot.twin.base))
+        self._no_step = KeepOutRegions(self.regions)
         feet = range(len(self._names))
         self._no_step.begin(self.footing.feet, [self.footing.ground(foot) for foot in feet])
         self._touched = [observation.time for _ in feet]
@@ -96,7 +96,7 @@ class Landings:
         return {"foot": self._names[foot], "time": now, **place, "forbidden": False}
 
 
-def landings_said(row: dict[str, Any]) -> str:
+def format_landings(row: dict[str, Any]) -> str:
     """Return where the feet came down, for people, from a result with `Landings.record`."""
     falls = [f"{fall['foot']} at ({fall['x']:.3f}, {fall['y']:.3f}) m" for fall in row["landings"]]
     where = ", ".join(falls) if falls else "no foot was lifted"

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from windup.control.motions.play import PoseHolder
 from windup.control.kinematics.rotation import turn
+from windup.control.motions.play import PoseHolder
 from windup.control.stepping.stepper import Stepper
 from windup.control.stepping.stepping_file import Support
 from windup.control.stepping.torque_stepper import TorqueStepper
@@ -16,12 +16,12 @@ from windup.hal.controller import Controller
 from windup.hal.errors import UsageError
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
-from windup.sim_twin.push import Push
 from windup.sim_twin.ground.touch import TouchWatch
+from windup.sim_twin.push import Push
 from windup.tools.assembly.forbid import forbidden
+from windup.tools.assembly.stepping import build_stepper, footing_of, stepping_stance
 from windup.tools.behaviours.landings import Landings
 from windup.tools.robot.robot import Robot
-from windup.tools.assembly.stepping import build_stepper, footing_of, stepping_stance
 
 STEPPERS = (Stepper, TorqueStepper)
 STILL = 0.05
@@ -98,11 +98,11 @@ class PushWatch:
     def __call__(self, observation: Observation) -> str | None:
         """Return why the run is over, or None."""
         self.seen = [observation]
-        self.touch.look()
+        self.touch.update()
         if self.look is not None:
             self.look(observation, self.controller)
         if self.landings is not None:
-            self.landings.look(observation)
+            self.landings.update(observation)
         if self.touch.touched and not self.to_the_end:
             return "fell"
         base = observation.base
@@ -190,7 +190,7 @@ def arrange(robot: Robot, plan: PushPlan) -> None:
 def astray(robot: Robot, stance: Array, seen: Observation) -> float:
     """Return how far the feet stand from where the stance has them beside each other, m."""
     footing = footing_of(robot.description, stance)
-    footing.look(seen)
+    footing.update(seen)
     home = footing.homes[0][:2] - footing.homes[1][:2]
     way = turn(footing.planted().front)[:2, :2].T @ (footing.places[0] - footing.places[1])
     return float(np.linalg.norm(way - home))

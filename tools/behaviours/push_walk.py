@@ -5,9 +5,9 @@ from typing import Any
 
 from windup.control.motions.play import PoseHolder
 from windup.sim_twin.ground.touch import TouchWatch
+from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.behaviours.push_trial import LANDING, PushPlan, arrange
 from windup.tools.robot.robot import Robot
-from windup.tools.assembly.walk_options import WalkOptions
 
 QUICK = 0.2
 """No step takes less time, s."""
@@ -32,7 +32,7 @@ def push_walking(
     """
     description, twin = robot.description, robot.twin
     touch = TouchWatch(description, twin.model, twin.data)
-    robot.watch = lambda _: touch.look()
+    robot.watch = lambda _: touch.update()
     begun: list[float] = []
 
     def disturb(robot: Robot) -> None:
@@ -67,7 +67,7 @@ def push_walking(
     }
 
 
-def walking_said(row: dict[str, Any]) -> str:
+def format_push_walk(row: dict[str, Any]) -> str:
     """Return how a robot that stayed up took the pushes on its walk."""
     if not row["catches"]:
         return f"its walk absorbs it: {row['walked']} steps walked"

@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 
 from windup.control.kinematics.body import heading
-from windup.control.stride.pendulum import Order
+from windup.control.stride.pendulum import VelocityCommand
 from windup.control.stride.stride_file import Stride
 from windup.control.stride.strider import Strider
 from windup.hal.errors import UnknownNameError, UsageError
@@ -19,10 +19,10 @@ from windup.hal.observation import BaseState, Observation
 from windup.hal.ranges import Range, read_number
 from windup.robots import RobotDescription
 from windup.tools.assembly.build import body_of
-from windup.tools.behaviours.directed import limbs_of
-from windup.tools.robot.robot import Robot
 from windup.tools.assembly.robot_file import load_beside
 from windup.tools.assembly.shape import check_walks
+from windup.tools.behaviours.directed import limbs_of
+from windup.tools.robot.robot import Robot
 
 FILE: Final = "stride.toml"
 RAMP = 2.0
@@ -46,9 +46,9 @@ class Leg:
     heading: float
     face: float
 
-    def order(self) -> Order:
+    def order(self) -> VelocityCommand:
         """Return it as the controller takes it."""
-        return Order(self.speed, radians(self.heading), radians(self.face))
+        return VelocityCommand(self.speed, radians(self.heading), radians(self.face))
 
 
 def find_stride(robot: RobotDescription) -> Stride:
@@ -107,9 +107,9 @@ def build_strider(robot: RobotDescription, legs: Sequence[Leg], seconds: float) 
     how, body = find_stride(robot), body_of(robot)
     begins = [leg.begin for leg in legs]
 
-    def orders(time: float) -> Order:
+    def orders(time: float) -> VelocityCommand:
         order = legs[max(bisect_right(begins, time + 1e-9) - 1, 0)].order()
-        return order if time < seconds else Order(0.0, order.heading, order.face)
+        return order if time < seconds else VelocityCommand(0.0, order.heading, order.face)
 
     limbs, stance = limbs_of(robot, body), robot.poses[how.stance]
     return Strider(robot.joints, body, robot.base, limbs, stance, orders, how)

@@ -12,8 +12,8 @@ from windup.hal.errors import WindupError
 from windup.hal.joints import Array
 from windup.sim_twin.rollouts import RolloutPredictor
 from windup.tools.assembly.build import build_walk
-from windup.tools.robot.robot import Robot
 from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.robot.robot import Robot
 
 ROUNDS = 20
 WARM_UP = 5

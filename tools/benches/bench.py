@@ -11,20 +11,20 @@ import tyro
 from windup.hal.ranges import Range
 from windup.tools.benches.balance import measure_balance
 from windup.tools.benches.faults import measure_faults
+from windup.tools.benches.fuzz.bench import measure_fuzz
 from windup.tools.benches.guardian import measure_takeovers
 from windup.tools.benches.jitter import measure_jitter
 from windup.tools.benches.leaks import measure_leaks
 from windup.tools.benches.loop import measure_tick, measure_twin
-from windup.tools.benches.servo import measure_servos
 from windup.tools.benches.random_starts import measure_starts
+from windup.tools.benches.safety.bench import ROBOTS, measure_safety
+from windup.tools.benches.servo import measure_servos
+from windup.tools.benches.soak_table import fault_table
 from windup.tools.benches.unplug import measure_unplugs
 from windup.tools.benches.wire import Maker, measure_bus
 from windup.tools.terminal.command import Command
-from windup.tools.benches.fuzz.bench import measure_fuzz
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.quantities import Count, Seed
-from windup.tools.benches.safety.bench import ROBOTS, measure_safety
-from windup.tools.benches.soak_table import fault_table
 
 What = Literal[
     "tick",

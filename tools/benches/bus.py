@@ -19,8 +19,8 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 from dynamixel_sdk import GroupSyncRead, GroupSyncWrite, PortHandler, Protocol2PacketHandler
 
+from windup.hal.bus.transactions import BusTransactions
 from windup.hal.command import JointCommand
-from windup.hal.bus.transactions import Exchange
 from windup.hal.joints import Joint, Joints
 from windup.hal.port.open_port import open_port
 from windup.hal.port.port import Port
@@ -29,8 +29,8 @@ from windup.hal.protocols.batched import BlockRead, BlockWrite
 from windup.hal.protocols.crc16 import crc16
 from windup.hal.protocols.protocol2 import Instruction, Span
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
-from windup.hal.servos.servo_model import ServoMount
 from windup.hal.servos import servo_model
+from windup.hal.servos.servo_model import ServoMount
 from windup.tools.benches import bus1 as bench_bus1
 from windup.tools.benches.bus1 import Vendor
 
@@ -228,7 +228,7 @@ def _sdk_cycle(port: PortHandler, ids: list[int]) -> Cycle:
 
 def _codec_cycle(port: Port, ids: list[int], fast: bool = False) -> Cycle:
     """Return our way without the backend: exchange, codec, integers in arrays."""
-    exchange = Exchange(port)
+    exchange = BusTransactions(port)
     read = BlockRead([Span(id, STATE, SIZE) for id in ids], fast)
     write = BlockWrite(ids, GOAL, 4)
     goal = np.full(len(ids), 2048)

@@ -15,8 +15,8 @@ import scservo_sdk
 from dynamixel_sdk import GroupBulkRead, GroupSyncWrite, PortHandler, Protocol1PacketHandler
 from scservo_sdk.protocol_packet_handler import protocol_packet_handler
 
+from windup.hal.bus.transactions import BusTransactions
 from windup.hal.command import JointCommand
-from windup.hal.bus.transactions import Exchange
 from windup.hal.families import DYNAMIXEL_1, FEETECH_STS, Family
 from windup.hal.joints import Joint, Joints
 from windup.hal.port.open_port import open_port
@@ -24,8 +24,8 @@ from windup.hal.port.port import Port
 from windup.hal.protocols import protocol1
 from windup.hal.protocols.protocol1 import Instruction
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
-from windup.hal.servos.servo_model import ServoMount
 from windup.hal.servos import servo_model
+from windup.hal.servos.servo_model import ServoMount
 
 Vendor = Literal["feetech", "dynamixel1"]
 Cycle = Callable[[], None]
@@ -103,7 +103,7 @@ def answer(request: bytes) -> bytes:
 
 def codec_cycle(port: Port, ids: list[int], family: Family) -> Cycle:
     """Return our way without the backend: exchange, codec, integers in arrays."""
-    exchange, block = Exchange(port), family.state
+    exchange, block = BusTransactions(port), family.state
     read = family.dialect.read([block.span(id) for id in ids], fast=True)
     write = family.dialect.write(ids, family.registers["goal_position"])
     goal = np.full(len(ids), 2048)

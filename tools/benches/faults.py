@@ -6,10 +6,10 @@ from itertools import product
 from typing import Any, NamedTuple
 
 from windup.hal.errors import UsageError
-from windup.tools.terminal.parallel import side_by_side
 from windup.tools.benches.soak import Soak, Tally
 from windup.tools.benches.soak_rig import FAMILIES, SoakRig
 from windup.tools.benches.soak_verdict import KINDS, LATE_ADAPTER, MIX, MIXED, verdict
+from windup.tools.terminal.parallel import side_by_side
 
 RATES = (0.01, 0.05)
 """Of the answers. Everything at once comes at the first alone: at the second few are whole."""

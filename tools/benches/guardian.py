@@ -10,9 +10,9 @@ from typing import Any
 
 from windup.hal.errors import WindupError
 from windup.hal.observation import Observation
-from windup.tools.terminal.output import console
-from windup.tools.robot.robot import Robot
 from windup.tools.benches.safety.emulated import serve
+from windup.tools.robot.robot import Robot
+from windup.tools.terminal.output import console
 
 STEPS = 400
 """Of one walk; then the robot rests, and walks again."""
@@ -83,7 +83,7 @@ def _walk(name: str, speed: float, seconds: float, tell: Connection) -> None:
         try:
             with Robot.open(name, port=ours.recv(), arm=True) as robot:
                 gaps = Gaps(tell, seconds)
-                robot.watch = gaps.look
+                robot.watch = gaps.update
                 try:
                     robot.walk(speed, steps=STEPS, on_step=gaps.end_in_time())
                 finally:
@@ -105,7 +105,7 @@ class Gaps:
         self._walking = False
         self.over = False
 
-    def look(self, observation: Observation) -> None:
+    def update(self, observation: Observation) -> None:
         """Take note of a tick."""
         now = time.monotonic()
         if self._walking:

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from windup.hal.backend import Clock
 from windup.hal.errors import UsageError, WindupError
 from windup.hal.servo_bus.servo_backend import ServoBackend
-from windup.tools.terminal.output import console
-from windup.tools.robot.robot import Robot
 from windup.tools.benches.safety.emulated import serve
+from windup.tools.robot.robot import Robot
+from windup.tools.terminal.output import console
 
 RATE = 125.0  # Hz
 FACTOR, MARGIN = 2.0, 0.2  # of the C loop's p99.9, and ms beside it, that ours may have

@@ -18,9 +18,9 @@ from windup.hal.telemetry.layout import runtime_folder
 from windup.robots import load_robot
 from windup.sim_twin.wire import parse_address
 from windup.sim_twin.wire.serve.emulate import emulate
-from windup.tools.terminal.output import console
-from windup.tools.robot.robot import Robot
 from windup.tools.benches.safety.emulated import port_of
+from windup.tools.robot.robot import Robot
+from windup.tools.terminal.output import console
 
 RUN: Final = 0.1
 """How long it stands each time, s."""

@@ -9,8 +9,8 @@ import mujoco
 
 from windup.hal.command import JointCommand
 from windup.tools.assembly.build import build_walk
-from windup.tools.robot.robot import Robot
 from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.robot.robot import Robot
 
 ROUNDS = 20
 

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from windup.robots import load_robot
-from windup.tools.terminal.parallel import side_by_side
 from windup.tools.benches.starts.faults import FAULTS, Fault
 from windup.tools.benches.starts.postures import Kind, kinds_of
 from windup.tools.benches.starts.trial import CAUGHT_WITHIN, Start, try_start
+from windup.tools.terminal.parallel import side_by_side
 
 SHARE = 4
 """So many times fewer starts with each fault than without any."""

@@ -12,8 +12,8 @@ from windup.hal.observation import Observation
 from windup.hal.port.open_port import open_port
 from windup.hal.port.port import LATENCY, Port
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
-from windup.hal.servos.servo_model import ServoMount
 from windup.hal.servos import servo_model
+from windup.hal.servos.servo_model import ServoMount
 from windup.sim_twin.wire.faults.faults import Faults
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
 from windup.sim_twin.wire.world.bus_world import Bench

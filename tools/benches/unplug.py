@@ -20,9 +20,9 @@ from windup.hal.command import JointCommand
 from windup.hal.errors import HardwareError, PortError, WindupError
 from windup.hal.servo_bus.servo_backend import ServoBackend
 from windup.robots import load_robot
-from windup.tools.terminal.output import console
 from windup.tools.benches.safety.emulated import serve
 from windup.tools.robot.stack import servo_backend
+from windup.tools.terminal.output import console
 
 FIRST = 3.0  # s; the robot is armed by then
 OUT = (0.1, 0.6)  # s that the adapter is out

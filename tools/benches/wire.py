@@ -13,8 +13,8 @@ from typing import Any, Literal
 import numpy as np
 
 import windup.sim_twin.wire  # noqa: F401 - registers twin://
+from windup.hal.bus.transactions import TURNAROUND, BusTransactions
 from windup.hal.errors import WindupError
-from windup.hal.bus.transactions import TURNAROUND, Exchange
 from windup.hal.port.open_port import open_port
 from windup.hal.protocols.batched import BlockRead, BlockWrite
 from windup.hal.protocols.cyclic import CyclicRead, CyclicWrite
@@ -74,7 +74,7 @@ def cycle_over_wire(
     vendor = None if maker == "dynamixel2" else maker
     model = MODEL if vendor is None else MAKERS[vendor].model
     with _emulator(model, servos, baud) as path, open_port(path, baud) as port:
-        exchange = Exchange(port)
+        exchange = BusTransactions(port)
         read, write = _frames(ids, vendor)
         write.values[:] = np.full(servos, 2048)
 
@@ -117,7 +117,7 @@ def one_missing(cycles: int = 300, baud: int = 1_000_000) -> tuple[bool, float]:
     url = f"twin://bench?servos={MODEL}:1-{gone - 1},{MODEL}:{gone + 1}-{SERVOS}"
     others, longest = True, 0.0
     with open_port(f"{url}&baud={baud}&return_delay=0", baud) as port:
-        exchange = Exchange(port)
+        exchange = BusTransactions(port)
         exchange.turnaround = TURNAROUND  # the servos' return delay is 0, as `configure` sees to
         read = BlockRead([Span(id, STATE, SIZE) for id in range(1, SERVOS + 1)])
         wire = (len(read.request) + read.length) * BITS / baud

@@ -13,8 +13,8 @@ from windup.hal.errors import TelemetryError
 from windup.hal.guard import HealthLevels, Kind
 from windup.hal.guard.finding import SAYINGS, named
 from windup.hal.joints import Joints
-from windup.hal.telemetry.ring import TelemetryReader, Ticks
 from windup.hal.telemetry.layout import Header
+from windup.hal.telemetry.ring import TelemetryReader, Ticks
 from windup.robots import RobotDescription
 from windup.tools.bringup.replay import findings
 from windup.tools.terminal.slowness import PLANS, TICKS, Slowness

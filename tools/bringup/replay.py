@@ -10,8 +10,8 @@ from windup.hal.guard.finding import Finding
 from windup.hal.guard.imu_watch import ImuWatch
 from windup.hal.joints import Joints
 from windup.hal.observation import ImuState, JointState, Observation
-from windup.hal.telemetry.ring import Ticks
 from windup.hal.telemetry.layout import Header
+from windup.hal.telemetry.ring import Ticks
 
 JOINTS = ("position", "velocity", "torque", "voltage", "temperature", "age", "health_age")
 
@@ -26,11 +26,11 @@ def findings(
     for tick in ticks:
         observation = observed(tick)
         if watched:
-            found = health.look(observation, told(tick))
+            found = health.update(observation, told(tick))
             if found is not None:
                 stops.setdefault(found.saying.name, found)
         if header.estimated:
-            imu.look(observation)
+            imu.update(observation)
     for warning in (*health.warnings, *imu.warnings):
         yield stops.get(warning.saying.name, warning)
 

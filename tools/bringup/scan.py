@@ -14,11 +14,11 @@ from windup.hal.ranges import Range
 from windup.robots import load_robot
 from windup.sim_twin.wire import parse_address
 from windup.sim_twin.wire.world.address import SCHEME
-from windup.tools.terminal.command import Command
-from windup.tools.options.faults import with_faults
-from windup.tools.terminal.output import console, write_json
 from windup.tools.bringup.scan_said import complaints, narrow_lines, table
 from windup.tools.bringup.survey import Survey, places
+from windup.tools.options.faults import with_faults
+from windup.tools.terminal.command import Command
+from windup.tools.terminal.output import console, write_json
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +58,7 @@ class Scan(Command):
         try:
             with _progress() as progress:
                 bar = progress.add_task("", total=len(list(places(port, self.baud))))
-                survey.look(
+                survey.update(
                     self.baud, lambda what: progress.update(bar, advance=1, description=what)
                 )
         finally:

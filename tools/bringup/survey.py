@@ -56,7 +56,7 @@ class Survey:
         """Does the adapter send back what it is sent?"""
         return self.port.echoes or any(is_echo(one.data) for _, _, one in self.strange)
 
-    def look(self, baud: int | None, begin: Callable[[str], None]) -> None:
+    def update(self, baud: int | None, begin: Callable[[str], None]) -> None:
         """Look for servos of every family.
 
         Args:

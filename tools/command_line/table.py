@@ -27,9 +27,7 @@ COMMANDS: Final[dict[str, Entry]] = {
     "play": Entry("commands.play", "Play", "Play a pose graph to its end, or for some seconds"),
     "stand": Entry("commands.stand", "Stand", "Stand in the stance for some seconds"),
     "rise": Entry("commands.rise", "Rise", "Get up from where it lies"),
-    "push": Entry(
-        "commands.push", "Push", "Push a twin that stands or walks; does it stay up?"
-    ),
+    "push": Entry("commands.push", "Push", "Push a twin that stands or walks; does it stay up?"),
     "step": Entry("commands.step", "Step", "Put one foot where it is told"),
     "footprints": Entry(
         "commands.footprints", "Footprints", "Walk footprints from a file, or random ones"
@@ -57,9 +55,7 @@ COMMANDS: Final[dict[str, Entry]] = {
         "Sweep",
         "Run a command at many values of its options; one row for each run",
     ),
-    "reproduce": Entry(
-        "reproduce.command", "Reproduce", "Reproduce the figures of a paper"
-    ),
+    "reproduce": Entry("reproduce.command", "Reproduce", "Reproduce the figures of a paper"),
     "synthesise": Entry(
         "synthesis.command", "Synthesise", "Improve a gait, or find one, with CMA-ES"
     ),

@@ -13,13 +13,13 @@ from windup.hal.errors import PortError
 from windup.hal.ranges import Range
 from windup.robots import load_robot
 from windup.sim_twin.wire import Address, parse_address
-from windup.sim_twin.wire.world.address import BENCH, SCHEME
-from windup.sim_twin.wire.serve.emulate import Emulator, emulate
 from windup.sim_twin.wire.faults.fault_text import parse_rules
-from windup.sim_twin.wire.world.hand import parse_hands
+from windup.sim_twin.wire.serve.emulate import Emulator, emulate
 from windup.sim_twin.wire.serve.outlet import Outlet
-from windup.tools.terminal.command import Command
+from windup.sim_twin.wire.world.address import BENCH, SCHEME
+from windup.sim_twin.wire.world.hand import parse_hands
 from windup.tools.robot.doubt_once import doubt_once
+from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console
 from windup.tools.terminal.quantities import Seed
 from windup.tools.terminal.writing import check_writable

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 from rich.table import Table
 
-from windup.tools.behaviours.push_edge import Edge
 from windup.tools.assembly.stepping import FEET, HOLD
+from windup.tools.behaviours.push_edge import Edge
 
 Edges = Mapping[float, Edge]
 

@@ -19,14 +19,14 @@ from windup.sim_twin.backend import TwinBackend
 from windup.sim_twin.imu_errors import OPENCR, ImuErrors
 from windup.sim_twin.sensors import Sensors
 from windup.tools.assembly.build import build_estimator, build_walk
-from windup.tools.terminal.command import Command
+from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.options.faults import with_faults
-from windup.tools.terminal.output import console, write_json
-from windup.tools.terminal.quantities import Count, Delay, Impulse, Rate, Seed, Some
 from windup.tools.robot.robot import Robot
 from windup.tools.robot.stack import TWIN, check_port
-from windup.tools.robot.twin_state_source import Truth
-from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.robot.twin_state_source import TwinStateSource
+from windup.tools.terminal.command import Command
+from windup.tools.terminal.output import console, write_json
+from windup.tools.terminal.quantities import Count, Delay, Impulse, Rate, Seed, Some
 
 ATTITUDE_LIMIT = 1.0  # degrees rms
 VELOCITY_LIMIT = 0.03  # m/s rms
@@ -186,7 +186,7 @@ class Estimate(Command):
         """Give the robot real sensors, and an estimator that is judged."""
         estimator = robot.stack.estimator
         if estimator is not None:  # behind a port, where the sensors are real ones already
-            referee = Referee(estimator, Truth(Sensors(robot.twin)), listen)
+            referee = Referee(estimator, TwinStateSource(Sensors(robot.twin)), listen)
             robot.stack = replace(robot.stack, estimator=referee)
             return referee
         errors = ImuErrors(OPENCR, robot.twin.timestep, self.seed)

@@ -9,11 +9,11 @@ import tyro
 from windup.control.motions.staged import StagedPlayer
 from windup.robots import load_robot
 from windup.tools.assembly.gaits import find_gait
-from windup.tools.measures.load_gauge import load_said
+from windup.tools.measures.load_gauge import format_load
 from windup.tools.options.common import Common
+from windup.tools.options.twin_options import TwinOptions
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.quantities import Duration
-from windup.tools.options.twin_options import TwinOptions
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +52,9 @@ class Play(TwinOptions, Common):
         if row["sim_time_s"] <= 0.0:
             return f"{row['robot']} did not play {self.graph!r}: {row['reason']}"
         again = f", {row['retries']} tried again" if row["retries"] else ""
-        worked = f"; {load_said(row['peak_load'], row['peak_joint'])}" if row["peak_joint"] else ""
+        worked = (
+            f"; {format_load(row['peak_load'], row['peak_joint'])}" if row["peak_joint"] else ""
+        )
         seconds = row["sim_time_s"] - row["first_motion_s"]
         return (
             f"{row['robot']} played {self.graph!r} for {seconds:.2f} s"

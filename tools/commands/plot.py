@@ -7,8 +7,8 @@ import numpy as np
 
 from windup.hal.contacts import ContactSensors
 from windup.hal.observation import Observation
-from windup.tools.terminal.picture import load_pyplot, save_picture
 from windup.tools.robot.walk_report import WalkReport
+from windup.tools.terminal.picture import load_pyplot, save_picture
 
 TRACE = 0.02  # s between samples of path and contacts
 

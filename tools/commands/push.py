@@ -13,22 +13,31 @@ from windup.hal.errors import UsageError
 from windup.hal.ranges import Range
 from windup.robots import load_robot
 from windup.sim_twin.impact import ImpactGauge
-from windup.tools.measures.fall_report import fall_result, fall_said
 from windup.tools.assembly.forbid import forbidden
-from windup.tools.behaviours.landings import landings_said
-from windup.tools.options.common import Common
-from windup.tools.terminal.output import console, write_json
-from windup.tools.terminal.picture import check_picture
-from windup.tools.behaviours.push_edge import LIGHT, Search
-from windup.tools.commands.push_envelope import Envelope
-from windup.tools.behaviours.push_trial import PushPlan, push_robot
-from windup.tools.behaviours.push_walk import push_walking, walking_said
-from windup.tools.terminal.quantities import Degrees, Delay, Duration, Height, Jobs, Seconds, Some, Speed
-from windup.tools.robot.robot import Robot
 from windup.tools.assembly.shape import check_walks
 from windup.tools.assembly.stepping import WAYS, check_way, find_stepping, stepping_stance
-from windup.tools.options.twin_options import WorldOptions
 from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.behaviours.landings import format_landings
+from windup.tools.behaviours.push_edge import LIGHT, Search
+from windup.tools.behaviours.push_trial import PushPlan, push_robot
+from windup.tools.behaviours.push_walk import format_push_walk, push_walking
+from windup.tools.commands.push_envelope import Envelope
+from windup.tools.measures.fall_report import fall_result, format_fall
+from windup.tools.options.common import Common
+from windup.tools.options.twin_options import WorldOptions
+from windup.tools.robot.robot import Robot
+from windup.tools.terminal.output import console, write_json
+from windup.tools.terminal.picture import check_picture
+from windup.tools.terminal.quantities import (
+    Degrees,
+    Delay,
+    Duration,
+    Height,
+    Jobs,
+    Seconds,
+    Some,
+    Speed,
+)
 
 Strength = Annotated[float, Range(0.0, 10_000.0, "N s")]
 
@@ -90,9 +99,9 @@ class Push(WorldOptions, Common):
         rows = []
         for seed in self.all_seeds:
             rows.append(self.one(seed, self.plan(seed), fall=True))
-            console.print(said(rows[-1]), markup=False, soft_wrap=True)
+            console.print(format_push(rows[-1]), markup=False, soft_wrap=True)
             if "landings" in rows[-1]:
-                console.print(landings_said(rows[-1]), markup=False, soft_wrap=True)
+                console.print(format_landings(rows[-1]), markup=False, soft_wrap=True)
             if rows[-1]["reason"] == "interrupted":
                 break
         good = sum(row["survived"] for row in rows)
@@ -195,7 +204,7 @@ class Push(WorldOptions, Common):
             raise UsageError(f"--{wrong[0]} {what}")
 
 
-def said(row: dict[str, Any]) -> str:
+def format_push(row: dict[str, Any]) -> str:
     """Return the sentence of one trial."""
     if "robot" not in row:
         return "interrupted"
@@ -204,9 +213,9 @@ def said(row: dict[str, Any]) -> str:
     steps = f"{row['steps']} steps" if row["steps"] != 1 else "1 step"
     if not row["survived"]:
         how = f"fell onto {row['touched'][0]}" if row["touched"] else row["reason"]
-        return f"{row['robot']} {how} after {push} ({row['way']}, {steps}); {fall_said(row)}"
+        return f"{row['robot']} {how} after {push} ({row['way']}, {steps}); {format_fall(row)}"
     if "during" in row:
-        return f"{row['robot']} walks on after {push} ({row['way']}): {walking_said(row)}"
+        return f"{row['robot']} walks on after {push} ({row['way']}): {format_push_walk(row)}"
     return (
         f"{row['robot']} stays up after {push} ({row['way']}): {steps}, still after "
         f"{row['settling_s']:.2f} s, feet {1000 * row['astray_m']:.0f} mm from the stance"

@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
+from windup.tools.behaviours.push_edge import Edge, Search, find_edge
 from windup.tools.commands.envelope_tables import largest_table, summarise, summary_table
+from windup.tools.commands.plot_envelope import plot_envelope
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.parallel import side_by_side
-from windup.tools.commands.plot_envelope import plot_envelope
-from windup.tools.behaviours.push_edge import Edge, Search, find_edge
 from windup.tools.terminal.run_notes import NOTES
 
 

@@ -15,10 +15,10 @@ from windup.robots import load_robot
 from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics
 from windup.tools.assembly.gaits import find_gait
 from windup.tools.options.common import Common
+from windup.tools.options.twin_options import TwinOptions
+from windup.tools.robot.robot import Robot
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.quantities import Some
-from windup.tools.robot.robot import Robot
-from windup.tools.options.twin_options import TwinOptions
 
 Side = Literal["front", "back"]
 LOOK = 0.5  # s that it takes to know on which side one lies

@@ -10,12 +10,12 @@ from windup.control.motions.play import PoseHolder
 from windup.hal.observation import Observation
 from windup.robots import load_robot
 from windup.sim_twin.impact import ImpactGauge
-from windup.tools.measures.fall_report import fall_result, fall_said
+from windup.tools.measures.fall_report import fall_result, format_fall
 from windup.tools.options.common import Common
+from windup.tools.options.twin_options import TwinOptions
+from windup.tools.robot.robot import Robot
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.quantities import Duration
-from windup.tools.robot.robot import Robot
-from windup.tools.options.twin_options import TwinOptions
 
 
 class Last:
@@ -45,9 +45,9 @@ class Stand(TwinOptions, Common):
         rows = []
         for seed in self.all_seeds:
             rows.append(self._one(seed))
-            console.print(stand_said(rows[-1]), markup=False, soft_wrap=True)
+            console.print(format_stand(rows[-1]), markup=False, soft_wrap=True)
             if rows[-1]["fell"] and self.disturb() is not None:
-                console.print(fall_said(rows[-1]))
+                console.print(format_fall(rows[-1]))
             if rows[-1]["reason"] == "interrupted":
                 break
         good = sum(row["reason"] == "done" and not row["fell"] for row in rows)
@@ -98,7 +98,7 @@ class Stand(TwinOptions, Common):
         robot.run(PoseHolder(description.joints, description.stance), self.seconds, down=stiff)
 
 
-def stand_said(result: dict[str, Any]) -> str:
+def format_stand(result: dict[str, Any]) -> str:
     """Return the line for people about a stand."""
     total, first = result["sim_time_s"], result["first_motion_s"]
     if total <= 0.0:

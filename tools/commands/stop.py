@@ -9,10 +9,10 @@ import tyro
 from windup.hal.joints import Mask
 from windup.hal.torque_state import TorqueState
 from windup.robots import RobotDescription, load_robot
-from windup.tools.terminal.command import Command
 from windup.tools.options.faults import with_faults
+from windup.tools.robot.stack import check_port, torque_off
+from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
-from windup.tools.robot.stack import check_port, limp
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +40,7 @@ class Stop(Command):
     def run(self) -> int:
         """Stop; returns the exit status."""
         robot = load_robot(self.robot)
-        state = limp(robot, self._url)
+        state = torque_off(robot, self._url)
         console.print(_said(robot, state))
         write_json(
             self.json,

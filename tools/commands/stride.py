@@ -6,12 +6,19 @@ from typing import Annotated, Any
 import tyro
 
 from windup.robots import load_robot
+from windup.tools.assembly.shape import check_walks
+from windup.tools.behaviours.striding import (
+    Leg,
+    build_strider,
+    check_legs,
+    find_stride,
+    read_leg,
+    stride,
+)
 from windup.tools.options.common import Common
+from windup.tools.options.twin_options import TwinOptions
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.quantities import Degrees, Duration, Speed
-from windup.tools.assembly.shape import check_walks
-from windup.tools.behaviours.striding import Leg, build_strider, check_legs, find_stride, read_leg, stride
-from windup.tools.options.twin_options import TwinOptions
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +53,7 @@ class Stride(TwinOptions, Common):
         rows: list[dict[str, Any]] = []
         for seed in self.all_seeds:
             rows.append(self.one(seed))
-            console.print(said(rows[-1]), markup=False, soft_wrap=True)
+            console.print(format_stride(rows[-1]), markup=False, soft_wrap=True)
             if rows[-1]["reason"] == "interrupted":
                 break
         good = sum(row["good"] for row in rows)
@@ -82,7 +89,7 @@ class Stride(TwinOptions, Common):
             return stride(robot, strider, legs, self.seconds, path=path)
 
 
-def said(row: dict[str, Any]) -> str:
+def format_stride(row: dict[str, Any]) -> str:
     """Return how it went, in a sentence."""
     x, y = row["moved_m"]
     went = (

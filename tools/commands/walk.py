@@ -13,20 +13,20 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from windup.hal.errors import UsageError
 from windup.robots import load_robot
 from windup.tools.assembly.build import build_walk
-from windup.tools.stopping.interrupts import RunInterruptedError
-from windup.tools.robot.learnt_file import check_learning, keep_learnt
+from windup.tools.assembly.stepping import find_stepping
+from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.commands.plot import Trace, plot_walk
+from windup.tools.measures.walk_text import format_summary
 from windup.tools.options.common import Common
+from windup.tools.options.twin_options import TwinOptions
+from windup.tools.robot.learnt_file import check_learning, keep_learnt
+from windup.tools.robot.robot import Robot
+from windup.tools.robot.walk_report import WalkReport, summary
+from windup.tools.stopping.interrupts import RunInterruptedError
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.picture import check_picture
-from windup.tools.commands.plot import Trace, plot_walk
 from windup.tools.terminal.quantities import Count, Delay, Metres, Seconds, Speed, TurnRate
-from windup.tools.robot.walk_report import WalkReport, summary
-from windup.tools.robot.robot import Robot
 from windup.tools.terminal.run_notes import NOTES
-from windup.tools.assembly.stepping import find_stepping
-from windup.tools.options.twin_options import TwinOptions
-from windup.tools.assembly.walk_options import WalkOptions
-from windup.tools.measures.walk_text import summary_said
 
 STEPS = 80
 GOAL_STEPS = 1000
@@ -103,7 +103,7 @@ class Walk(TwinOptions, Common):
             return 130 if result["reason"] == "interrupted" else 0 if ok else 1
         rows = list(self._many(seeds))
         whole = summary(rows)
-        console.print(summary_said(whole))
+        console.print(format_summary(whole))
         write_json(self.json, "walk", {"robot": self.robot, "rows": rows, "summary": whole})
         return 0 if whole["walked"] == whole["runs"] else 1
 

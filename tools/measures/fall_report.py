@@ -3,7 +3,7 @@
 from typing import Any
 
 from windup.sim_twin.impact import ImpactGauge
-from windup.tools.measures.load_gauge import load_said
+from windup.tools.measures.load_gauge import format_load
 
 
 def fall_result(gauge: ImpactGauge) -> dict[str, Any]:
@@ -18,11 +18,11 @@ def fall_result(gauge: ImpactGauge) -> dict[str, Any]:
     }
 
 
-def fall_said(result: dict[str, Any]) -> str:
+def format_fall(result: dict[str, Any]) -> str:
     """Return the same for people, from a result with it."""
     return (
         f"torso hits the floor at {result['torso_impact_m_s']:.2f} m/s, "
         f"head at {result['head_impact_m_s']:.2f} m/s; "
         f"the torso's speed changes by {result['torso_knock_m_s']:.2f} m/s in 10 ms at most; "
-        f"{load_said(result['peak_load'], result['peak_joint'])}"
+        f"{format_load(result['peak_load'], result['peak_joint'])}"
     )

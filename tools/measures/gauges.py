@@ -44,7 +44,7 @@ class Gauges:
         """Root mean square of the base's angular velocity, rad/s."""
         return float(np.sqrt(self._turning / self.time)) if self.time > 0.0 else 0.0
 
-    def look(self, observation: Observation) -> None:
+    def update(self, observation: Observation) -> None:
         """Take the observation of a tick."""
         now, joints, base = observation.time, observation.joints, observation.base
         dt = 0.0 if self._last is None else now - self._last

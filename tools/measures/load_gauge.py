@@ -10,14 +10,14 @@ from windup.hal.observation import Observation
 HIGH = 0.5  # share of the stall torque that a geared servo bears for a moment only
 
 
-def load_said(share: float, joint: str) -> str:
+def format_load(share: float, joint: str) -> str:
     """Return a greatest load, as a share of what the joint gives at stall, in words.
 
     A servo that is turned backward bears more than it gives.
 
-    >>> load_said(0.43, "l_knee")
+    >>> format_load(0.43, "l_knee")
     'peak load 43 % of stall at l_knee'
-    >>> load_said(1.86, "l_knee")
+    >>> format_load(1.86, "l_knee")
     'l_knee bore 1.9 x its stall torque, more than it gives by itself'
     """
     if share > 1.0:
@@ -45,7 +45,7 @@ class LoadGauge:
     def __post_init__(self) -> None:
         self._high = np.zeros(len(self.joints))
 
-    def look(self, observation: Observation) -> None:
+    def update(self, observation: Observation) -> None:
         """Take the observation of a tick."""
         now = observation.time
         dt = 0.0 if self._last is None else now - self._last

@@ -5,7 +5,7 @@ from typing import Any
 Result = dict[str, Any]
 
 
-def walk_said(result: Result) -> str:
+def format_walk(result: Result) -> str:
     """Return the line; it says nothing of what was not measured."""
     if result["sim_time_s"] <= 0.0:
         return f"{result['robot']} did not walk: {result['reason']}"
@@ -18,7 +18,7 @@ def walk_said(result: Result) -> str:
     )
 
 
-def summary_said(whole: Result) -> str:
+def format_summary(whole: Result) -> str:
     """Return the line about several seeds."""
     speed = whole["speed_mean_m_s"]
     pace = "" if speed is None else f", mean speed {speed:.3f} m/s"

@@ -9,12 +9,12 @@ import tyro
 from windup.hal.errors import UsageError
 from windup.robots import load_robot
 from windup.sim_twin.wire.world.address import SCHEME
-from windup.tools.terminal.command import Command
-from windup.tools.robot.doubt_once import doubt_once
 from windup.tools.options.faults import with_faults
-from windup.tools.terminal.quantities import Noise, Rate, Seed, Seeds
+from windup.tools.robot.doubt_once import doubt_once
 from windup.tools.robot.robot import Robot
 from windup.tools.robot.stack import State, check_port
+from windup.tools.terminal.command import Command
+from windup.tools.terminal.quantities import Noise, Rate, Seed, Seeds
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,8 +15,8 @@ from windup.tools.behaviours.directed import (
     walk_prints,
 )
 from windup.tools.options.common import Common
-from windup.tools.terminal.output import console, write_json
 from windup.tools.options.twin_options import TwinOptions
+from windup.tools.terminal.output import console, write_json
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,10 +71,10 @@ class DirectedOptions(TwinOptions, Common, ABC):
                 f"{np.degrees(yaw):.0f} degrees: {1e3 * fall.away:.1f} mm and "
                 f"{fall.turned:.1f} degrees off"
             )
-        console.print(said(self.robot, walk), markup=False, soft_wrap=True)
+        console.print(format_directed(self.robot, walk), markup=False, soft_wrap=True)
 
 
-def said(name: str, walk: DirectedWalk) -> str:
+def format_directed(name: str, walk: DirectedWalk) -> str:
     """Return how it went, in a sentence."""
     done = f"{name} took {len(walk.falls)} of {len(walk.prints)} steps in {walk.seconds:.1f} s"
     if walk.reason != "done":

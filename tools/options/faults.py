@@ -4,8 +4,8 @@ from urllib.parse import quote
 
 from windup.hal.errors import UsageError
 from windup.sim_twin.wire import parse_address
-from windup.sim_twin.wire.world.address import SCHEME
 from windup.sim_twin.wire.faults.faults import Faults
+from windup.sim_twin.wire.world.address import SCHEME
 
 
 def with_faults(port: str | None, faults: str) -> str | None:

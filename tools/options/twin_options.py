@@ -8,12 +8,12 @@ from typing import Annotated
 from windup.hal.errors import UsageError
 from windup.hal.ranges import Range
 from windup.robots import RobotDescription
-from windup.sim_twin.plant import Plant
+from windup.sim_twin.environment import Environment
 from windup.sim_twin.ground.terrain import Ground
-from windup.sim_twin.environment import World
+from windup.sim_twin.plant import Plant
+from windup.tools.robot.robot import Robot
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.quantities import Degrees, Impulse, Seconds, Seed, Speed
-from windup.tools.robot.robot import Robot
 
 Slope = Annotated[float, Range(-30.0, 30.0, "degrees")]
 Stairs = Annotated[float, Range(-0.3, 0.3, "m")]
@@ -43,7 +43,7 @@ class WorldOptions(Command):
     gains: Factor = 1.0
     """Factor on the gains of all joints."""
 
-    def world(self, robot: RobotDescription, seed: int) -> World | None:
+    def world(self, robot: RobotDescription, seed: int) -> Environment | None:
         """Return the twin's world, or None where nothing is odd."""
         plant = Plant() if self.plant is None else Plant.random(self.plant, robot)
         if self.friction is not None:
@@ -53,7 +53,7 @@ class WorldOptions(Command):
         ground = self._ground(robot, seed)
         if ground.flat and plant == Plant() and not self.self_collision:
             return None
-        return World(ground, plant, self.self_collision)
+        return Environment(ground, plant, self.self_collision)
 
     def _ground(self, robot: RobotDescription, seed: int) -> Ground:
         """Return the ground, in the robot's own measure: half its height at a time.

@@ -7,11 +7,11 @@ from typing import Annotated
 import tyro
 
 from windup.hal.errors import UnknownNameError
+from windup.tools.reproduce.report import record, reproduce
+from windup.tools.reproduce.studies import studies
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.quantities import Jobs
-from windup.tools.reproduce.report import record, reproduce
-from windup.tools.reproduce.studies import studies
 from windup.tools.terminal.writing import check_folder
 
 

@@ -5,12 +5,12 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from windup.tools.terminal.output import plain
-from windup.tools.terminal.parallel import side_by_side
-from windup.tools.terminal.picture import load_pyplot
 from windup.tools.reproduce.figure import Figure, Result, Results, Study, distinct
 from windup.tools.reproduce.page import Entry, page
 from windup.tools.reproduce.store import Store
+from windup.tools.terminal.output import plain
+from windup.tools.terminal.parallel import side_by_side
+from windup.tools.terminal.picture import load_pyplot
 from windup.tools.terminal.writing import writing
 
 

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 
 from windup.hal.errors import HardwareError, PostureError, UsageError, WindupError
 from windup.hal.torque_state import TorqueState
+from windup.tools.robot.stopping import Stoppable
 from windup.tools.stopping.interrupts import (
     Asked,
     check_not_interrupted,
     counted_signals,
     forget_interruption,
 )
-from windup.tools.terminal.output import console
 from windup.tools.stopping.stop_request import check_released, how_to_stop
-from windup.tools.robot.stopping import Stoppable
+from windup.tools.terminal.output import console
 
 
 @dataclass(eq=False)

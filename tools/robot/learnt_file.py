@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from windup.control.pose_graph.gait_hash import gait_hash
 from windup.control.limit_cycle.learnt_models import LearntModels
 from windup.control.limit_cycle.planner import StepPlanner
+from windup.control.pose_graph.gait_hash import gait_hash
 from windup.hal.errors import UsageError
 from windup.tools.assembly.gaits import gait_path
-from windup.tools.robot.walk_report import WalkReport
 from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.robot.walk_report import WalkReport
 from windup.tools.terminal.writing import check_writable, writing
 
 

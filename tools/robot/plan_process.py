@@ -19,8 +19,8 @@ from windup.hal.errors import PlannerError
 from windup.hal.joints import Array
 from windup.robots import RobotDescription
 from windup.sim_twin.rollouts import RolloutPredictor
-from windup.tools.robot.plan_worker import LARGEST, Answer, Question, Task
 from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.robot.plan_worker import LARGEST, Answer, Question, Task
 
 PATIENCE = 60.0
 """For the process to be built, on a machine that is busy, s."""

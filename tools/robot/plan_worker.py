@@ -22,8 +22,8 @@ from windup.hal.errors import WindupError
 from windup.hal.joints import Array
 from windup.robots import load_robot
 from windup.sim_twin.backend import TwinBackend
-from windup.sim_twin.rollouts import RolloutPredictor
 from windup.sim_twin.ground.terrain import Ground
+from windup.sim_twin.rollouts import RolloutPredictor
 from windup.sim_twin.twin import Twin
 from windup.tools.assembly.build import build_walk
 from windup.tools.assembly.walk_options import WalkOptions

@@ -18,24 +18,24 @@ from windup.hal.joints import Array
 from windup.hal.observation import Observation
 from windup.hal.ranges import check_numbers, numbers_checked
 from windup.robots import load_robot
+from windup.sim_twin.environment import Environment
 from windup.sim_twin.ground.clearance import FootClearance
 from windup.sim_twin.rollouts import RolloutPredictor
 from windup.sim_twin.wire.world.bus_world import RealClock
-from windup.sim_twin.environment import World
 from windup.tools.assembly.build import build_walk
-from windup.tools.robot.doubt_once import doubt_once
 from windup.tools.assembly.gaits import find_gait
+from windup.tools.assembly.supervise import build_supervisor
+from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.measures.gauges import Gauges
-from windup.tools.stopping.interrupts import RunInterruptedError
 from windup.tools.measures.load_gauge import LoadGauge
+from windup.tools.measures.walk_end import OnStep, WalkEnd
+from windup.tools.robot.doubt_once import doubt_once
 from windup.tools.robot.plan_process import ProcessPlanner, plan_aside
-from windup.tools.terminal.quantities import Count, Delay, Noise, Rate, Seconds, Seed, Speed
-from windup.tools.robot.walk_report import WalkReport
 from windup.tools.robot.session import Session
 from windup.tools.robot.stack import State, twin_stack, wire_stack
-from windup.tools.assembly.supervise import build_supervisor
-from windup.tools.measures.walk_end import OnStep, WalkEnd
-from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.robot.walk_report import WalkReport
+from windup.tools.stopping.interrupts import RunInterruptedError
+from windup.tools.terminal.quantities import Count, Delay, Noise, Rate, Seconds, Seed, Speed
 
 START_SECONDS = 1.0
 PLAY_SECONDS = 5.0
@@ -73,7 +73,7 @@ class Robot(Session):
         seed: Seed = 0,
         noise: Noise = 0.0,
         delay: Delay | None = None,
-        world: World | None = None,
+        world: Environment | None = None,
         known_ground: bool = False,
         protect: bool = True,
     ) -> Self:
@@ -169,7 +169,7 @@ class Robot(Session):
         load = self.load = LoadGauge(self.description.joints)
 
         def until(observation: Observation) -> str | None:
-            load.look(observation)
+            load.update(observation)
             return "done" if player.finished else player.failed
 
         down = gait.file.down or gait.file.lying is not None
@@ -263,7 +263,7 @@ class Robot(Session):
         walker = report.walker
 
         def until(observation: Observation) -> str | None:
-            report.look(observation)
+            report.update(observation)
             if self.telemetry is not None:
                 self.telemetry.plans = walker.begun, walker.late
             return end(observation)

@@ -16,21 +16,26 @@ from windup.hal.controller import Controller, Stopwatch
 from windup.hal.errors import ControllerError, TelemetryError, WindupError
 from windup.hal.guard.finding import Finding
 from windup.hal.guard.imu_watch import ImuWatch
-from windup.hal.telemetry.leftovers import remove_leftovers
 from windup.hal.observation import Observation
 from windup.hal.ranges import numbers_checked
-from windup.hal.telemetry.ring import TelemetryWriter
 from windup.hal.telemetry.layout import ring_path
+from windup.hal.telemetry.leftovers import remove_leftovers
+from windup.hal.telemetry.ring import TelemetryWriter
 from windup.sim_twin.backend import TwinClock
 from windup.sim_twin.wire.world.bus_world import VirtualClock
-from windup.tools.robot.armed import Armed
-from windup.tools.stopping.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
 from windup.tools.assembly.protect import Protection
+from windup.tools.robot.armed import Armed
+from windup.tools.robot.stack import look_with
+from windup.tools.robot.stopping import INTERRUPTED, LAY
+from windup.tools.stopping.interrupts import (
+    Asked,
+    RunInterruptedError,
+    counted_signals,
+    note_interruption,
+)
+from windup.tools.stopping.stop_request import stop_requests
 from windup.tools.terminal.run_notes import NOTES
 from windup.tools.terminal.slowness import Slowness
-from windup.tools.robot.stack import look_with
-from windup.tools.stopping.stop_request import stop_requests
-from windup.tools.robot.stopping import INTERRUPTED, LAY
 
 REST_SECONDS = 1.5
 # Called once a tick with the observation.
@@ -212,7 +217,7 @@ class Session(Armed):
 
     def _landed(self) -> str:
         """Return why a run ends whose fall is over."""
-        return "fell" if self.fallen else "braced for a fall that did not come"
+        return "fell" if self.fallen else "fall protection triggered, but the robot did not fall"
 
     def _run(
         self,

@@ -16,14 +16,14 @@ from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
 from windup.hal.torque_state import TorqueState
 from windup.robots import RobotDescription
 from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.environment import Environment
 from windup.sim_twin.imu_errors import OPENCR, ImuErrors
 from windup.sim_twin.sensors import Sensors
 from windup.sim_twin.twin import Twin
-from windup.sim_twin.environment import World
 from windup.tools.assembly.build import build_estimator
-from windup.tools.robot.noisy_start import begin_noisily
 from windup.tools.assembly.shape import can_estimate
-from windup.tools.robot.twin_state_source import Truth
+from windup.tools.robot.noisy_start import begin_noisily
+from windup.tools.robot.twin_state_source import TwinStateSource
 
 State = Literal["true", "estimated"]
 TWIN = "twin://"
@@ -75,7 +75,7 @@ def twin_stack(
     delay: float | None,
     noise: float,
     seed: int,
-    world: World | None = None,
+    world: Environment | None = None,
 ) -> Stack:
     """Return a stack on a twin of `robot`; where its state is estimated, its IMU is a real one.
 
@@ -103,7 +103,7 @@ def wire_stack(
     arm: bool,
     noise: float,
     seed: int,
-    around: World | None = None,
+    around: Environment | None = None,
 ) -> Stack:
     """Return a stack on a port with the servos of `robot`.
 
@@ -160,10 +160,10 @@ def _estimator(
         return build_estimator(robot, lag, switches=False, attitude=apart)
     if twin is None:
         raise UsageError("--state true needs a twin; a robot has `--state estimated`")
-    return Truth(Sensors(twin))
+    return TwinStateSource(Sensors(twin))
 
 
-def limp(robot: RobotDescription, port: str) -> TorqueState:
+def torque_off(robot: RobotDescription, port: str) -> TorqueState:
     """Switch all torque of `robot` off, whatever state it is in; return what was read back."""
     given, world = port, ""
     if port.startswith(TWIN):
@@ -245,7 +245,9 @@ def _urls(robot: RobotDescription, port: str) -> dict[str, str]:
     return {names[0]: port}
 
 
-def _in_a_world(robot: RobotDescription, port: str, around: World | None = None) -> tuple[str, str]:
+def _in_a_world(
+    robot: RobotDescription, port: str, around: Environment | None = None
+) -> tuple[str, str]:
     """Return a twin:// URL that names its world, and the name if it is ours to forget.
 
     Raises:

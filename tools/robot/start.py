@@ -5,10 +5,10 @@ from math import degrees
 
 import numpy as np
 
-from windup.control.motions.first_motion import Approach, FirstMotion
-from windup.control.kinematics.legs import legs_of
-from windup.control.motions.planted import Planted
 from windup.control.estimation.posture import Posture, PostureSense
+from windup.control.kinematics.legs import legs_of
+from windup.control.motions.first_motion import Approach, FirstMotion
+from windup.control.motions.planted import Planted
 from windup.hal.controller import Controller
 from windup.hal.errors import PostureError
 from windup.hal.observation import Observation

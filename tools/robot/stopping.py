@@ -11,13 +11,18 @@ from weakref import WeakSet
 from windup.control.loop import LoopReport
 from windup.hal.errors import UnhealthyError, UsageError, WindupError
 from windup.hal.guard import StopPolicy
-from windup.tools.stopping.custody import Custody
-from windup.tools.stopping.interrupts import Asked, RunInterruptedError, counted_signals, note_interruption
 from windup.tools.robot.on_stack import OnStack
-from windup.tools.terminal.output import console
+from windup.tools.robot.start import Start
+from windup.tools.stopping.custody import Custody
+from windup.tools.stopping.interrupts import (
+    Asked,
+    RunInterruptedError,
+    counted_signals,
+    note_interruption,
+)
 from windup.tools.stopping.overheard import forget, overhear
 from windup.tools.stopping.running import Running
-from windup.tools.robot.start import Start
+from windup.tools.terminal.output import console
 
 INTERRUPTED = "interrupted"
 """The reason of a run that somebody ended."""
@@ -57,7 +62,7 @@ class Stoppable(OnStack):
         self.custody.interrupt(by)
 
     def stop(self, *, limp: bool = False) -> None:
-        """Carry out the stop policy at once; with `limp`, just switch the torque off.
+        """Carry out the stop policy at once; with `torque_off`, just switch the torque off.
 
         Signals do not interrupt it; three of them leave out a crouch. While a run is going on, it
         ends the run, which stops the robot: at the next tick, where the run calls this itself.

@@ -7,7 +7,7 @@ from windup.sim_twin.sensors import Sensors
 
 
 @dataclass
-class Truth:
+class TwinStateSource:
     """An estimator that cheats: it looks at the twin behind an emulated bus.
 
     Attributes:

@@ -6,18 +6,18 @@ from typing import Any
 import numpy as np
 
 from windup.control.limit_cycle.balancer import Balancer
+from windup.control.limit_cycle.planner import StepPlanner
 from windup.control.loop import LoopReport
 from windup.control.steering.navigation import PathFollower, PointFollower
-from windup.control.limit_cycle.planner import StepPlanner
 from windup.control.stepping.supervisor import Supervisor
 from windup.hal.controller import Stopwatch
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
 from windup.sim_twin.ground.clearance import FootClearance
-from windup.tools.measures.gauges import Gauges
-from windup.tools.robot.session import Session
 from windup.tools.assembly.walk_options import WalkOptions
-from windup.tools.measures.walk_text import walk_said
+from windup.tools.measures.gauges import Gauges
+from windup.tools.measures.walk_text import format_walk
+from windup.tools.robot.session import Session
 
 SETTLED = 10  # steps left out of the mean speed
 
@@ -61,15 +61,15 @@ class WalkReport:
         """Note how far the robot has come by now: once it is limp, it falls anywhere."""
         self._end = self._position()
 
-    def look(self, observation: Observation) -> None:
+    def update(self, observation: Observation) -> None:
         """Measure what there is to measure at a tick."""
         self.note_place()
-        self.gauges.look(observation)
+        self.gauges.update(observation)
         if self.feet is not None:
-            self.feet.look()
+            self.feet.update()
 
     def __str__(self) -> str:
-        return walk_said(self.result())
+        return format_walk(self.result())
 
     @property
     def fell(self) -> bool:

@@ -10,13 +10,13 @@ from typing import Annotated
 import tyro
 
 from windup.hal.errors import UsageError
+from windup.tools.sweeps.sweep_grid import Axis, parse_axis, points
+from windup.tools.sweeps.sweep_run import Run, check_line, play
+from windup.tools.sweeps.sweep_table import Row, Table, open_table
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console
 from windup.tools.terminal.parallel import side_by_side
 from windup.tools.terminal.quantities import Count, Jobs, Seed, Seeds
-from windup.tools.sweeps.sweep_grid import Axis, parse_axis, points
-from windup.tools.sweeps.sweep_run import Run, check_line, play
-from windup.tools.sweeps.sweep_table import Row, Table, open_table
 from windup.tools.terminal.writing import check_writable, writing
 
 MOST = 1_000_000

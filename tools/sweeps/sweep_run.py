@@ -14,10 +14,10 @@ import tyro
 from windup.hal.errors import UnknownNameError, UsageError, WindupError
 from windup.hal.ranges import check_numbers
 from windup.tools.cli import parse
-from windup.tools.terminal.output import plain
 from windup.tools.command_line.parse_errors import gist
 from windup.tools.sweeps.sweep_grid import Axis, Point
 from windup.tools.sweeps.sweep_table import Row, typed
+from windup.tools.terminal.output import plain
 
 OURS = ("seed", "seeds", "json", "plot")  # what the sweep itself gives a command
 YES, NO = ("true", "yes", "on", "1"), ("false", "no", "off", "0")

@@ -14,19 +14,19 @@ from windup.hal.errors import UsageError
 from windup.hal.ranges import Range
 from windup.robots import load_robot
 from windup.tools.assembly.build import build_walk
-from windup.tools.terminal.command import Command
 from windup.tools.assembly.gaits import gait_path
-from windup.tools.terminal.output import console, write_json
-from windup.tools.terminal.parallel import Workers
-from windup.tools.terminal.quantities import Count, Jobs, Noise, Seed, Some, Speed
 from windup.tools.assembly.shape import check_walks
+from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.synthesis.gait_toml import write_gait
 from windup.tools.synthesis.genes import Genome
 from windup.tools.synthesis.log import Entry, SearchLog
 from windup.tools.synthesis.score import Objective, objective
 from windup.tools.synthesis.search import Search, Values
 from windup.tools.synthesis.trial import Trial, walk_trial
-from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.terminal.command import Command
+from windup.tools.terminal.output import console, write_json
+from windup.tools.terminal.parallel import Workers
+from windup.tools.terminal.quantities import Count, Jobs, Noise, Seed, Some, Speed
 from windup.tools.terminal.writing import check_writable
 
 FINALISTS = 5

@@ -7,9 +7,9 @@ from typing import Any
 
 from windup.control.pose_graph.gait_file import GaitFile
 from windup.hal.errors import WindupError
+from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.robot.robot import Robot
 from windup.tools.synthesis.gait_toml import write_gait
-from windup.tools.assembly.walk_options import WalkOptions
 
 KEPT = (
     "steps",

@@ -22,10 +22,10 @@ from windup.hal.port.port import Port
 from windup.sim_twin.wire import build_world, drop_world, parse_address, put_world
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.faults.faults import Faults
-from windup.sim_twin.wire.world.hand import Swing
 from windup.sim_twin.wire.serve.tape import check_played, tape_world
 from windup.sim_twin.wire.serve.trace import Checker, Recorder, Tap
-from windup.sim_twin.wire.world.bus_world import VirtualClock, World
+from windup.sim_twin.wire.world.bus_world import BusWorld, VirtualClock
+from windup.sim_twin.wire.world.hand import Swing
 from windup.tools.robot.robot import Robot
 
 _numbers = count(1)
@@ -73,7 +73,7 @@ class ServoBus:
         bus._begin(tape_world(Path(path)))
         return bus
 
-    def _begin(self, world: World) -> None:
+    def _begin(self, world: BusWorld) -> None:
         self.world = world
         self._name = f"servo-bus-{next(_numbers)}"
         put_world(self._name, world)

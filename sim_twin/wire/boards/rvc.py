@@ -14,8 +14,8 @@ from typing import Final
 
 from windup.hal.joints import Array
 from windup.sim_twin.wire.bus.bus import Bus
-from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.bus.heard import Heard
+from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.imu.imu import GRAVITY, ImuSource
 
 HEADER: Final = b"\xaa\xaa"

@@ -11,12 +11,12 @@ from functools import partial
 from typing import Protocol
 
 from windup.sim_twin.wire.bus.air import Air
-from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.bus.heard import Heard
-from windup.sim_twin.wire.imu.imu_faults import FaultyImu
 from windup.sim_twin.wire.bus.inbox import Burst, Inbox
-from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.bus.timing import Timing
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.imu.imu_faults import FaultyImu
+from windup.sim_twin.wire.schedule import Schedule
 
 BITS = 10  # start, eight, stop
 FORGET = 0.1  # s; a frame that has been interrupted for longer is forgotten

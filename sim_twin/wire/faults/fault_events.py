@@ -5,10 +5,10 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Final, Protocol
 
+from windup.sim_twin.wire.boards.opencr import USER_BUTTON, OpenCr
 from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.faults.fault_rule import Rule
-from windup.sim_twin.wire.boards.opencr import USER_BUTTON, OpenCr
 from windup.sim_twin.wire.schedule import Schedule
 
 EVERYBODY = -1

@@ -3,7 +3,14 @@
 from typing import Final
 
 from windup.hal.errors import UsageError, suggest
-from windup.sim_twin.wire.faults.fault_rule import EVENTS, EXTRA, LAST_ID, Rule, check_kind, make_rule
+from windup.sim_twin.wire.faults.fault_rule import (
+    EVENTS,
+    EXTRA,
+    LAST_ID,
+    Rule,
+    check_kind,
+    make_rule,
+)
 
 KEYS: Final = ("rate", "at", "ids", "bus", "seconds", *EXTRA)
 EXAMPLE = "'drop:0.01,late:0.02:seconds=0.003:ids=1-6,unplug:at=2.5:seconds=0.5'"

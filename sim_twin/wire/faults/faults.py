@@ -9,8 +9,8 @@ from typing import NamedTuple, Self
 from weakref import ReferenceType, ref
 
 from windup.hal.errors import UsageError
-from windup.sim_twin.wire.faults.answer_faults import Fate, Sender
 from windup.sim_twin.wire.bus.bus import Bus
+from windup.sim_twin.wire.faults.answer_faults import Fate, Sender
 from windup.sim_twin.wire.faults.fault_events import (
     EVERYBODY,
     OF_IMU,

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from typing import Final
 
 from windup.sim_twin.wire.bus.bus import Bus
+from windup.sim_twin.wire.bus.heard import Heard
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.protocols.dynamixel2 import Dynamixel2
 from windup.sim_twin.wire.protocols.frames1 import Frame1, Frame1Error
-from windup.sim_twin.wire.bus.heard import Heard
 from windup.sim_twin.wire.protocols.protocol1 import DYNAMIXEL1, Protocol1
 
 OLD: Final = 1

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 from windup.sim_twin.wire.bus.bus import Bus
+from windup.sim_twin.wire.bus.heard import Heard
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.protocols.frames import (
     BROADCAST,
@@ -19,9 +20,14 @@ from windup.sim_twin.wire.protocols.frames import (
     encode_status,
     seal,
 )
-from windup.sim_twin.wire.bus.heard import Heard
-from windup.sim_twin.wire.servos.register_file import BAD_CRC, BAD_INSTRUCTION, BAD_LENGTH, EEPROM_END, OK
 from windup.sim_twin.wire.protocols.turns import READS, Round, Turn, answering, take_turns
+from windup.sim_twin.wire.servos.register_file import (
+    BAD_CRC,
+    BAD_INSTRUCTION,
+    BAD_LENGTH,
+    EEPROM_END,
+    OK,
+)
 
 PING, READ, WRITE, REG_WRITE, ACTION = 0x01, 0x02, 0x03, 0x04, 0x05
 FACTORY_RESET, REBOOT, CLEAR, BACKUP = 0x06, 0x08, 0x10, 0x20

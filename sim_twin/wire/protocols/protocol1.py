@@ -5,6 +5,7 @@ from functools import partial
 from typing import Final, NamedTuple
 
 from windup.sim_twin.wire.bus.bus import BITS, Bus
+from windup.sim_twin.wire.bus.heard import Heard
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.protocols.frames1 import (
     BROADCAST,
@@ -17,9 +18,8 @@ from windup.sim_twin.wire.protocols.frames1 import (
     encode,
     seal,
 )
-from windup.sim_twin.wire.bus.heard import Heard
-from windup.sim_twin.wire.servos.register_file import EEPROM_END
 from windup.sim_twin.wire.protocols.turns import READS, Round, Turn, take_turns
+from windup.sim_twin.wire.servos.register_file import EEPROM_END
 
 PING, READ, WRITE, REG_WRITE, ACTION, RESET, REBOOT = 0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x08
 SYNC_READ, SYNC_WRITE, BULK_READ = 0x82, 0x83, 0x92
@@ -30,7 +30,7 @@ IDENTITY_END = 14  # below lie ids, baud rate and protocol
 PING_SLOT = 0.001  # s for each id of a broadcast ping, assumed: SDKs allow three times as much
 
 
-class Dialect(NamedTuple):
+class Variant(NamedTuple):
     """What one maker's servos make of protocol 1.
 
     Attributes:
@@ -48,8 +48,8 @@ class Dialect(NamedTuple):
     slots: bool
 
 
-DYNAMIXEL1: Final = Dialect("dynamixel1", frozenset((SYNC_WRITE, BULK_READ)), 259, True, False)
-FEETECH: Final = Dialect("feetech", frozenset((SYNC_READ, SYNC_WRITE)), 250, False, True)
+DYNAMIXEL1: Final = Variant("dynamixel1", frozenset((SYNC_WRITE, BULK_READ)), 259, True, False)
+FEETECH: Final = Variant("feetech", frozenset((SYNC_READ, SYNC_WRITE)), 250, False, True)
 
 
 class Protocol1:
@@ -64,7 +64,7 @@ class Protocol1:
     data_at, tail = 5, 1
     seal = staticmethod(seal)
 
-    def __init__(self, dialect: Dialect) -> None:
+    def __init__(self, dialect: Variant) -> None:
         self.dialect = dialect
         self.errors: dict[str, int] = {}
         self._parser = Parser1(dialect.longest)

@@ -18,14 +18,14 @@ from queue import SimpleQueue
 
 from windup.hal.errors import UsageError
 from windup.hal.port.port import SELECTABLE
-from windup.sim_twin.wire.world.address import Address
-from windup.sim_twin.wire.world.build import build_world
 from windup.sim_twin.wire.faults.fault_rule import Rule
 from windup.sim_twin.wire.faults.fault_text import parse_rules
 from windup.sim_twin.wire.serve.journal import Event, Journal, Watcher
 from windup.sim_twin.wire.serve.link import Link, Pty, Tcp, free_port
 from windup.sim_twin.wire.serve.outlet import Outlet
-from windup.sim_twin.wire.world.bus_world import World
+from windup.sim_twin.wire.world.address import Address
+from windup.sim_twin.wire.world.build import build_world
+from windup.sim_twin.wire.world.bus_world import BusWorld
 
 CHUNK = 4096
 AHEAD = 0.002  # s by which replies may be worked out before their time
@@ -54,7 +54,7 @@ class Emulator:
 
     def __init__(
         self,
-        world: World,
+        world: BusWorld,
         journal: Journal | None = None,
         events: Callable[[Event], None] | None = None,
     ) -> None:
@@ -147,7 +147,7 @@ class Emulator:
         for outlet in self.outlets:
             if outlet.bus.plugged is (outlet.link is None):
                 outlet.settle()
-        self._watcher.look(now)
+        self._watcher.update(now)
         return True
 
     def _slip(self, now: float) -> float:

@@ -4,7 +4,7 @@ import time as wall
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 
-from windup.sim_twin.wire.world.bus_world import World
+from windup.sim_twin.wire.world.bus_world import BusWorld
 
 Journal = Callable[[float, int], None]
 
@@ -37,7 +37,7 @@ class Watcher:
 
     def __init__(
         self,
-        world: World,
+        world: BusWorld,
         journal: Journal | None = None,
         events: Callable[[Event], None] | None = None,
     ) -> None:
@@ -46,7 +46,7 @@ class Watcher:
         self._driven, self._volts = 0, world.volts
         self._plugged = dict.fromkeys(world.buses, True)
 
-    def look(self, now: float) -> None:
+    def update(self, now: float) -> None:
         """Tell what is new; `now` is the world's time, s."""
         if self._journal is None and self._events is None:
             return

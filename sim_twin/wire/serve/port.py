@@ -7,9 +7,9 @@ import serial
 
 from windup.hal.backend import Clock
 from windup.hal.errors import WindupError
-from windup.sim_twin.wire.world.address import parse_address
 from windup.sim_twin.wire.bus.bus import Bus
-from windup.sim_twin.wire.world.bus_world import RealClock, World
+from windup.sim_twin.wire.world.address import parse_address
+from windup.sim_twin.wire.world.bus_world import BusWorld, RealClock
 from windup.sim_twin.wire.world.worlds import Running, enter, leave
 
 PATIENCE = 60.0  # s of virtual time without an answer, in a read without a time-out
@@ -51,7 +51,7 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
             leave(self._running, self._address if self._plugs != self._bus.plugs else None)
 
     @property
-    def world(self) -> World:
+    def world(self) -> BusWorld:
         """The world behind the port."""
         return self._running.world
 

@@ -6,13 +6,20 @@ from functools import partial
 from pathlib import Path
 
 from windup.sim_twin.wire.bus.bus import BITS, Bus
-from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.bus.heard import Heard
 from windup.sim_twin.wire.bus.inbox import Burst
+from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.schedule import Schedule
+from windup.sim_twin.wire.serve.trace import (
+    FROM_HOST,
+    TO_HOST,
+    Line,
+    TraceError,
+    difference,
+    read_trace,
+)
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
-from windup.sim_twin.wire.serve.trace import FROM_HOST, TO_HOST, Line, TraceError, difference, read_trace
-from windup.sim_twin.wire.world.bus_world import Bench, World
+from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
 
 
 @dataclass
@@ -76,7 +83,7 @@ class Tape:
             raise TraceError(difference(self.path, self.lines, self._at, None))
 
 
-def tape_world(path: Path) -> World:
+def tape_world(path: Path) -> BusWorld:
     """Return a world that answers from a trace and raises a `TraceError` at a wrong byte."""
     lines = read_trace(path)
     schedule, buses = Schedule(), {}
@@ -86,10 +93,10 @@ def tape_world(path: Path) -> World:
         tape.bus = buses[name] = Bus(name, [], tape, schedule, mine[0].baud)
         tape.answer()
     nothing: list[InertiaShaft] = []
-    return World(Bench(nothing), schedule, buses)
+    return BusWorld(Bench(nothing), schedule, buses)
 
 
-def check_played(world: World) -> None:
+def check_played(world: BusWorld) -> None:
     """Raise unless all that a trace holds has happened.
 
     Raises:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from windup.sim_twin.wire.bus.inbox import Burst
-from windup.sim_twin.wire.world.bus_world import World
+from windup.sim_twin.wire.world.bus_world import BusWorld
 
 HEADER = "# windup trace 1: time s, bus, direction, baud, held s, bytes"
 SAME_TIME = 1e-6  # s
@@ -74,7 +74,7 @@ class Tap:
     Collisions and adapters change a burst after its start, so it is taken a few bursts later.
     """
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: BusWorld) -> None:
         self._world = world
         self._pending: deque[tuple[str, str, int, Burst]] = deque()
         for bus in world.buses.values():
@@ -107,7 +107,7 @@ class Tap:
 class Recorder(Tap):
     """Writes a trace; it is complete after `close`."""
 
-    def __init__(self, world: World, path: Path) -> None:
+    def __init__(self, world: BusWorld, path: Path) -> None:
         super().__init__(world)
         self._file = path.open("w", encoding="utf-8")
         self._file.write(HEADER + "\n")
@@ -125,7 +125,7 @@ class Recorder(Tap):
 class Checker(Tap):
     """Compares what happens with a trace, and raises a `TraceError` at the first difference."""
 
-    def __init__(self, world: World, path: Path) -> None:
+    def __init__(self, world: BusWorld, path: Path) -> None:
         super().__init__(world)
         self.path, self._lines, self._at = path, read_trace(path), 0
 

@@ -11,7 +11,6 @@ from windup.hal.servos.servo_model import ServoModel
 from windup.sim_twin.wire.servos.encoder import Encoder
 from windup.sim_twin.wire.servos.profile import Profile
 from windup.sim_twin.wire.servos.register_file import RegisterFile
-from windup.sim_twin.wire.shafts.shaft import Shaft
 from windup.sim_twin.wire.servos.x_series import (
     ACCELERATION_UNIT,
     COUNTS_PER_RAD,
@@ -25,6 +24,7 @@ from windup.sim_twin.wire.servos.x_series import (
     VELOCITY_UNIT,
     Model,
 )
+from windup.sim_twin.wire.shafts.shaft import Shaft
 
 TIME_BASED = 0x04  # bit of the drive mode
 POSITION_MODES = frozenset((POSITION, EXTENDED, CURRENT_POSITION))

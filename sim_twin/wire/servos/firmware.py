@@ -6,8 +6,15 @@ from windup.sim_twin.wire.servos.control_loop import POSITION_MODES, ControlLoop
 from windup.sim_twin.wire.servos.health import Health
 from windup.sim_twin.wire.servos.present import Present
 from windup.sim_twin.wire.servos.register_file import BAD_ACCESS, BAD_LIMIT, BAD_RANGE, OK, Item
+from windup.sim_twin.wire.servos.x_series import (
+    CURRENT,
+    POSITION,
+    PWM,
+    VELOCITY,
+    WATCHDOG_UNIT,
+    Model,
+)
 from windup.sim_twin.wire.shafts.shaft import Shaft
-from windup.sim_twin.wire.servos.x_series import CURRENT, POSITION, PWM, VELOCITY, WATCHDOG_UNIT, Model
 
 ALERT = 0x80  # in the error byte of a status: look at Hardware Error Status
 TORQUE_BY_GOAL = 0x08  # bit of the drive mode

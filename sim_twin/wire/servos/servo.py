@@ -16,8 +16,8 @@ from windup.sim_twin.wire.servos.register_file import (
     OK,
     Item,
 )
-from windup.sim_twin.wire.shafts.shaft import Shaft
 from windup.sim_twin.wire.servos.x_series import BAUD_RATES, PRESENT, Model
+from windup.sim_twin.wire.shafts.shaft import Shaft
 
 BOOT_SECONDS = 0.3  # silence after a reboot, assumed
 

@@ -6,28 +6,28 @@ from dataclasses import replace
 from windup.hal.errors import UsageError
 from windup.hal.imu.bno08x_rvc import Bno08xRvc
 from windup.hal.imu.opencr import OpenCr as Board
-from windup.hal.servos.servo_model import ServoMount
 from windup.hal.servos import servo_model
+from windup.hal.servos.servo_model import ServoMount
 from windup.robots import RobotDescription, load_robot
+from windup.sim_twin.environment import Environment
 from windup.sim_twin.twin import Twin
-from windup.sim_twin.wire.world.address import BENCH, Address, parse_servos
-from windup.sim_twin.wire.bus.bus import Bus, Language
-from windup.sim_twin.wire.device import Device
-from windup.sim_twin.wire.world.families import PROTOCOLS, full_name, make_language, make_servo
-from windup.sim_twin.wire.faults.faults import Faults
-from windup.sim_twin.wire.world.grips import bench_grips, robot_grips
-from windup.sim_twin.wire.world.hand import parse_hands
-from windup.sim_twin.wire.imu.imu import ImuSource, RestingImu
-from windup.sim_twin.wire.imu.imu_faults import FaultyImu
 from windup.sim_twin.wire.boards.opencr import OpenCr
 from windup.sim_twin.wire.boards.rvc import BAUD as RVC_BAUD
 from windup.sim_twin.wire.boards.rvc import Mute, start_rvc
+from windup.sim_twin.wire.bus.bus import Bus, Language
+from windup.sim_twin.wire.bus.timing import Timing
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.faults.faults import Faults
+from windup.sim_twin.wire.imu.imu import ImuSource, RestingImu
+from windup.sim_twin.wire.imu.imu_faults import FaultyImu
 from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft, Shaft
-from windup.sim_twin.wire.bus.timing import Timing
 from windup.sim_twin.wire.shafts.twin_shaft import TwinImu, TwinPhysics, TwinShaft
-from windup.sim_twin.wire.world.bus_world import Bench, Physics, World
-from windup.sim_twin.environment import World as Surroundings
+from windup.sim_twin.wire.world.address import BENCH, Address, parse_servos
+from windup.sim_twin.wire.world.bus_world import Bench, BusWorld, Physics
+from windup.sim_twin.wire.world.families import PROTOCOLS, full_name, make_language, make_servo
+from windup.sim_twin.wire.world.grips import bench_grips, robot_grips
+from windup.sim_twin.wire.world.hand import parse_hands
 
 NOMINAL = 12.0  # V, for servos that stand so much
 IMU = "imu"  # name of the port of an IMU
@@ -62,12 +62,12 @@ class Workshop:
         bus.imu = FaultyImu(source, self.schedule)
         start_rvc(bus, bus.imu)
 
-    def world(self, physics: Physics, supply: float, owned: tuple[object, ...] = ()) -> World:
+    def world(self, physics: Physics, supply: float, owned: tuple[object, ...] = ()) -> BusWorld:
         """Return the world with its buses."""
-        return World(physics, self.schedule, self.buses, supply, owned, self.faults)
+        return BusWorld(physics, self.schedule, self.buses, supply, owned, self.faults)
 
 
-def build_world(address: Address, around: Surroundings | None = None) -> World:
+def build_world(address: Address, around: Environment | None = None) -> BusWorld:
     """Return a new world.
 
     Args:
@@ -83,13 +83,13 @@ def build_world(address: Address, around: Surroundings | None = None) -> World:
     if address.robot == BENCH:
         world = _bench(address)
     else:
-        world = _robot(address, load_robot(address.robot), around or Surroundings())
+        world = _robot(address, load_robot(address.robot), around or Environment())
     for swing in parse_hands(address.hand):
         world.hand(swing)
     return world
 
 
-def _bench(address: Address) -> World:
+def _bench(address: Address) -> BusWorld:
     baud, shop = address.baud or 1_000_000, Workshop(address)
     servos = [(full_name(name), identifier) for name, identifier in parse_servos(address.servos)]
     protocol = PROTOCOLS[servos[0][0]]
@@ -110,7 +110,7 @@ def _bench(address: Address) -> World:
     return world
 
 
-def _robot(address: Address, robot: RobotDescription, around: Surroundings) -> World:
+def _robot(address: Address, robot: RobotDescription, around: Environment) -> BusWorld:
     if not any(robot.servos):
         raise UsageError(f"robot {robot.name!r} has no servos on a wire; 'windup walk' takes it")
     shop = Workshop(address)
@@ -176,7 +176,7 @@ def _hang_servos(
     return hung, shafts
 
 
-def _behind_a_wire(around: Surroundings, robot: RobotDescription, supply: float) -> Surroundings:
+def _behind_a_wire(around: Environment, robot: RobotDescription, supply: float) -> Environment:
     """Return `around` with what is left of its plant's delay when the wire has taken its own."""
     plant = replace(around.plant, supply=supply)
     if plant.delay is not None:

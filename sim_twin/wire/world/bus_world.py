@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from windup.hal.errors import UnknownNameError
+from windup.sim_twin.wire.boards.opencr import OpenCr
 from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.faults.faults import Faults
-from windup.sim_twin.wire.world.hand import Grip, Hand, Swing
-from windup.sim_twin.wire.boards.opencr import OpenCr
 from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
+from windup.sim_twin.wire.world.hand import Grip, Hand, Swing
 
 WATCH_PERIOD = 0.010  # s between two looks at watchdogs and health
 EPSILON = 1e-9  # s; steps that are due to the bit
@@ -47,7 +47,7 @@ class Bench:
             shaft.step(self.timestep)
 
 
-class World:
+class BusWorld:
     """Physics and buses in step.
 
     Time is virtual: `advance` brings the world to an instant, doing on the way, in order, what
@@ -197,7 +197,7 @@ class World:
 class VirtualClock:
     """Time that passes only when somebody waits for it."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: BusWorld) -> None:
         self.world = world
 
     def now(self) -> float:
@@ -215,7 +215,7 @@ class VirtualClock:
 class RealClock:
     """Time of the wall, from 0 at the start; the world is brought along when somebody asks."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: BusWorld) -> None:
         self.world = world
         self._start = wall.monotonic() - world.now
 

@@ -4,15 +4,13 @@ from typing import Final
 
 from windup.hal.errors import UnknownNameError, UsageError
 from windup.hal.servos import servo_model
-from windup.sim_twin.wire.servos import dynamixel1_tables
-from windup.sim_twin.wire.servos import feetech_tables
-from windup.sim_twin.wire.servos import x_series
 from windup.sim_twin.wire.bus.bus import Language
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.protocols.dynamixel import Dynamixel
+from windup.sim_twin.wire.protocols.protocol1 import DYNAMIXEL1, FEETECH, Protocol1
+from windup.sim_twin.wire.servos import dynamixel1_tables, feetech_tables, x_series
 from windup.sim_twin.wire.servos.dynamixel1_servo import Dynamixel1Servo
 from windup.sim_twin.wire.servos.feetech_servo import FeetechServo
-from windup.sim_twin.wire.protocols.protocol1 import DYNAMIXEL1, FEETECH, Protocol1
 from windup.sim_twin.wire.servos.servo import Servo
 from windup.sim_twin.wire.shafts.shaft import Shaft
 

@@ -5,9 +5,9 @@ from functools import partial
 
 from windup.robots import RobotDescription
 from windup.sim_twin.wire.device import Device
-from windup.sim_twin.wire.world.hand import Grip
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft, Shaft
 from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics, TwinShaft
+from windup.sim_twin.wire.world.hand import Grip
 
 Hung = Mapping[str, Sequence[Device]]
 

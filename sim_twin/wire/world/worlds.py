@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from windup.hal.errors import UnknownNameError, UsageError
 from windup.sim_twin.wire.world.address import Address
 from windup.sim_twin.wire.world.build import build_world
-from windup.sim_twin.wire.world.bus_world import RealClock, VirtualClock, WireClock, World
+from windup.sim_twin.wire.world.bus_world import BusWorld, RealClock, VirtualClock, WireClock
 
 
 @dataclass
@@ -20,7 +20,7 @@ class Running:
         keep: Whether it stays when the last port is closed.
     """
 
-    world: World
+    world: BusWorld
     clock: WireClock
     kind: str
     ports: int = 0
@@ -30,12 +30,12 @@ class Running:
 _running: dict[str, Running] = {}
 
 
-def put_world(name: str, world: World, clock: str = "virtual") -> None:
+def put_world(name: str, world: BusWorld, clock: str = "virtual") -> None:
     """Offer a world under ``twin://anything?world=NAME``; it stays until `drop_world`."""
     _running[name] = _start(world, clock, keep=True)
 
 
-def find_world(name: str) -> World:
+def find_world(name: str) -> BusWorld:
     """Return the world that is known by a name.
 
     Raises:
@@ -94,6 +94,6 @@ def _lost_name(address: Address) -> str:
     return repr(replace(address, bus=""))
 
 
-def _start(world: World, clock: str, keep: bool) -> Running:
+def _start(world: BusWorld, clock: str, keep: bool) -> Running:
     ticking: WireClock = VirtualClock(world) if clock == "virtual" else RealClock(world)
     return Running(world, ticking, clock, keep=keep)

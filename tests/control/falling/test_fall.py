@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from tests.control.biped import model, observed, soles
-from windup.control.kinematics.body import Body
 from windup.control.falling.fall import FallPredictor, unreachable
+from windup.control.kinematics.body import Body
 from windup.control.kinematics.momenta import Momenta
 from windup.hal.errors import StateMissingError
 from windup.hal.observation import BaseState, Observation
@@ -61,7 +61,7 @@ def tipping(time: float, toward: float, tilt: float, yaw: float = 0.0) -> Observ
 def test_it_says_to_which_side_whatever_the_heading(toward: float, yaw: float) -> None:
     watch = predictor()
     for tick in range(3):
-        watch.look(tipping(0.004 * tick, radians(toward), 1.2, yaw))
+        watch.update(tipping(0.004 * tick, radians(toward), 1.2, yaw))
     assert watch.toward is not None
     off = watch.toward - radians(toward)
     assert abs(atan2(sin(off), cos(off))) < pi / 6
@@ -69,15 +69,15 @@ def test_it_says_to_which_side_whatever_the_heading(toward: float, yaw: float) -
 
 def test_one_sample_of_noise_is_no_fall_and_a_fall_is_not_taken_back() -> None:
     watch = predictor()
-    assert not watch.look(tipping(0.0, 0.0, 1.2))
-    assert not watch.look(tipping(0.004, 0.0, 0.0))
-    assert not watch.look(tipping(0.008, 0.0, 1.2))
-    assert watch.look(tipping(0.016, 0.0, 1.2))
-    assert watch.look(tipping(0.020, 0.0, 0.0))
+    assert not watch.update(tipping(0.0, 0.0, 1.2))
+    assert not watch.update(tipping(0.004, 0.0, 0.0))
+    assert not watch.update(tipping(0.008, 0.0, 1.2))
+    assert watch.update(tipping(0.016, 0.0, 1.2))
+    assert watch.update(tipping(0.020, 0.0, 0.0))
     watch.reset()
-    assert not watch.look(tipping(0.024, 0.0, 0.0))
+    assert not watch.update(tipping(0.024, 0.0, 0.0))
 
 
 def test_without_a_base_it_says_what_to_do() -> None:
     with pytest.raises(StateMissingError, match="--no-protect"):
-        predictor().look(observed(0.0))
+        predictor().update(observed(0.0))

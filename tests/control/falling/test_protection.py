@@ -7,10 +7,18 @@ import numpy as np
 import pytest
 
 from tests.control.biped import DT, model, observed, soles
-from windup.control.kinematics.body import Body
 from windup.control.falling.fall import FallPredictor
+from windup.control.falling.protection import (
+    EFFORT,
+    LONGEST,
+    REST,
+    FallWay,
+    Phase,
+    Protected,
+    bounded,
+)
+from windup.control.kinematics.body import Body
 from windup.control.motions.play import PoseHolder
-from windup.control.falling.protection import EFFORT, LONGEST, REST, FallWay, Phase, Protected, bounded
 from windup.hal.command import joint_torque
 from windup.hal.joints import Array, Joint, Joints
 from windup.hal.observation import BaseState, Observation

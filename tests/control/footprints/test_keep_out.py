@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from shapely import Point, Polygon, box
 
+from windup.control.footprints.keep_out import KeepOutRegions, grown, placed, shadow
 from windup.control.kinematics.limb_ik import Pose
-from windup.control.footprints.keep_out import NoStep, grown, placed, shadow
 from windup.control.kinematics.rotation import turn
 from windup.hal.errors import UsageError
 
 SOLE = np.array([[x, y] for x in (-0.06, 0.06) for y in (-0.03, 0.03)])
 
 
-def stand(no_step: NoStep, yaw: float = 0.0) -> None:
+def stand(no_step: KeepOutRegions, yaw: float = 0.0) -> None:
     """Let two feet stand 0.1 m apart about (1, 2), turned by `yaw` rad."""
     turned = turn(yaw)
     feet = [Pose(np.array([1.0, 2.0, 0.0]) + turned @ [0.0, y, 0.0], turned) for y in (0.05, -0.05)]
@@ -35,7 +35,7 @@ def test_the_notch_of_a_bent_region_stays_free() -> None:
 
 
 def test_regions_lie_where_the_robot_started_and_how_it_faced() -> None:
-    no_step = NoStep([box(0.2, -0.01, 0.3, 0.01)])
+    no_step = KeepOutRegions([box(0.2, -0.01, 0.3, 0.01)])
     stand(no_step, np.pi / 2)
     (there,) = no_step.here
     assert there.bounds == pytest.approx((0.99, 2.2, 1.01, 2.3))
@@ -54,7 +54,7 @@ def test_a_foot_that_comes_down_short_of_its_target_does_not_do_so_in_a_hole() -
 
 
 def test_holes_follow_the_heading_of_the_foot_and_where_it_starts() -> None:
-    no_step = NoStep([box(0.2, -1.0, 0.3, 1.0)])
+    no_step = KeepOutRegions([box(0.2, -1.0, 0.3, 1.0)])
     stand(no_step)
     start = np.array([1.0, 2.0])
     (along,) = no_step.holes(0, 0.0, start)
@@ -67,7 +67,7 @@ def test_holes_follow_the_heading_of_the_foot_and_where_it_starts() -> None:
 
 
 def test_who_forbids_nothing_has_no_holes() -> None:
-    no_step = NoStep()
+    no_step = KeepOutRegions()
     stand(no_step)
     assert not no_step
     assert no_step.holes(0, 0.0, np.zeros(2)) == []
@@ -75,4 +75,4 @@ def test_who_forbids_nothing_has_no_holes() -> None:
 
 def test_who_stands_on_forbidden_ground_is_told() -> None:
     with pytest.raises(UsageError, match="forbidden ground at the start"):
-        stand(NoStep([box(-0.1, -0.1, 0.1, 0.1)]))
+        stand(KeepOutRegions([box(-0.1, -0.1, 0.1, 0.1)]))

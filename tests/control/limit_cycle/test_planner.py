@@ -6,15 +6,15 @@ import pytest
 
 from windup.control.limit_cycle.balancer import Balancer
 from windup.control.limit_cycle.planner import StepPlanner, StepRequest
-from windup.control.regulation.disturbance_detector import Shaken
+from windup.control.regulation.disturbance_detector import DisturbanceDetector
 from windup.hal.controller import RolloutStart
 from windup.hal.joints import Array
 from windup.robots import load_robot
 from windup.sim_twin.backend import TwinBackend
 from windup.sim_twin.twin import Twin
 from windup.tools.assembly.build import build_walk
-from windup.tools.robot.robot import Robot
 from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.robot.robot import Robot
 
 LATENCY = 0.06
 
@@ -62,7 +62,7 @@ class Late:
         return 0.1 * number * np.ones(4)
 
 
-def walk(planner: Late, steps: int, shaken: Shaken | None = None) -> Balancer:
+def walk(planner: Late, steps: int, shaken: DisturbanceDetector | None = None) -> Balancer:
     with Robot.open("op3") as robot:
         walker = build_walk(robot.description, WalkOptions(), robot.predictor)
         walker.planner, walker.shaken = planner, shaken
@@ -96,7 +96,9 @@ def test_answers_that_are_late_or_never_come_are_counted() -> None:
 
 def test_a_step_planned_again_keeps_its_scalings_and_its_beginning_until_the_answer() -> None:
     planner = Late()
-    walker = walk(planner, 4, Shaken(threshold=0.0))  # every state but those never seen
+    walker = walk(
+        planner, 4, DisturbanceDetector(threshold=0.0)
+    )  # every state but those never seen
     assert walker.replans > 0
     assert len(planner.requests) == 5 + walker.replans
     pairs = list(pairwise(planner.requests))

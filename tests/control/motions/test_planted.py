@@ -42,7 +42,7 @@ def told(robot: RobotDescription, read: Reading, *, hangs: bool = False) -> str 
         pose = middle + share * (robot.stance - middle)
         up = where.soles(pose[None])[0][0].mean(axis=0)
         up = np.array([0.05, 0.0, 1.0]) if hangs else up
-        if (wrong := watch.look(seen(read(pose), up / np.linalg.norm(up)))) is not None:
+        if (wrong := watch.update(seen(read(pose), up / np.linalg.norm(up)))) is not None:
             return wrong
     return None
 
@@ -114,4 +114,4 @@ def test_without_an_attitude_nothing_is_judged(op3: RobotDescription) -> None:
     watch = Planted(op3.joints, legs(op3))
     blind = seen(flipped(op3, "l_knee")(op3.stance), np.array([0.0, 0.0, 1.0]))
     object.__setattr__(blind, "base", None)
-    assert all(watch.look(blind) is None for _ in range(50))
+    assert all(watch.update(blind) is None for _ in range(50))

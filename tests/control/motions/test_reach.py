@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from tests.small_world import CONTACTS, JOINTS, L_TOE, R_HEEL, N, observation
-from windup.control.pose_graph.gait_file import Reach
 from windup.control.motions.reach import Condition, lean
+from windup.control.pose_graph.gait_file import Reach
 from windup.hal.errors import StateMissingError
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState, Observation

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tests.small_world import CONTACTS, JOINTS, N, gait, observation
-from windup.control.pose_graph.gait_file import Upright
 from windup.control.motions.staged import StagedPlayer
 from windup.control.motions.upright import UprightFeedback
+from windup.control.pose_graph.gait_file import Upright
 from windup.hal.errors import ConfigError, StateMissingError
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState, Observation

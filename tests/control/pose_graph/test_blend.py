@@ -8,7 +8,7 @@ import pytest
 
 from windup.control.pose_graph.blend import blend_name, with_blend
 from windup.control.pose_graph.gait import Gait
-from windup.control.pose_graph.style import Spell, Styling
+from windup.control.pose_graph.style import StyleInterval, Styling
 from windup.hal.errors import ConfigError
 from windup.robots import load_robot
 from windup.tools.assembly.gaits import find_gait
@@ -33,7 +33,7 @@ def test_a_blend_is_linear_between_two_gaits(walk: Gait, amount: float) -> None:
     other = hasty(walk)
     blend = with_blend(walk, other)
     name = blend_name(other.name)
-    styling = Styling(blend, spells=(Spell(name, amount),))
+    styling = Styling(blend, spells=(StyleInterval(name, amount),))
     for step in range(40):
         styling.begin_step(0.2 * step)
     scale = styling.scale()
@@ -47,7 +47,7 @@ def test_a_blend_is_linear_between_two_gaits(walk: Gait, amount: float) -> None:
 
 def test_a_blend_comes_in_step_by_step_and_leaves_the_gait_as_it_was(walk: Gait) -> None:
     blend = with_blend(walk, hasty(walk))
-    styling = Styling(blend, spells=(Spell("blend hasty", 1.0),))
+    styling = Styling(blend, spells=(StyleInterval("blend hasty", 1.0),))
     styling.begin_step(0.0)
     assert 0.0 < styling.scale()[blend.index("blend hasty")] < 0.1
     assert blend.graph is walk.graph

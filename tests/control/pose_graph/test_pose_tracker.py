@@ -6,9 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.small_world import AIR, CONTACTS, JOINTS, L_TOE, R_HEEL, R_TOE, N, gait, policy_state
+from windup.control.limit_cycle.policy import StepPolicy
 from windup.control.pose_graph.gait import Gait
 from windup.control.pose_graph.goal_limits import GoalLimits
-from windup.control.limit_cycle.policy import StepPolicy
 from windup.control.pose_graph.pose_tracker import PoseTracker, TrackerState
 from windup.control.pose_graph.torso_servo import TorsoServo
 from windup.hal.joints import Array

@@ -3,8 +3,8 @@ from math import radians
 import numpy as np
 import pytest
 
-from windup.control.steering.course import Course
 from windup.control.pose_graph.gait_file import Heading, Turn
+from windup.control.steering.course import Course
 from windup.control.steering.guide import WalkCommand
 
 

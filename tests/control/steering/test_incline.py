@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from windup.control.pose_graph.gait_file import Incline
-from windup.control.steering.incline import InclineControl
 from windup.control.regulation.step_record import StepRecord
+from windup.control.steering.incline import InclineControl
 
 LAW = Incline(perturbation="incline", gain=40.0, limit=5.0)
 

@@ -7,7 +7,14 @@ import pytest
 
 from windup.control.steering.course import wrapped
 from windup.control.steering.guide import Guide, Place
-from windup.control.steering.navigation import Agility, PathFollower, PointFollower, checked, circle, square
+from windup.control.steering.navigation import (
+    Agility,
+    PathFollower,
+    PointFollower,
+    checked,
+    circle,
+    square,
+)
 from windup.hal.errors import UsageError
 from windup.hal.joints import Array
 from windup.tools.assembly.route import read_path

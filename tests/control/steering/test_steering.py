@@ -5,12 +5,12 @@ from math import pi, radians
 
 import pytest
 
-from windup.control.steering.course import Course
 from windup.control.pose_graph.gait import Gait
 from windup.control.pose_graph.gait_file import Heading, Side, Style, Turn
+from windup.control.pose_graph.style import StyleInterval, Styling
+from windup.control.steering.course import Course
 from windup.control.steering.guide import WalkCommand
 from windup.control.steering.side import SideControl
-from windup.control.pose_graph.style import Spell, Styling
 from windup.hal.errors import UnknownNameError, UsageError
 from windup.robots import load_robot
 from windup.tools.assembly.gaits import find_gait
@@ -103,7 +103,7 @@ def test_a_style_that_is_not_there_or_too_much_is_refused(gait: Gait) -> None:
 
 def test_a_spell_comes_in_and_goes_out_by_the_ramp_of_its_style(gait: Gait) -> None:
     low = Style(name="low", scale={"crouch": 4.0}, steps=2)
-    styling = Styling(with_file(gait, style=[low]), spells=(Spell("low", 1.0, 1.0, 3.0),))
+    styling = Styling(with_file(gait, style=[low]), spells=(StyleInterval("low", 1.0, 1.0, 3.0),))
     seen = []
     for time in range(10, 17):
         styling.begin_step(float(time))
@@ -113,13 +113,13 @@ def test_a_spell_comes_in_and_goes_out_by_the_ramp_of_its_style(gait: Gait) -> N
 
 def test_a_spell_outside_the_range_of_its_style_is_refused(gait: Gait) -> None:
     with pytest.raises(UsageError, match="style crouch=40 is outside its range"):
-        Styling(gait, spells=(Spell("crouch", 40.0, 5.0),))
+        Styling(gait, spells=(StyleInterval("crouch", 40.0, 5.0),))
 
 
 def test_spells_are_read_with_and_without_amount_and_times() -> None:
-    assert spell("duck", "--style") == Spell("duck", 1.0)
-    assert spell("duck=-2@5", "--style") == Spell("duck", -2.0, 5.0)
-    assert spell("duck=1@5:12", "--style") == Spell("duck", 1.0, 5.0, 12.0)
+    assert spell("duck", "--style") == StyleInterval("duck", 1.0)
+    assert spell("duck=-2@5", "--style") == StyleInterval("duck", -2.0, 5.0)
+    assert spell("duck=1@5:12", "--style") == StyleInterval("duck", 1.0, 5.0, 12.0)
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from windup.control.stepping.footing import Footing
 from windup.control.kinematics.rotation import turn
+from windup.control.stepping.footing import Footing
 from windup.hal.errors import StateMissingError
 from windup.hal.observation import BaseState, JointState, Observation
 from windup.robots import load_robot
@@ -40,7 +40,7 @@ def footing() -> Footing:
 
 
 def test_in_its_stance_the_base_is_at_home_over_flat_soles(footing: Footing) -> None:
-    footing.look(seen(place=(0.3, -0.1)))
+    footing.update(seen(place=(0.3, -0.1)))
     assert footing.home(footing.planted()) == pytest.approx([0.3, -0.1], abs=2e-3)
     assert footing.down == [True, True]
     assert [foot.position[2] for foot in footing.feet] == pytest.approx([0.0, 0.0], abs=1e-3)
@@ -50,7 +50,7 @@ def test_in_its_stance_the_base_is_at_home_over_flat_soles(footing: Footing) -> 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.8, -2.0])
 def test_standing_as_it_stands_changes_no_joint(footing: Footing, yaw: float) -> None:
-    footing.look(seen(yaw))
+    footing.update(seen(yaw))
     goals, planted = STANCE.copy(), footing.planted()
     for foot in (0, 1):
         base = footing.upright(footing.home(planted), planted.front)
@@ -61,19 +61,19 @@ def test_standing_as_it_stands_changes_no_joint(footing: Footing, yaw: float) ->
 @pytest.mark.parametrize("yaw", [0.0, 1.0])
 def test_a_foot_comes_where_it_is_put(footing: Footing, yaw: float) -> None:
     observation = seen(yaw)
-    footing.look(observation)
+    footing.update(observation)
     at = np.append(footing.places[0], 0.03) + turn(yaw) @ [0.03, 0.01, 0.0]
     goals = STANCE.copy()
     for _ in range(10):
         footing.put(goals, 0, at, yaw, footing.base)
     observation.joints.position[:] = goals
-    footing.look(observation)
+    footing.update(observation)
     assert footing.feet[0].position == pytest.approx(at, abs=2e-3)
     assert footing.down == [False, True]
 
 
 def test_ahead_goes_on_as_the_base_does(footing: Footing) -> None:
-    footing.look(seen(drift=0.5))
+    footing.update(seen(drift=0.5))
     assert footing.ahead(0.1).position == pytest.approx([0.05, 0.0, footing.height])
     turned = footing.ahead(0.1).rotation
     assert turned == pytest.approx(footing.base.rotation)
@@ -82,11 +82,11 @@ def test_ahead_goes_on_as_the_base_does(footing: Footing) -> None:
 def test_without_a_base_nobody_knows_where_the_feet_are(footing: Footing) -> None:
     blind = seen()
     with pytest.raises(StateMissingError, match="--state estimated"):
-        footing.look(Observation(0.0, blind.joints, None, blind.contacts, None))
+        footing.update(Observation(0.0, blind.joints, None, blind.contacts, None))
 
 
 def test_circles_support_as_much_as_the_soles_do(footing: Footing) -> None:
-    footing.look(seen())
+    footing.update(seen())
     hull, centre = footing.support((0,)).shape.area, footing.places[0]
     footing.rounded = True
     assert footing.support((0,)).shape.area == pytest.approx(hull, rel=0.01)

@@ -3,6 +3,7 @@ import pytest
 import shapely
 
 from windup.control.kinematics.momenta import Momenta, capture_point
+from windup.control.kinematics.support import SupportRegion
 from windup.control.stepping.step_decision import (
     RULES,
     Placement,
@@ -15,7 +16,6 @@ from windup.control.stepping.step_decision import (
     place,
     trigger_point,
 )
-from windup.control.kinematics.support import SupportRegion
 from windup.hal.errors import UnknownNameError
 
 FEET = np.array([[0.0, 0.05], [0.0, -0.05]])

@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 
 from tests.control.stepping.test_footing import OP3, seen
-from windup.control.stride.pendulum import Order
+from windup.control.stride.pendulum import VelocityCommand
 from windup.control.stride.strider import Phase, Strider
 from windup.hal.observation import Observation
 from windup.tools.assembly.build import body_of
-from windup.tools.behaviours.directed import limbs_of
 from windup.tools.assembly.stepping import stepping_stance
+from windup.tools.behaviours.directed import limbs_of
 from windup.tools.behaviours.striding import find_stride
 
 TICK = 0.004
 HOW = find_stride(OP3)
 
 
-def strider(order: Order) -> Strider:
+def strider(order: VelocityCommand) -> Strider:
     body, stance = body_of(OP3), stepping_stance(OP3)
     return Strider(OP3.joints, body, OP3.base, limbs_of(OP3, body), stance, lambda _: order, HOW)
 
@@ -33,7 +33,7 @@ def play(robot: Strider, still: Observation, seconds: float) -> list[Phase]:
 
 
 def test_who_has_no_order_stands() -> None:
-    robot, still = strider(Order()), seen()
+    robot, still = strider(VelocityCommand()), seen()
     robot.reset(still)
     assert set(play(robot, still, 1.0)) == {"stand"}
     assert robot.steps == 0
@@ -41,22 +41,22 @@ def test_who_has_no_order_stands() -> None:
 
 @pytest.mark.parametrize(("heading", "foot"), [(0.5 * np.pi, 0), (-0.5 * np.pi, 1)])
 def test_the_foot_on_the_side_that_it_goes_to_steps_first(heading: float, foot: int) -> None:
-    robot, still = strider(Order(0.1, heading)), seen()
+    robot, still = strider(VelocityCommand(0.1, heading)), seen()
     robot.reset(still)
     phases = play(robot, still, HOW.begin + HOW.single + HOW.double - 0.02)
     assert list(dict.fromkeys(phases)) == ["shift", "swing", "land"]
     assert phases.count("swing") == pytest.approx(HOW.single / TICK, abs=2)
-    robot, still = strider(Order(0.1, heading)), seen()
+    robot, still = strider(VelocityCommand(0.1, heading)), seen()
     robot.reset(still)
     play(robot, still, HOW.begin + 0.3 * HOW.single)
     aim = robot.plan(HOW.begin + 0.3 * HOW.single, TICK)
     assert aim.flying == foot
-    assert aim.share == float(1 - foot)
+    assert aim.right_load == float(1 - foot)
     assert robot.flying(foot).position[2] > 0.01
 
 
 def test_a_sole_follows_the_ground_that_the_other_one_feels() -> None:
-    robot, still = strider(Order(0.1)), seen()
+    robot, still = strider(VelocityCommand(0.1)), seen()
     robot.reset(still)
     ankle = [OP3.joints.names.index(f"{side}_ank_pitch") for side in "lr"]
     still.joints.position[ankle] += np.array([0.05, -0.05])  # both soles tilt alike

@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from windup.control.whole_body.dynamics import Dynamics
 from windup.control.kinematics.momenta import GRAVITY
+from windup.control.whole_body.dynamics import Dynamics
 from windup.control.whole_body.whole_body import FASTEST, Objectives, Weights, WholeBody
 from windup.hal.observation import BaseState, JointState, Observation
 from windup.robots import load_robot
@@ -24,7 +24,7 @@ def seen() -> Observation:
 def dynamics() -> Dynamics:
     feet = [foot.site for foot in HUMAN.feet]
     dynamics = Dynamics(HUMAN.spec().compile(), HUMAN.base, feet)
-    dynamics.look(seen())
+    dynamics.update(seen())
     return dynamics
 
 

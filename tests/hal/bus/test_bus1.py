@@ -2,10 +2,10 @@ import pytest
 
 from tests.hal.fake_bus1 import AX, MX, SCS, STS, fake_port1
 from windup.hal.bus.bus import Bus
-from windup.hal.errors import HardwareError, UsageError
-from windup.hal.bus.transactions import TURNAROUND
-from windup.hal.families import DYNAMIXEL_1, FEETECH_SCS, FEETECH_STS
 from windup.hal.bus.feetech_middle import set_middle
+from windup.hal.bus.transactions import TURNAROUND
+from windup.hal.errors import HardwareError, UsageError
+from windup.hal.families import DYNAMIXEL_1, FEETECH_SCS, FEETECH_STS
 from windup.hal.protocols import protocol1
 from windup.hal.protocols.protocol1 import Instruction
 from windup.hal.protocols.protocol2 import Span

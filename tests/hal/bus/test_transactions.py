@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from tests.hal.fake_bus import FakeSerial, fake_port
-from windup.hal.bus.transactions import DOUBTS, STILL_COMING, TURNAROUND, Exchange
+from windup.hal.bus.transactions import DOUBTS, STILL_COMING, TURNAROUND, BusTransactions
 from windup.hal.port.port import Port
 from windup.hal.protocols import protocol2
 from windup.hal.protocols.batched import BlockRead
@@ -11,14 +11,14 @@ from windup.hal.protocols.protocol2 import Span
 IDS = list(range(1, 21))
 
 
-def exchange_of(serial: FakeSerial, port: Port) -> Exchange:
+def exchange_of(serial: FakeSerial, port: Port) -> BusTransactions:
     serial.latency = port.latency = 1e-3
-    exchange = Exchange(port)
+    exchange = BusTransactions(port)
     exchange.turnaround = TURNAROUND
     return exchange
 
 
-def cycle(exchange: Exchange, read: BlockRead) -> float:
+def cycle(exchange: BusTransactions, read: BlockRead) -> float:
     start = exchange.port.clock.now()
     exchange.request(read)
     exchange.collect()

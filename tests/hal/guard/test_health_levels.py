@@ -5,8 +5,8 @@ import pytest
 
 from windup.hal.guard import HealthLevels, Kind
 from windup.hal.guard.levels import defaults
-from windup.hal.servos.servo_model import ServoMount
 from windup.hal.servos import servo_model, servo_names
+from windup.hal.servos.servo_model import ServoMount
 from windup.robots import load_robot, robot_names
 
 SUPPLIES = {

@@ -116,7 +116,7 @@ def test_a_supply_that_all_share_is_one_warning() -> None:
     judge = watch()
     for observation in stretch(1.0):
         observation.joints.voltage[:] = [10.6, 10.5, 10.7]
-        assert judge.look(observation) is None
+        assert judge.update(observation) is None
     (warning,) = judge.warnings
     assert str(warning) == "hip, knee and ankle were on 10.5 V (warning below 10.8)"
     assert warning.count == 3
@@ -130,8 +130,8 @@ def test_a_clock_that_begins_again_begins_the_watch_again() -> None:
 
 def test_a_look_after_a_long_while_counts_for_a_tick() -> None:
     judge = watch()
-    assert judge.look(seen(0.0)) is None
-    assert judge.look(seen(60.0, torque=STALL), goal(0.3)) is None
+    assert judge.update(seen(0.0)) is None
+    assert judge.update(seen(60.0, torque=STALL), goal(0.3)) is None
     assert judge.warnings == []
 
 
@@ -147,7 +147,7 @@ values = st.fixed_dictionaries(
 
 def verdicts(run: list[Observation]) -> list[str]:
     judge = watch()
-    found = [str(judge.look(observation, goal(0.3))) for observation in run]
+    found = [str(judge.update(observation, goal(0.3))) for observation in run]
     records = [warning.record() for warning in judge.warnings]
     return [*found, *(str(record | {"since": record["since"] - run[0].time}) for record in records)]
 

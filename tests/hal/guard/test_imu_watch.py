@@ -75,7 +75,7 @@ def test_a_gyroscope_that_jumps_is_found_within_an_eighth_of_a_second(
 def test_a_jump_is_doubted_from_its_first_sample_and_forgotten_when_it_was_one() -> None:
     watch = ImuWatch()
     assert found(watch, still(1.0)) is None
-    watch.look(seen(1.0, (3.0, 0.0, 0.0)))
+    watch.update(seen(1.0, (3.0, 0.0, 0.0)))
     assert watch.gyro.doubted
     assert found(watch, still(1.0, 1.0 + DT)) is None
     assert not watch.gyro.doubted and watch.warnings == []
@@ -186,7 +186,7 @@ def test_a_warning_has_its_worst_value_and_how_often_it_began() -> None:
     watch = ImuWatch()
     for begin in (0.0, 2.0, 4.0):
         for k in range(40 + int(begin)):
-            watch.look(seen(begin + k * DT, age=k * DT))
+            watch.update(seen(begin + k * DT, age=k * DT))
         found(watch, still(2.0 - 60 * DT, begin + 60 * DT))
     (warning,) = watch.warnings
     assert warning.record() | {"since": 0.0} == {
@@ -222,4 +222,4 @@ def test_a_verdict_depends_on_nothing_but_the_observations(
             run.append(seen(len(run) * DT, (0.0, rate, 0.0), felt, age=age, joint=len(run) * DT))
     shifted = [replace(observation, time=observation.time + later) for observation in run]
     here, there = ImuWatch(), ImuWatch()
-    assert [str(here.look(o)) for o in run] == [str(there.look(o)) for o in shifted]
+    assert [str(here.update(o)) for o in run] == [str(there.update(o)) for o in shifted]

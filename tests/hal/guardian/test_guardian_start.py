@@ -15,8 +15,8 @@ from windup.hal.errors import HardwareError, PortError
 from windup.hal.guardian import handle
 from windup.hal.guardian.handle import Guardian
 from windup.hal.guardian.launch import launch
-from windup.hal.port.lock import AdapterLock
 from windup.hal.guardian.order import Order
+from windup.hal.port.lock import AdapterLock
 
 
 def free(path: Path) -> bool:

@@ -11,8 +11,8 @@ from windup.hal.command import JointCommand
 from windup.hal.coupling import Coupling
 from windup.hal.errors import ConfigError, HardwareError
 from windup.hal.protocols.protocol1 import Instruction
-from windup.hal.servos.servo_model import ServoModel
 from windup.hal.servos import servo_model
+from windup.hal.servos.servo_model import ServoModel
 
 XM = servo_model("XM430-W350")
 STS12 = servo_model("STS3215-12V")

@@ -11,9 +11,9 @@ from scservo_sdk.protocol_packet_handler import protocol_packet_handler
 from tests.hal.fake_bus1 import MX, SCS, STS, fake_port1
 from windup.hal.errors import CorruptAnswerError, NoAnswerError, PortError, RefusedError, UsageError
 from windup.hal.families import DYNAMIXEL_1, FEETECH_SCS, FEETECH_STS, Family
+from windup.hal.families.configurator import SdkPort
 from windup.hal.protocols import protocol1
 from windup.hal.protocols.protocol2 import Span
-from windup.hal.families.configurator import SdkPort
 from windup.hal.servos.servo_model import ServoModel
 
 IDS = [1, 2, 3]

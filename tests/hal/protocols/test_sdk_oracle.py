@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from tests.hal.fake_bus import fake_port
 from windup.hal.errors import CorruptAnswerError, NoAnswerError, PortError, RefusedError
+from windup.hal.families.configurator import DynamixelConfigurator, SdkPackets, SdkPort
 from windup.hal.protocols import protocol2
 from windup.hal.protocols.crc16 import crc16
-from windup.hal.families.configurator import DynamixelLink, SdkPackets, SdkPort
 
 IDS = [1, 2, 3]
 HEADER_IN_DATA = bytes.fromhex("fffffd00")
@@ -60,7 +60,7 @@ def test_the_repaired_handler_stuffs_what_it_sends(handler: Any) -> None:
 @given(st.lists(st.sampled_from([0xFF, 0xFD, 0]), min_size=8, max_size=8).map(bytes))
 def test_a_payload_full_of_headers_survives_the_link(data: bytes) -> None:
     _, port = fake_port(IDS)
-    link = DynamixelLink(port)
+    link = DynamixelConfigurator(port)
     link.write(1, 200, data)
     assert link.read(1, 200, 8) == data
 
@@ -70,7 +70,7 @@ def test_time_passes_on_the_ports_clock_only() -> None:
     serial.silent.add(1)
     before = serial.clock.now()
     with pytest.raises(NoAnswerError, match=r"no answer from id 1 on fake://bus at 1000000 baud"):
-        DynamixelLink(port).ping(1)
+        DynamixelConfigurator(port).ping(1)
     assert 0.0 < serial.clock.now() - before < 0.1
 
 
@@ -78,25 +78,25 @@ def test_two_servos_with_one_id_are_named_as_such() -> None:
     serial, port = fake_port(IDS)
     serial.spoil = lambda id, frame: bytes([*frame[:-3], frame[-3] ^ 4, *frame[-2:]])
     with pytest.raises(CorruptAnswerError, match="two servos with this id"):
-        DynamixelLink(port).ping(2)
+        DynamixelConfigurator(port).ping(2)
 
 
 def test_a_refusal_says_why() -> None:
     serial, port = fake_port(IDS)
     serial.error[2] = 7
     with pytest.raises(RefusedError, match=r"id 2 on fake://bus says the register is locked"):
-        DynamixelLink(port).write(2, 9, b"\x00")
+        DynamixelConfigurator(port).write(2, 9, b"\x00")
 
 
 def test_an_alert_is_no_refusal() -> None:
     serial, port = fake_port(IDS)
     serial.error[2] = 0x80
-    assert DynamixelLink(port).ping(2) == 1020
+    assert DynamixelConfigurator(port).ping(2) == 1020
 
 
 def test_an_exception_leaves_the_port_usable() -> None:
     serial, port = fake_port(IDS)
-    link = DynamixelLink(port)
+    link = DynamixelConfigurator(port)
     read, serial.read = serial.read, _unplugged  # type: ignore[method-assign]
     with pytest.raises(PortError, match="went away"):
         link.ping(1)
@@ -110,7 +110,7 @@ def test_the_answer_of_another_id_is_skipped() -> None:
     serial.spoil = lambda id, frame: stranger + frame
     serial.put(1, 132, 77, 4)
     before = serial.clock.now()
-    assert DynamixelLink(port).read(1, 132, 4) == bytes([77, 0, 0, 0])
+    assert DynamixelConfigurator(port).read(1, 132, 4) == bytes([77, 0, 0, 0])
     assert serial.clock.now() - before < 2e-3
 
 

@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 
 from tests.hal.fake_bus1 import SCS, STS
 from tests.hal.mixed_robot import Wires, mount, robot, ticks
-from windup.hal.servo_bus.plausibility import Plausibility
 from windup.hal.protocols import protocol1
+from windup.hal.servo_bus.plausibility import Plausibility
 
 YES = np.array([True])
 

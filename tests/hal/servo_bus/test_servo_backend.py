@@ -8,8 +8,8 @@ from tests.hal.fake_bus import VirtualClock, fake_port
 from windup.hal.command import JointCommand
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
-from windup.hal.servos.servo_model import ServoMount
 from windup.hal.servos import servo_model
+from windup.hal.servos.servo_model import ServoMount
 
 
 def test_counts_become_joint_angles_with_sign_and_zero() -> None:

@@ -9,9 +9,9 @@ from windup.hal.command import JointCommand
 from windup.hal.errors import HardwareError
 from windup.hal.families import family_of
 from windup.hal.servo_bus.servo_backend import ServoBackend
-from windup.hal.servos.servo_model import ServoModel
 from windup.hal.servo_bus.servo_torque import INRUSH, OFF_TIME
 from windup.hal.servos import servo_model
+from windup.hal.servos.servo_model import ServoModel
 
 XM = servo_model("XM430-W350")
 MAKES = [XM, STS, SCS, AX, MX]

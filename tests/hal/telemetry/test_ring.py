@@ -13,8 +13,8 @@ from windup.hal.errors import TelemetryError
 from windup.hal.guard import GuardedBackend, SafetyLimits
 from windup.hal.joints import Joint, Joints
 from windup.hal.observation import BaseState, ImuState, JointState, Observation
-from windup.hal.telemetry.ring import TelemetryReader, TelemetryWriter
 from windup.hal.telemetry.layout import FIXED, ring_path
+from windup.hal.telemetry.ring import TelemetryReader, TelemetryWriter
 from windup.hal.torque_state import TorqueState
 
 JOINTS = Joints(tuple(Joint(name, -1.0, 1.0, 10.0, 1.0) for name in ("hip", "knee")))

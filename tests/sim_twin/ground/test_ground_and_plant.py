@@ -6,13 +6,13 @@ import pytest
 
 from windup.robots import RobotDescription, load_robot
 from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.environment import Environment, build_model
 from windup.sim_twin.ground.clearance import FootClearance
 from windup.sim_twin.ground.foot_level import FootLevel
+from windup.sim_twin.ground.terrain import Ground
 from windup.sim_twin.plant import Plant
 from windup.sim_twin.push import Push
-from windup.sim_twin.ground.terrain import Ground
 from windup.sim_twin.twin import Twin
-from windup.sim_twin.environment import World, build_model
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ GROUNDS = [
 
 @pytest.mark.parametrize("ground", GROUNDS)
 def test_the_tiles_are_as_high_as_the_ground_says(op3: RobotDescription, ground: Ground) -> None:
-    model = build_model(op3, world=World(ground))
+    model = build_model(op3, world=Environment(ground))
     for x in (-1.0, 0.3, 0.7, 2.1, 5.05):
         assert ray_height(model, x) == pytest.approx(ground.height(x, 5.0), abs=1e-6)
 
@@ -58,12 +58,12 @@ def test_stairs_go_up_by_their_height_and_rough_ground_to_both_sides() -> None:
 
 
 def test_flat_ground_changes_nothing(op3: RobotDescription) -> None:
-    assert build_model(op3).ngeom == build_model(op3, world=World(Ground())).ngeom
+    assert build_model(op3).ngeom == build_model(op3, world=Environment(Ground())).ngeom
 
 
 def test_a_plant_changes_mass_gains_friction_delay_and_supply(op3: RobotDescription) -> None:
     plant = Plant(1.1, friction_loss=0.2, delay=0.016, floor=0.6, mass=1.05, supply=11.0)
-    twin, nominal = Twin(op3, world=World(plant=plant)), Twin(op3)
+    twin, nominal = Twin(op3, world=Environment(plant=plant)), Twin(op3)
     ratio = twin.model.body_mass.sum() / nominal.model.body_mass.sum()
     assert ratio == pytest.approx(1.05)
     assert twin.delay == 0.016 and twin.supply == 11.0
@@ -76,7 +76,7 @@ def test_a_plant_is_stiffer_whatever_gains_are_sent(op3: RobotDescription) -> No
 
     command = JointCommand.hold(op3.joints, op3.stance)
     usual = TwinBackend(Twin(op3)).write(command).stiffness
-    stiff = TwinBackend(Twin(op3, world=World(plant=Plant(1.2)))).write(command).stiffness
+    stiff = TwinBackend(Twin(op3, world=Environment(plant=Plant(1.2)))).write(command).stiffness
     assert stiff == pytest.approx(1.2 * usual)
 
 
@@ -99,15 +99,15 @@ def test_a_random_plant_has_the_servos_of_its_robot() -> None:
 def test_crossed_legs_touch_only_when_they_may_collide(name: str) -> None:
     robot = load_robot(name)
     for collide in (False, True):
-        twin = Twin(robot, world=World(self_collision=collide))
+        twin = Twin(robot, world=Environment(self_collision=collide))
         clearance = FootClearance(robot, twin.model, twin.data)
-        assert clearance.look() > 0.0
+        assert clearance.update() > 0.0
         roll = robot.joints.index("l_hip_roll")
         inward = 0.2
         twin.data.qpos[2] += 1.0
         twin.data.qpos[7 + roll] = inward
         mujoco.mj_forward(twin.model, twin.data)
-        assert clearance.look() < 0.0
+        assert clearance.update() < 0.0
         assert (twin.data.ncon > 0) == collide
     assert clearance.smallest < 0.0
 

@@ -9,7 +9,7 @@ def test_feet_may_touch_and_are_not_noted() -> None:
     watch = TouchWatch(robot, twin.model, twin.data)
     for _ in range(50):
         twin.step(1)
-        watch.look()
+        watch.update()
     assert watch.touched == []
 
 
@@ -20,7 +20,7 @@ def test_what_a_lying_robot_lies_on_is_noted_once() -> None:
     watch = TouchWatch(robot, twin.model, twin.data)
     for _ in range(400):
         twin.step(1)
-        watch.look()
+        watch.update()
     assert watch.touched
     assert len(watch.touched) == len(set(watch.touched))
     assert not {foot.body for foot in robot.feet} & set(watch.touched)

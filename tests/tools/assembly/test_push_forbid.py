@@ -7,11 +7,11 @@ from pathlib import Path
 import mujoco
 import pytest
 
-from windup.tools.cli import run
 from windup.tools.assembly.forbid import forbidden
-from windup.tools.behaviours.landings import Landings, landings_said
-from windup.tools.robot.robot import Robot
 from windup.tools.assembly.stepping import footing_of, stepping_stance
+from windup.tools.behaviours.landings import Landings, format_landings
+from windup.tools.cli import run
+from windup.tools.robot.robot import Robot
 
 LINE = ["push", "op3", "--impulse", "1.8"]
 
@@ -40,12 +40,12 @@ def test_a_foot_that_comes_down_on_forbidden_ground_is_seen() -> None:
         for time, way in ((0.0, 0.0), (0.1, 0.01), (0.2, 0.05)):
             twin.data.qpos[0] += way
             mujoco.mj_forward(twin.model, twin.data)
-            watch.look(replace(seen, time=time))
+            watch.update(replace(seen, time=time))
     assert [fall["foot"] for fall in watch.falls] == ["left_foot", "right_foot"] * 2
     assert [fall["forbidden"] for fall in watch.falls] == [False, False, True, False]
     record = watch.record()
     assert (record["landed_forbidden"], record["on_forbidden"]) == (1, ["left_foot"])
-    assert landings_said(record).endswith("forbidden ground was touched by left_foot")
+    assert format_landings(record).endswith("forbidden ground was touched by left_foot")
 
 
 @pytest.mark.parametrize(

@@ -8,12 +8,12 @@ import pytest
 from windup.hal.errors import WindupError
 from windup.hal.telemetry.layout import runtime_folder
 from windup.robots import load_robot
+from windup.sim_twin.environment import Environment
 from windup.sim_twin.ground.terrain import Ground
 from windup.sim_twin.wire.world.worlds import _running
-from windup.sim_twin.environment import World
 from windup.tools.benches.leaks import COUNTED, Traces, clean, leaks, open_once
 from windup.tools.robot.robot import Robot
-from windup.tools.robot.stack import limp
+from windup.tools.robot.stack import torque_off
 
 
 @pytest.fixture
@@ -50,8 +50,8 @@ def test_a_robot_that_cannot_be_opened_leaves_no_world() -> None:
     worlds = len(_running)
     for port in ("twin://op3?faults=drop:1", "twin://op3?bus=tail", "twin://op3?baud=57600"):
         with pytest.raises(WindupError):
-            Robot.open("op3", port=port, world=World(Ground(slope=1.0)))
-    limp(load_robot("op3"), "twin://op3")
+            Robot.open("op3", port=port, world=Environment(Ground(slope=1.0)))
+    torque_off(load_robot("op3"), "twin://op3")
     assert len(_running) == worlds
 
 

@@ -15,9 +15,9 @@ from windup.hal.telemetry.ring import TelemetryReader, TelemetryWriter
 from windup.robots import load_robot
 from windup.sim_twin.backend import TwinBackend
 from windup.sim_twin.twin import Twin
-from windup.tools.cli import run
 from windup.tools.bringup.diagnosis import Diagnosis, Limits
 from windup.tools.bringup.health import picture
+from windup.tools.cli import run
 from windup.tools.robot.robot import Robot
 
 OP3 = load_robot("op3")

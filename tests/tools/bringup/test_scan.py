@@ -64,7 +64,7 @@ def survey(answer: Answer, baud: int | None = BAUD, *, bridge: bool = False) -> 
     port = port_of(answer)
     port.has_baud = not bridge
     found = Survey(port, {})
-    found.look(baud, lambda _: None)
+    found.update(baud, lambda _: None)
     return found
 
 
@@ -116,7 +116,7 @@ def test_somebody_who_talks_unasked_is_heard() -> None:
             return b"\xaa\xaa\x07"[:size]
 
     found = Survey(Port(Chatter(lambda _: b""), "line"), {})
-    found.look(4_000_000, lambda _: None)
+    found.update(4_000_000, lambda _: None)
     assert "not understood (first bytes aa aa 07)" in said(found)
 
 
@@ -125,7 +125,7 @@ def test_an_x_that_speaks_protocol_1_is_told_by_its_model() -> None:
         register = DYNAMIXEL_X.table("XM430-W350")["protocol_type"]
         Bus(port).command(2, register, 1)
         found = Survey(port, {})
-        found.look(BAUD, lambda _: None)
+        found.update(BAUD, lambda _: None)
     assert [row["id"] for row in found.servos] == [1]
     assert (found.unknown, found.strange) == ([], [])
     assert said(found) == (
@@ -171,7 +171,7 @@ def test_behind_a_bridge_without_baud_rates_every_servo_is_one_row() -> None:
 def test_every_baud_rate_is_a_step_of_the_progress() -> None:
     steps: list[str] = []
     port = port_of(lambda _: b"")
-    Survey(port, {}).look(None, steps.append)
+    Survey(port, {}).update(None, steps.append)
     assert len(steps) == len(list(places(port))) > 10
     assert steps[0] == f"{DYNAMIXEL_X.name}, {next(iter(DYNAMIXEL_X.bauds))} baud"
     assert port.baud == BAUD

@@ -4,9 +4,9 @@ import sys
 import pytest
 
 from tests.tools.conftest import Windup, refusal
-from windup.tools.terminal.command import Command
 from windup.tools.command_line.table import COMMANDS, Entry
 from windup.tools.command_line.version import installed_version
+from windup.tools.terminal.command import Command
 
 LINES = {
     "misspelt": ("walk op3 --hlep", "walk: unknown option --hlep (did you mean --help?)"),

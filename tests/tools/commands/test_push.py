@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
+from windup.tools.behaviours.push_edge import Search, find_edge
+from windup.tools.behaviours.push_trial import PushPlan
 from windup.tools.cli import run
 from windup.tools.commands.envelope_tables import summarise
 from windup.tools.commands.push import Push
-from windup.tools.behaviours.push_edge import Search, find_edge
-from windup.tools.behaviours.push_trial import PushPlan
 
 
 def pushed(capsys: pytest.CaptureFixture[str], *more: str) -> tuple[int, str]:

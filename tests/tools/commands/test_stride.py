@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from windup.hal.errors import UsageError
-from windup.tools.cli import run
 from windup.tools.behaviours.striding import Leg, read_leg
+from windup.tools.cli import run
 
 
 def test_it_walks_changes_direction_turns_and_halts_with_its_sensors(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ def test_a_flight_ends_with_a_touch_and_chatter_is_none() -> None:
     gauges = Gauges(CONTACTS)
     both, left, air = (True, True), (True, False), (False, False)
     for tick, down in enumerate([both, air, both, left, air, air, air, left, air, air, air, air]):
-        gauges.look(seen(0.01 * tick, down))
+        gauges.update(seen(0.01 * tick, down))
     assert gauges.flights == 1
     assert gauges.flight_time == pytest.approx(0.03)
 
@@ -31,7 +31,7 @@ def test_a_skip_touches_twice_with_each_foot() -> None:
     air, left, right = (False, False), (True, False), (False, True)
     order = [left, right, right, left, left, right, right]
     for tick, down in enumerate(down for foot in order for down in (air, air, air, foot)):
-        gauges.look(seen(0.01 * tick, down))
+        gauges.update(seen(0.01 * tick, down))
     assert gauges.touches == [0, 1, 1, 0, 0, 1, 1]
     assert gauges.skips == 1.0
     gauges.touches += [0, 1, 0]  # it falls into a run
@@ -41,7 +41,7 @@ def test_a_skip_touches_twice_with_each_foot() -> None:
 def test_work_has_no_sign_and_shake_is_a_root_mean_square() -> None:
     gauges = Gauges(CONTACTS)
     for tick in range(11):
-        gauges.look(seen(0.01 * tick, turning=2.0 if tick % 2 else 0.0))
+        gauges.update(seen(0.01 * tick, turning=2.0 if tick % 2 else 0.0))
     assert gauges.work == pytest.approx(0.1 * (3.0 + 8.0))
     assert gauges.shake == pytest.approx(np.sqrt(2.0))
     assert gauges.cost_of_transport(2.0, 0.5) == pytest.approx(1.1 / (2.0 * 9.81 * 0.5))

@@ -12,7 +12,7 @@ def looked(shares: list[list[float]]) -> LoadGauge:
     for tick, share in enumerate(shares):
         seen = observation(0.1 * tick)
         torque = np.array(share) * JOINTS.torque
-        gauge.look(replace(seen, joints=replace(seen.joints, torque=torque)))
+        gauge.update(replace(seen, joints=replace(seen.joints, torque=torque)))
     return gauge
 
 

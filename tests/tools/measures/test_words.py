@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 from tests.tools.conftest import Windup
-from windup.tools.measures.fall_report import fall_said
 from windup.tools.commands.rise import lay
+from windup.tools.commands.stand import format_stand
+from windup.tools.measures.fall_report import format_fall
+from windup.tools.measures.walk_text import format_walk
 from windup.tools.robot.robot import Robot
-from windup.tools.commands.stand import stand_said
 from windup.tools.robot.stopping import LAY
-from windup.tools.measures.walk_text import walk_said
 
 STOOD: dict[str, Any] = {
     "robot": "op3",
@@ -48,9 +48,9 @@ FALL: dict[str, Any] = {
 
 
 def test_the_first_motion_is_no_part_of_a_stand() -> None:
-    said = stand_said(STOOD | {"sim_time_s": 2.9, "first_motion_s": 0.9})
+    said = format_stand(STOOD | {"sim_time_s": 2.9, "first_motion_s": 0.9})
     assert said.startswith("op3 stood for 2.0 s, after a first motion of 0.9 s; farthest")
-    assert stand_said(STOOD).startswith("op3 stood for 2.0 s; farthest from its pose is l_knee")
+    assert format_stand(STOOD).startswith("op3 stood for 2.0 s; farthest from its pose is l_knee")
 
 
 def test_a_stand_on_a_port_lasts_as_long_as_it_was_told(shell: Windup) -> None:
@@ -63,13 +63,13 @@ def test_a_stand_on_a_port_lasts_as_long_as_it_was_told(shell: Windup) -> None:
 
 
 def test_a_walk_too_short_for_a_speed_has_none() -> None:
-    assert walk_said(WALKED).startswith("op3 walked 3 steps: 0.02 m forward, ")
-    assert "None" not in walk_said(WALKED)
-    assert walk_said(WALKED | {"speed_m_s": 0.2}).startswith("op3 walked 3 steps at 0.200 m/s: ")
+    assert format_walk(WALKED).startswith("op3 walked 3 steps: 0.02 m forward, ")
+    assert "None" not in format_walk(WALKED)
+    assert format_walk(WALKED | {"speed_m_s": 0.2}).startswith("op3 walked 3 steps at 0.200 m/s: ")
 
 
 def test_a_walk_that_did_not_begin_has_no_real_time() -> None:
-    said = walk_said(WALKED | {"reason": LAY, "sim_time_s": 0.0, "wall_time_s": 0.0})
+    said = format_walk(WALKED | {"reason": LAY, "sim_time_s": 0.0, "wall_time_s": 0.0})
     assert said == "op3 did not walk: it lay there before: put it on its feet"
 
 
@@ -87,8 +87,8 @@ def test_one_that_lay_there_before_did_not_fall(way: str) -> None:
 
 
 def test_a_load_beyond_the_stall_torque_is_no_percentage_of_it() -> None:
-    assert fall_said(FALL | {"peak_load": 0.85}).endswith("peak load 85 % of stall at l_knee")
-    said = fall_said(FALL | {"peak_load": 1.86})
+    assert format_fall(FALL | {"peak_load": 0.85}).endswith("peak load 85 % of stall at l_knee")
+    said = format_fall(FALL | {"peak_load": 1.86})
     assert said.endswith("l_knee bore 1.9 x its stall torque, more than it gives by itself")
 
 

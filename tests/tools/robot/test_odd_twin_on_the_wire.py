@@ -2,8 +2,8 @@ import pytest
 
 from tests.tools.conftest import Windup
 from windup.hal.errors import UsageError
+from windup.sim_twin.environment import Environment
 from windup.sim_twin.ground.terrain import Ground
-from windup.sim_twin.environment import World
 from windup.tools.robot.robot import Robot
 
 
@@ -22,4 +22,4 @@ def test_a_random_plant_walks_through_the_wire(shell: Windup) -> None:
 )
 def test_a_ground_where_none_can_be_is_refused(port: str, message: str) -> None:
     with pytest.raises(UsageError, match=message):
-        Robot.open("op3", port=port, world=World(Ground(slope=2.0)))
+        Robot.open("op3", port=port, world=Environment(Ground(slope=2.0)))

@@ -4,8 +4,8 @@ import pytest
 
 from tests.tools.conftest import Windup
 from windup.control.limit_cycle.balancer import Balancer
-from windup.tools.robot.robot import Robot
 from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.robot.robot import Robot
 
 PORT = "--port twin://op3"
 WARM = "heat:at=1:ids=14:degrees=68"

@@ -11,8 +11,8 @@ import pytest
 
 from windup.hal.errors import UsageError
 from windup.hal.observation import Observation
-from windup.tools.stopping.interrupts import RunInterruptedError, forget_interruption
 from windup.tools.robot.robot import Robot
+from windup.tools.stopping.interrupts import RunInterruptedError, forget_interruption
 from windup.tools.testing.servo_bus import ServoBus
 
 

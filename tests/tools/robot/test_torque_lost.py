@@ -10,9 +10,9 @@ from windup.hal.command import JointCommand
 from windup.hal.errors import PortError, StaleStateError, TorqueLostError, WindupError
 from windup.hal.observation import Observation
 from windup.hal.servo_bus.servo_backend import ServoBackend
+from windup.tools.benches.soak_rig import SoakRig
 from windup.tools.robot.robot import Robot
 from windup.tools.testing.servo_bus import ServoBus
-from windup.tools.benches.soak_rig import SoakRig
 
 KNEE = 13
 TORQUE = {"dynamixel2": 64, "dynamixel1": 24, "ax": 24, "sts": 40, "scs": 40}

@@ -6,6 +6,7 @@ import pytest
 
 from windup.hal.errors import UsageError
 from windup.hal.observation import Observation
+from windup.tools.robot.robot import Robot
 from windup.tools.stopping.interrupts import (
     RunInterruptedError,
     check_not_interrupted,
@@ -13,7 +14,6 @@ from windup.tools.stopping.interrupts import (
     forget_interruption,
     note_interruption,
 )
-from windup.tools.robot.robot import Robot
 from windup.tools.testing.servo_bus import ServoBus
 
 

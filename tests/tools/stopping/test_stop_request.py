@@ -10,11 +10,10 @@ from tests.tools.conftest import Windup
 from windup.hal.errors import UsageError
 from windup.hal.observation import Observation
 from windup.sim_twin.wire.boards.opencr import MODE_BUTTON, USER_BUTTON, OpenCr
-from windup.tools.stopping import stop_keys
-from windup.tools.stopping import stop_request
+from windup.tools.robot.stack import Stack
+from windup.tools.stopping import stop_keys, stop_request
 from windup.tools.stopping.interrupts import forget_interruption
 from windup.tools.testing.servo_bus import ServoBus
-from windup.tools.robot.stack import Stack
 
 
 @pytest.fixture(autouse=True)

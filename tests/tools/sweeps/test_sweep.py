@@ -11,10 +11,10 @@ import tyro
 
 from windup.hal.errors import HardwareError, UsageError
 from windup.tools import cli
-from windup.tools.terminal.command import Command
 from windup.tools.command_line.table import COMMANDS, Entry
 from windup.tools.sweeps.sweep_grid import parse_axis, points
 from windup.tools.sweeps.sweep_table import CsvTable, open_table
+from windup.tools.terminal.command import Command
 
 
 @dataclass(frozen=True, kw_only=True)

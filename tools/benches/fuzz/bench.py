@@ -11,8 +11,8 @@ from typing import Any
 
 from rich.progress import Progress
 
-from windup.tools.cli import run
 from windup.tools.benches.fuzz.trial import PATIENCE, Trial, odd_run
+from windup.tools.cli import run
 from windup.tools.terminal.output import console
 
 ROBOTS = ("op3", "duck", "human", "robobird")

@@ -13,7 +13,6 @@ from rich.table import Table
 
 from windup.hal.errors import UsageError
 from windup.robots import load_robot
-from windup.tools.terminal.output import console
 from windup.tools.benches.safety.attempt import trial, under_way
 from windup.tools.benches.safety.moment import Moment
 from windup.tools.benches.safety.refusals import measure_refusals
@@ -22,6 +21,7 @@ from windup.tools.benches.safety.rows import ROWS, SIGNALS
 from windup.tools.benches.safety.scripts import BY_ITSELF
 from windup.tools.benches.safety.trial import NotMeasuredError
 from windup.tools.benches.safety.verdict import Verdict, judge
+from windup.tools.terminal.output import console
 
 ROBOTS = ("op3", "duck")
 LONGEST = {"standing": 1.0, "walking": 1.5, "closing crouch": 1.2}

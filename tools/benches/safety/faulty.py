@@ -12,10 +12,10 @@ import numpy as np
 from windup.hal.command import JointCommand
 from windup.hal.controller import Controller
 from windup.hal.observation import ImuState, Observation
+from windup.hal.servo_bus.bus_connection import BusConnection
 from windup.hal.servo_bus.servo_backend import ServoBackend
-from windup.hal.servo_bus.bus_connection import ServoLink
-from windup.tools.robot.robot import Robot
 from windup.tools.benches.safety.begin import Begin
+from windup.tools.robot.robot import Robot
 
 Fault = Callable[[JointCommand], JointCommand]
 
@@ -103,7 +103,7 @@ def break_imu(robot: Robot, begin: Begin) -> None:
     readings = servos.readings
     state = readings.imu_state
 
-    def broken(now: float, links: Sequence[ServoLink]) -> ImuState | None:
+    def broken(now: float, links: Sequence[BusConnection]) -> ImuState | None:
         seen = state(now, links)
         nothing = np.full(3, np.nan)
         if seen is None or not begin.due():

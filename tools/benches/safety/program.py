@@ -9,14 +9,14 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 
 from windup.hal.errors import WindupError
-from windup.tools.stopping.interrupts import end_on_signals
-from windup.tools.terminal.output import console
-from windup.tools.robot.robot import Robot
 from windup.tools.benches.safety.begin import Begin
 from windup.tools.benches.safety.faulty import FAULTS, break_imu, make_faulty
 from windup.tools.benches.safety.moment import Activity
 from windup.tools.benches.safety.scripts import LEFT_OPEN, SCRIPTS, move
 from windup.tools.benches.safety.standard_error import Errors, replace_standard_error
+from windup.tools.robot.robot import Robot
+from windup.tools.stopping.interrupts import end_on_signals
+from windup.tools.terminal.output import console
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from typing import Any
 
-from windup.tools.terminal.output import console
 from windup.tools.benches.safety.attempt import trial
 from windup.tools.benches.safety.moment import Moment
 from windup.tools.benches.safety.row import Row
 from windup.tools.benches.safety.trial import PATIENCE
+from windup.tools.terminal.output import console
 
 AT_REST = Moment("standing", 0.0)
 

@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 from windup.hal.errors import WindupError
 from windup.hal.observation import Observation
-from windup.tools.robot.robot import Robot
 from windup.tools.benches.safety.begin import Begin
 from windup.tools.benches.safety.moment import Activity
+from windup.tools.robot.robot import Robot
 from windup.tools.robot.session import Watch
 
 BY_ITSELF = "its walk ended by itself"

@@ -7,8 +7,8 @@ import mujoco
 import numpy as np
 from scipy.optimize import brentq, least_squares
 
-from windup.control.kinematics.legs import legs_of
 from windup.control.estimation.posture import PostureSense
+from windup.control.kinematics.legs import legs_of
 from windup.hal.joints import Array
 from windup.robots import RobotDescription
 from windup.tools.assembly.gaits import find_gait

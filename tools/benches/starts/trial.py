@@ -14,12 +14,12 @@ from windup.hal.observation import Observation
 from windup.robots import load_robot
 from windup.sim_twin.twin import Twin
 from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics
-from windup.sim_twin.wire.world.bus_world import World
+from windup.sim_twin.wire.world.bus_world import BusWorld
+from windup.tools.benches.starts.faults import Broken, Fault
+from windup.tools.benches.starts.postures import KINDS, Kind, Placed, random_posture
 from windup.tools.commands.rise import rise
 from windup.tools.robot.robot import Robot
 from windup.tools.testing.servo_bus import ServoBus
-from windup.tools.benches.starts.faults import Broken, Fault
-from windup.tools.benches.starts.postures import KINDS, Kind, Placed, random_posture
 
 LIE = 2.0
 """How long limp limbs take to come to rest, s."""
@@ -79,7 +79,7 @@ def try_start(start: Start) -> dict[str, Any]:
         if broken is not None:
             _break(bus.world, broken)
         moved = _Moved(robot.twin, [] if broken is None else list(broken.joints))
-        robot.watch = moved.look
+        robot.watch = moved.update
         row |= _run(robot, start.kind)
         row["moved"] = moved.most
         if broken is not None:
@@ -110,13 +110,13 @@ class _Moved:
     def __post_init__(self) -> None:
         self._from = self.twin.data.qpos[7:].copy()
 
-    def look(self, observation: Observation) -> None:
+    def update(self, observation: Observation) -> None:
         if self.joints:
             away = np.abs(self.twin.data.qpos[7:] - self._from)[self.joints]
             self.most = max(self.most, float(np.degrees(away.max())))
 
 
-def _place(robot: Robot, world: World, placed: Placed) -> None:
+def _place(robot: Robot, world: BusWorld, placed: Placed) -> None:
     """Put the twin there; limp limbs come to rest, and everything has been felt and read."""
     physics, twin = world.physics, robot.twin
     assert isinstance(physics, TwinPhysics)
@@ -142,7 +142,7 @@ def _lowest(twin: Twin) -> float:
     return float(heights.min())
 
 
-def _break(world: World, broken: Broken) -> None:
+def _break(world: BusWorld, broken: Broken) -> None:
     """Jam a joint, or have a motor turn the other way; a file's fault is none of the world's."""
     physics = world.physics
     assert isinstance(physics, TwinPhysics)

@@ -5,9 +5,9 @@ from typing import Final
 
 import numpy as np
 
-from windup.control.stepping.footing import Footing
 from windup.control.kinematics.momenta import capture_point
 from windup.control.kinematics.rotation import yaw_of
+from windup.control.stepping.footing import Footing
 from windup.control.stepping.stepper import Stepper
 from windup.hal.controller import Controller
 from windup.hal.joints import Array
@@ -48,7 +48,7 @@ class Recorder:
         if self.ticks % EVERY and not begun:
             return
         footing = self.footing
-        footing.look(replace(observation, base=self.robot.twin.base))
+        footing.update(replace(observation, base=self.robot.twin.base))
         phase = PHASES.index(controller.phase) if isinstance(controller, Stepper) else 0
         self.rows.append(self._row(observation.time, phase))
         if begun and isinstance(controller, Stepper):

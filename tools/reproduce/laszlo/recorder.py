@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from windup.control.limit_cycle.balancer import Balancer
 from windup.control.kinematics.body import Body, heading
+from windup.control.limit_cycle.balancer import Balancer
 from windup.hal.observation import Observation
 
 LISTS = ("q", "target", "k")

@@ -9,8 +9,8 @@ from windup.hal.imu.bno08x_rvc import decode
 from windup.hal.imu.quaternion import euler_zxy
 from windup.sim_twin.twin import Twin
 from windup.sim_twin.wire import drop_world
-from windup.sim_twin.wire.imu.imu import GRAVITY
 from windup.sim_twin.wire.boards.rvc import encode_rvc
+from windup.sim_twin.wire.imu.imu import GRAVITY
 
 EXAMPLE = "AA AA DE 01 00 92 FF 25 08 8D FE EC FF D1 03 00 00 00 E7"  # of the data sheet
 

@@ -7,10 +7,10 @@ import pytest
 
 from tests.sim_twin.wire.wire_host import Host, open_host
 from windup.sim_twin.wire import build_world, parse_address
+from windup.sim_twin.wire.boards.opencr import USER_BUTTON, OpenCr
 from windup.sim_twin.wire.faults.fault_text import parse_rules
 from windup.sim_twin.wire.servos.health import OVERHEATING
-from windup.sim_twin.wire.boards.opencr import USER_BUTTON, OpenCr
-from windup.sim_twin.wire.world.bus_world import World
+from windup.sim_twin.wire.world.bus_world import BusWorld
 
 XM, XL = 1, 2
 BUTTON = bytes((30, 0, 1, 0))
@@ -23,7 +23,7 @@ def host() -> Iterator[Host]:
 
 
 @pytest.fixture
-def op3() -> World:
+def op3() -> BusWorld:
     return build_world(parse_address("twin://op3?physics=inertia"))
 
 
@@ -32,7 +32,7 @@ def inject(host: Host, text: str) -> None:
     host.port.world.faults.inject(parse_rules(text, live=True), host.now)
 
 
-def board_of(world: World) -> OpenCr:
+def board_of(world: BusWorld) -> OpenCr:
     (board,) = (device for device in world.devices if isinstance(device, OpenCr))
     return board
 
@@ -78,13 +78,13 @@ def test_of_two_brown_outs_the_deeper_counts_and_each_ends_by_itself(host: Host)
     assert host.read(XL, "present_input_voltage") == full
 
 
-def test_an_adapter_that_is_pulled_out_for_good_does_not_come_back(op3: World) -> None:
+def test_an_adapter_that_is_pulled_out_for_good_does_not_come_back(op3: BusWorld) -> None:
     op3.faults.unplug(at=0.1, seconds=0.5).unplug(at=0.2, seconds=math.inf)
     op3.advance(10.0)
     assert not op3.bus().plugged
 
 
-def test_of_two_times_without_an_adapter_the_later_end_counts(op3: World) -> None:
+def test_of_two_times_without_an_adapter_the_later_end_counts(op3: BusWorld) -> None:
     op3.faults.unplug(at=0.1, seconds=1.0).unplug(at=0.2, seconds=0.1)
     op3.advance(1.0)
     assert not op3.bus().plugged
@@ -121,7 +121,7 @@ def test_the_realtime_tick_wraps_behind_32767(host: Host) -> None:
     assert host.read(XM, "realtime_tick") < 300
 
 
-def test_the_user_button_is_pressed_for_its_time(op3: World) -> None:
+def test_the_user_button_is_pressed_for_its_time(op3: BusWorld) -> None:
     board = board_of(op3)
     op3.faults.button(at=0.1)
     for until, pressed in ((0.09, 0), (0.15, USER_BUTTON), (0.29, USER_BUTTON), (0.31, 0)):
@@ -129,13 +129,13 @@ def test_the_user_button_is_pressed_for_its_time(op3: World) -> None:
         assert board.read(30, 1, op3.now) == (0, bytes((pressed,)))
 
 
-def test_only_the_board_has_a_button(op3: World) -> None:
+def test_only_the_board_has_a_button(op3: BusWorld) -> None:
     faults = op3.faults.button(at=0.1)
     op3.advance(0.2)
     assert [(hit.kind, hit.identifier) for hit in faults.hits] == [("button", 200)]
 
 
-def test_a_dead_servo_stays_dead_when_the_board_switches_the_power(op3: World) -> None:
+def test_a_dead_servo_stays_dead_when_the_board_switches_the_power(op3: BusWorld) -> None:
     servo = next(device for device in op3.devices if device.identifier == 13)
     op3.faults.dead(ids=[13], at=0.1).brown_out(at=0.2)
     op3.advance(1.0)
@@ -145,7 +145,7 @@ def test_a_dead_servo_stays_dead_when_the_board_switches_the_power(op3: World) -
     assert sum(device.listens(op3.now) for device in op3.devices) == 20
 
 
-def test_infinite_seconds_undo_nothing(op3: World) -> None:
+def test_infinite_seconds_undo_nothing(op3: BusWorld) -> None:
     op3.faults.button(at=0.1, seconds=math.inf)
     op3.advance(50.0)
     assert board_of(op3).buttons == USER_BUTTON

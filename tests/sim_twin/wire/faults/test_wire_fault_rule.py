@@ -7,8 +7,8 @@ import pytest
 
 from windup.hal.errors import UsageError
 from windup.sim_twin.wire import parse_address
-from windup.sim_twin.wire.world.build import build_world
 from windup.sim_twin.wire.faults.fault_text import parse_rules
+from windup.sim_twin.wire.world.build import build_world
 
 BENCH = "twin://bench?servos=STS3215:1-4&faults="
 

@@ -2,7 +2,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from windup.sim_twin.wire.protocols.frames import Frame, FrameError, Parser, crc16, encode, encode_status
+from windup.sim_twin.wire.protocols.frames import (
+    Frame,
+    FrameError,
+    Parser,
+    crc16,
+    encode,
+    encode_status,
+)
 
 # The manual's examples: emanual.robotis.com/docs/en/dxl/protocol2/
 INSTRUCTIONS = {

@@ -10,8 +10,8 @@ import serial
 from tests.sim_twin.wire.emulator_process import run_emulator
 from windup.hal.errors import UsageError
 from windup.sim_twin.wire import build_world, parse_address
-from windup.sim_twin.wire.serve.emulate import Emulator
 from windup.sim_twin.wire.protocols.frames import encode
+from windup.sim_twin.wire.serve.emulate import Emulator
 
 BUS = "twin://bench?servos=XM430-W350:1-2&return_delay=0"
 PING = encode(1, 1)

@@ -4,18 +4,18 @@ import time
 
 from windup.sim_twin.wire import build_world, parse_address
 from windup.sim_twin.wire.serve.journal import Event, Watcher
-from windup.sim_twin.wire.world.bus_world import World
+from windup.sim_twin.wire.world.bus_world import BusWorld
 
 TORQUE = 64
 
 
-def bench() -> World:
+def bench() -> BusWorld:
     return build_world(parse_address("twin://bench?servos=XM430-W350:1-3&imu=rvc"))
 
 
-def look(watcher: Watcher, world: World, until: float) -> None:
+def look(watcher: Watcher, world: BusWorld, until: float) -> None:
     world.advance(until)
-    watcher.look(world.now)
+    watcher.update(world.now)
 
 
 def test_a_world_in_which_nothing_happens_has_no_events() -> None:
@@ -31,9 +31,9 @@ def test_driven_motors_are_counted() -> None:
     watcher = Watcher(world, events=seen.append)
     for device in world.devices[:2]:
         device.write(TORQUE, b"\x01", world.now)
-        watcher.look(world.now)
+        watcher.update(world.now)
     world.kill(world.devices[0])
-    watcher.look(world.now)
+    watcher.update(world.now)
     assert [(event.kind, event.value) for event in seen] == [
         ("driven", 1), ("driven", 2), ("driven", 1)
     ]  # fmt: skip

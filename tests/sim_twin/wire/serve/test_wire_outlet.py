@@ -4,11 +4,11 @@ import math
 
 import pytest
 
-from windup.sim_twin.wire.world.address import parse_address
-from windup.sim_twin.wire.world.build import build_world
 from windup.sim_twin.wire.protocols.frames import encode
 from windup.sim_twin.wire.serve.outlet import ON_THE_WIRE, WAITING, Outlet
-from windup.sim_twin.wire.world.bus_world import World
+from windup.sim_twin.wire.world.address import parse_address
+from windup.sim_twin.wire.world.build import build_world
+from windup.sim_twin.wire.world.bus_world import BusWorld
 
 HEADERS = b"\xff\xff\xfd\x00" * 300_000  # 1.2 MB
 PING = encode(1, 1)
@@ -41,17 +41,17 @@ class Program:
 
 
 @pytest.fixture
-def world() -> World:
+def world() -> BusWorld:
     return build_world(parse_address("twin://bench?servos=XM430-W350:1&return_delay=0"))
 
 
-def outlet_of(world: World, program: Program) -> Outlet:
+def outlet_of(world: BusWorld, program: Program) -> Outlet:
     outlet = Outlet(world.bus(), lambda: program)
     outlet.settle()
     return outlet
 
 
-def serve(world: World, outlet: Outlet, seconds: float) -> None:
+def serve(world: BusWorld, outlet: Outlet, seconds: float) -> None:
     """Let time pass as an emulator does."""
     end = world.now + seconds
     while world.now < end:
@@ -61,7 +61,7 @@ def serve(world: World, outlet: Outlet, seconds: float) -> None:
         outlet.send(world.now)
 
 
-def test_a_frame_goes_on_the_wire_at_once(world: World) -> None:
+def test_a_frame_goes_on_the_wire_at_once(world: BusWorld) -> None:
     program = Program(PING)
     outlet = outlet_of(world, program)
     outlet.receive()
@@ -70,7 +70,7 @@ def test_a_frame_goes_on_the_wire_at_once(world: World) -> None:
     assert len(program.got) == ANSWER
 
 
-def test_of_megabytes_what_does_not_fit_into_the_buffer_is_lost(world: World) -> None:
+def test_of_megabytes_what_does_not_fit_into_the_buffer_is_lost(world: BusWorld) -> None:
     program = Program(HEADERS)
     outlet = outlet_of(world, program)
     for _ in range(len(HEADERS) // 100_000):
@@ -87,7 +87,7 @@ def test_of_megabytes_what_does_not_fit_into_the_buffer_is_lost(world: World) ->
     assert len(program.got) == ANSWER
 
 
-def test_what_waited_is_lost_with_the_adapter(world: World) -> None:
+def test_what_waited_is_lost_with_the_adapter(world: BusWorld) -> None:
     program = Program(HEADERS)
     outlet = outlet_of(world, program)
     outlet.receive()
@@ -96,7 +96,7 @@ def test_what_waited_is_lost_with_the_adapter(world: World) -> None:
     assert not outlet.waiting and outlet.descriptors() == []
 
 
-def test_megabytes_of_headers_in_one_write_leave_nothing_behind(world: World) -> None:
+def test_megabytes_of_headers_in_one_write_leave_nothing_behind(world: BusWorld) -> None:
     bus = world.bus()
     bus.write(HEADERS[:200_000])
     assert bus.counts["dropped"] > 40_000

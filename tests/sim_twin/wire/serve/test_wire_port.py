@@ -5,13 +5,13 @@ import serial
 from tests.sim_twin.wire.wire_host import open_host
 from windup.hal.errors import UnknownNameError, UsageError
 from windup.sim_twin.wire import drop_world, find_world, parse_address, put_world
+from windup.sim_twin.wire.boards.opencr import ACCELERATION_UNIT, GYRO_UNIT, OpenCr
 from windup.sim_twin.wire.bus.bus import Bus
+from windup.sim_twin.wire.imu.imu import RestingImu
 from windup.sim_twin.wire.protocols.dynamixel2 import Dynamixel2
 from windup.sim_twin.wire.protocols.frames import encode
-from windup.sim_twin.wire.imu.imu import RestingImu
-from windup.sim_twin.wire.boards.opencr import ACCELERATION_UNIT, GYRO_UNIT, OpenCr
 from windup.sim_twin.wire.schedule import Schedule
-from windup.sim_twin.wire.world.bus_world import Bench, World
+from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
 
 
 @pytest.mark.parametrize(
@@ -142,7 +142,7 @@ def test_the_opencr_reports_its_imu_and_switches_the_servo_power() -> None:
         servo, schedule = host.servo(1), Schedule()
         board = OpenCr(Turning(), [servo], supply=11.3)
         bus = Bus("body", [servo, board], Dynamixel2(), schedule)
-        put_world("opencr", World(Bench([host.shaft(1)]), schedule, {"body": bus}))
+        put_world("opencr", BusWorld(Bench([host.shaft(1)]), schedule, {"body": bus}))
     with open_host("twin://anything?world=opencr") as host:
         board.buttons = 2
         assert host.ask(1, 1) == []  # no power

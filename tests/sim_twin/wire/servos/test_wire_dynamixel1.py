@@ -18,6 +18,7 @@ from tests.sim_twin.wire.wire_host1 import (
     open_host1,
     statuses,
 )
+from windup.sim_twin.wire.protocols.frames1 import encode
 from windup.sim_twin.wire.servos.dynamixel1_servo import (
     ANGLE_LIMIT,
     CHECKSUM,
@@ -27,7 +28,6 @@ from windup.sim_twin.wire.servos.dynamixel1_servo import (
     OVERLOAD,
     RANGE,
 )
-from windup.sim_twin.wire.protocols.frames1 import encode
 
 ALL = 254
 AX, MX28, MX64, MX106 = 1, 2, 3, 4

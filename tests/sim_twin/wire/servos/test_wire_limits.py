@@ -1,10 +1,8 @@
 import pytest
 
-from windup.hal.servos.servo_model import OwnLimits
 from windup.hal.servos import servo_model, servo_names
-from windup.sim_twin.wire.servos import dynamixel1_tables
-from windup.sim_twin.wire.servos import feetech_tables
-from windup.sim_twin.wire.servos import x_series
+from windup.hal.servos.servo_model import OwnLimits
+from windup.sim_twin.wire.servos import dynamixel1_tables, feetech_tables, x_series
 
 
 def factory_limits(name: str) -> OwnLimits:

@@ -14,8 +14,8 @@ from dynamixel_sdk import (
 )
 
 from tests.sim_twin.wire.wire_host import Host
-from windup.hal.port.open_port import open_port
 from windup.hal.families.configurator import SdkPort
+from windup.hal.port.open_port import open_port
 from windup.sim_twin.wire.servos.health import OVERHEATING
 from windup.sim_twin.wire.servos.old_errors import ANGLE_LIMIT, INSTRUCTION, RANGE
 

@@ -6,8 +6,7 @@ import pytest
 import rustypot
 
 from windup.hal.servos import servo_model
-from windup.sim_twin.wire.servos import dynamixel1_tables
-from windup.sim_twin.wire.servos import feetech_tables
+from windup.sim_twin.wire.servos import dynamixel1_tables, feetech_tables
 from windup.sim_twin.wire.servos.byte_table import TWOS, ByteTable, Field
 from windup.sim_twin.wire.world.families import PROTOCOLS
 

@@ -9,11 +9,11 @@ from tests.sim_twin.wire.wire_host import Host, open_host
 from tests.sim_twin.wire.wire_host1 import open_host1
 from windup.hal.errors import UnknownNameError, UsageError
 from windup.sim_twin.twin import Twin
+from windup.sim_twin.wire.protocols.frames import encode
+from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics
 from windup.sim_twin.wire.world.address import parse_address
 from windup.sim_twin.wire.world.build import build_world
-from windup.sim_twin.wire.protocols.frames import encode
 from windup.sim_twin.wire.world.hand import Swing, parse_hands
-from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics
 
 KNEE = 13  # the id of op3's right knee
 IDS = tuple(range(1, 21))

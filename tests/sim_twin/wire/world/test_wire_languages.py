@@ -8,21 +8,21 @@ from hypothesis import strategies as st
 from tests.sim_twin.wire.wire_host1 import PING, open_host1, statuses
 from windup.hal.servos import servo_model
 from windup.sim_twin.wire import drop_world, put_world
-from windup.sim_twin.wire.world.address import parse_address
-from windup.sim_twin.wire.world.build import build_world
 from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.device import Device
-from windup.sim_twin.wire.world.families import PROTOCOLS, make_language, make_servo
 from windup.sim_twin.wire.protocols.frames import encode as encode2
 from windup.sim_twin.wire.protocols.frames1 import encode
 from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
-from windup.sim_twin.wire.world.bus_world import Bench, World
+from windup.sim_twin.wire.world.address import parse_address
+from windup.sim_twin.wire.world.build import build_world
+from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
+from windup.sim_twin.wire.world.families import PROTOCOLS, make_language, make_servo
 
 MIX = {"legs": "STS3215-12V", "arms": "AX-12A", "head": "XL430-W250", "face": "SCS0009"}
 
 
-def mixed() -> World:
+def mixed() -> BusWorld:
     schedule, shafts, buses = Schedule(), [], {}
     for bus, name in MIX.items():
         sheet = servo_model(name)
@@ -31,7 +31,7 @@ def mixed() -> World:
         servo = make_servo(name, shafts[-1], 1, 1_000_000, supply, 0)
         devices: list[Device] = [servo]
         buses[bus] = Bus(bus, devices, make_language(PROTOCOLS[name]), schedule)
-    return World(Bench(shafts), schedule, buses)
+    return BusWorld(Bench(shafts), schedule, buses)
 
 
 def test_four_families_on_four_buses_of_one_world() -> None:

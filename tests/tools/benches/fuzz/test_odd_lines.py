@@ -16,9 +16,9 @@ import windup.sim_twin.wire.world.worlds
 from windup.hal.errors import PortError
 from windup.sim_twin.twin import Twin
 from windup.tools import cli
-from windup.tools.command_line.table import COMMANDS
 from windup.tools.benches.fuzz import odd_line
 from windup.tools.benches.fuzz.odd_line import any_line
+from windup.tools.command_line.table import COMMANDS
 
 LONG = ("bench", "reproduce", "sweep", "synthesise", "health")
 """Commands that run for long without a port or a twin, or look at what others run."""

@@ -8,11 +8,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from windup.robots import load_robot
-from windup.tools.cli import run
 from windup.tools.benches.fuzz.broken_mjcf import broken_mjcf
 from windup.tools.benches.fuzz.broken_toml import MISTAKES, broken_toml
 from windup.tools.benches.fuzz.odd_line import odd_line
 from windup.tools.benches.fuzz.trial import Trial, odd_run
+from windup.tools.cli import run
 
 OP3 = load_robot("op3").folder
 
