@@ -1,6 +1,7 @@
 """Registers of the servos of one line: written to all and read back, until everybody has them."""
 
 from collections.abc import Sequence
+from shlex import quote
 
 import numpy as np
 import numpy.typing as npt
@@ -81,7 +82,9 @@ class LineRegisters:
             if not left.size:
                 return counts[chosen]
         url = self.line.bus.port.url
-        raise HardwareError(f"{url}: no answer from {self.line.who(left)}; run `windup scan {url}`")
+        raise HardwareError(
+            f"{url}: no answer from {self.line.who(left)}; run `windup scan {quote(url)}`"
+        )
 
     def set(self, register: Register, values: Array, rows: Rows = slice(None)) -> None:
         """Write the (rows,) `values`, counts, and read them back.

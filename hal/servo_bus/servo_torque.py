@@ -1,5 +1,7 @@
 """Torque on at the present pose, off and read back, and the servos' watch over their host."""
 
+from shlex import quote
+
 import numpy as np
 
 from windup.hal.errors import HardwareError
@@ -100,7 +102,7 @@ class ServoTorque:
         what = f"{url}: torque does not {verb} on at {self.line.who([row])}"
         loss = examine(self.line, [Suspect(id, False)], self.armed).get(id)
         if loss is None or loss in (SWITCHED_OFF, UNEXPLAINED):
-            return f"{what}; run `windup scan {url}`"
+            return f"{what}; run `windup scan {quote(url)}`"
         return f"{what}: {loss}; {loss.remedy}"
 
     def send_off(self) -> None:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 from math import degrees
+from shlex import quote
 
 import numpy as np
 
@@ -183,7 +184,7 @@ def _strange(error: NoAnswerError) -> str:
 
 def _sentence(url: str, problems: list[str]) -> str:
     count = f"{len(problems)} thing{'s' if len(problems) > 1 else ''}"
-    return f"{url}: {count} not as wired: {'; '.join(problems)}; run `windup scan {url}`"
+    return f"{url}: {count} not as wired: {'; '.join(problems)}; run `windup scan {quote(url)}`"
 
 
 def row_groups(mounts: Sequence[ServoMount]) -> dict[str, list[int]]:

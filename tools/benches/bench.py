@@ -1,13 +1,14 @@
 """`windup bench`: what ticks, physics, rollouts and servos cost, as ratios of one run."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tyro
 
+from windup.hal.errors import UsageError
 from windup.hal.ranges import Range
 from windup.tools.benches.balance import measure_balance
 from windup.tools.benches.faults import measure_faults
@@ -41,6 +42,23 @@ What = Literal[
     "starts",
     "fuzz",
 ]
+
+USED: dict[What, tuple[str, ...]] = {
+    "tick": ("robot",),
+    "twin": ("robot",),
+    "balance": ("robot",),
+    "servo": ("robot",),
+    "bus": ("vendor",),
+    "safety": ("robot", "moments", "rows", "seed"),
+    "guardian": ("robot", "minutes"),
+    "loop": ("robot", "minutes"),
+    "faults": ("reads", "seed"),
+    "unplug": ("robot", "times", "seed"),
+    "leaks": ("robot", "times"),
+    "starts": ("robot", "times", "seed"),
+    "fuzz": ("robot", "times", "seed"),
+}
+"""The options that each bench honours, beside --json."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +96,19 @@ class Bench(Command):
     """loop, guardian: how long."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
+
+    def check(self) -> None:
+        """Raise what cannot be.
+
+        Raises:
+            UsageError: A number is out of its range, or an option is another bench's.
+        """
+        super().check()
+        for option in fields(self):
+            known = option.name in ("what", "json", *USED[self.what])
+            if not known and getattr(self, option.name) != option.default:
+                takers = ", ".join(what for what, names in USED.items() if option.name in names)
+                raise UsageError(f"bench {self.what} takes no --{option.name}; these do: {takers}")
 
     def run(self) -> int:
         """Measure; returns the exit status."""

@@ -5,6 +5,7 @@ Supply, temperature, load, stall and the IMU are judged by the watches of the ru
 
 import os
 from dataclasses import dataclass, field, fields
+from shlex import quote
 from typing import Any
 
 import numpy as np
@@ -237,7 +238,9 @@ class Diagnosis:
         for kind, count in self.bus_errors().items():
             if count > self.limits.errors * len(self.ticks):
                 what = f"{kind!r} {count} times in {len(self.ticks)} ticks"
-                self._complain("bus", what, f"check cables and power, then `windup scan {port}`")
+                self._complain(
+                    "bus", what, f"check cables and power, then `windup scan {quote(port)}`"
+                )
 
     def _judge_joints(self) -> None:
         limits = self.limits
