@@ -81,9 +81,9 @@ class Balance(Record, frozen=True):
     """Parameters of the gait's balance control.
 
     A step is replanned when the CoM velocity at a state differs by more than `replan` m/s from
-    that at the same state two steps ago. If the predicted error (weighted) exceeds `miss`, the
-    scalings are improved with up to `rounds` more models. The rollouts' ground is a plane fitted to
-    the contact points of the last `footfalls` steps; with 0 it is level.
+    that at the same state two steps ago. If the weighted error of the nominal rollout exceeds
+    `miss`, the scalings are improved with up to `rounds` more models. The rollouts' ground is a
+    plane fitted to the contact points of the last `footfalls` steps; with 0 it is level.
     """
 
     regulation: list[str] = []
