@@ -53,7 +53,7 @@ class RobotDescription:
         timestep: Physics step of the MJCF, s.
         rate_hz: Rate of the control loop, Hz.
         wire_rate_hz: Rate of the control loop on a servo bus, Hz.
-        model_latency: Time from the start of a step until its plan is applied, on the wall clock, s.
+        model_latency: Time from the start of a step until its plan applies, on the wall clock, s.
         base: Body with the free joint; of a `fixed` robot, a body that never moves.
         fixed: The base is fixed to the world, as of an arm.
         passive: Joints of the MJCF without a servo.

@@ -240,7 +240,7 @@ class RobotFile(Record, frozen=True):
         stop: Stop policy: hold, crouch, or limp.
         stance: Name of the pose to stand in.
         crouch: Name of the pose to crouch in.
-        model_latency: Time from the start of a step until its plan is applied, on the wall clock, s.
+        model_latency: Time from the start of a step until its plan applies, on the wall clock, s.
         contact_threshold: Force above which a contact sensor counts as pressed, N.
         passive: Joints of the MJCF without a servo: springs, casters, and joints that the MJCF's
             own <equality> couples.
