@@ -90,7 +90,7 @@ class FootprintWalker(LegMotion):
         )
 
     def _enter(self, phase: Phase, now: float) -> None:
-        """Begin a phase."""
+        """Enter a phase, from the present aim to its goal."""
         self._phase, self._began = phase, now
         self._from = self._aim
         if phase == "shift":

@@ -60,7 +60,7 @@ class LearntModels:
         """Keep all models: they are also valid in the next walk."""
 
     def recall(self, side: int, start: Array) -> Array | None:
-        """Return the Jacobian whose start is nearest to `start`; None unless `complete`."""
+        """Return the Jacobian with the nearest start; None if there is none, or not `complete`."""
         entries = self._known.get(side, [])
         if not self.complete or not entries:
             return None

@@ -67,7 +67,7 @@ class Planner(Protocol):
         ...
 
     def reset(self) -> None:
-        """Discard all requests and step models of the last walk."""
+        """Start over for a new walk; a pending request is discarded."""
         ...
 
     def ask(self, request: StepRequest) -> None:
@@ -120,12 +120,12 @@ class StepPlanner:
         self._due = 0.0
 
     def reset(self) -> None:
-        """Discard the answer and the step models of the last walk."""
+        """Reset the step model, and discard the last answer."""
         self.model.reset()
         self._answer = None
 
     def ask(self, request: StepRequest) -> None:
-        """Plan the step now."""
+        """Plan the step immediately."""
         self._answer = self.plan(request)
         self._due = request.due(self.latency)
 

@@ -25,7 +25,7 @@ class PoseHolder:
 
     @property
     def first_pose(self) -> Array:
-        """See `Begins`."""
+        """First pose (n,), rad; see `Begins`."""
         return self.pose
 
     def reset(self, observation: Observation) -> None:
@@ -78,5 +78,5 @@ class GraphPlayer:
 
     @property
     def finished(self) -> bool:
-        """True when an aperiodic graph has held its last state for its time."""
+        """True if an aperiodic graph has held its last state for the hold time."""
         return bool(self._tracker.finished()[0])

@@ -50,7 +50,7 @@ class StagedPlayer:
 
     @property
     def first_pose(self) -> Array:
-        """See `Begins`."""
+        """First pose (n,), rad; see `Begins`."""
         return self.gait.graph.pose[0]
 
     def reset(self, observation: Observation) -> None:

@@ -135,7 +135,7 @@ class Side(Record, frozen=True):
 
     `scale` follows the sign of the speed, `spread` its magnitude (to keep the legs apart).
     `targets` are lateral: they are added in steps whose swing foot is on the side of the motion,
-    and subtracted in the others. `limit` is the maximum speed, m/s; it changes by `ramp` per step.
+    and subtracted in the others. `limit` is the maximum speed, m/s; `ramp` its change per step.
     """
 
     limit: NotNegative

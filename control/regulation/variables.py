@@ -113,7 +113,7 @@ class RegulationVariable:
     vector: Vector
 
     def evaluate(self, end: StepEnd) -> Array:
-        """Return the component (m,) at the ends of m steps."""
+        """Return the component (m,) of the end states of m steps."""
         vector = self.vector(end)
         if self.vector is com_displacement:
             angle: Array = np.full(len(vector), end.start_heading)

@@ -12,7 +12,7 @@ import numpy as np
 from windup.control.pose_graph.gait_file import Slip
 from windup.hal.joints import Array
 
-RUNNING = 2  # steps
+RUNNING = 2  # number of consecutive steps with a slide
 
 
 @dataclass

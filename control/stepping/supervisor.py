@@ -100,7 +100,7 @@ class Supervisor:
         self.walker.reset(observation)
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the command of whoever has the robot.
+        """Return the command of the part in control; switch between the parts if that is due.
 
         Raises:
             StateMissingError: The observation has no base state.
@@ -129,7 +129,7 @@ class Supervisor:
         here = walker.body.measure(observation)
         away = capture_point(walker.body.momenta()) - here.feet[0, moment.stance, :2]
         heading = turn(walker.heading)[:2, :2].T
-        tick = round(moment.elapsed / dt) - 1  # the tick that the state was entered in is over
+        tick = round(moment.elapsed / dt) - 1  # `elapsed` includes the tick of the entry
         return self._throw.detect(moment.state, tick, heading @ away)
 
     def _lost(self, thrown: Array, now: float) -> bool:
