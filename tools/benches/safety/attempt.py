@@ -64,9 +64,17 @@ def trial(
             for process in reversed(started):
                 process.kill()
                 process.join()
-            if running is not None and running.guardian is not None:
-                with suppress(ProcessLookupError):
-                    os.kill(running.guardian, signal.SIGKILL)
+            if running is not None:
+                end(running)
+
+
+def end(running: Trial) -> None:
+    """End a guardian that still tries, and close what was opened."""
+    if running.guardian is not None:
+        with suppress(ProcessLookupError):
+            os.kill(running.guardian, signal.SIGKILL)
+    for descriptor in running.taken:
+        os.close(descriptor)
 
 
 def under_way(running: Trial) -> None:

@@ -40,6 +40,7 @@ class Trial:
         moment: When it is ended.
         said: What the program said last.
         log: What program and guardian print.
+        taken: Descriptors to close afterwards.
     """
 
     def __init__(
@@ -52,6 +53,7 @@ class Trial:
         self.log = Path(os.devnull)
         self.guardian: int | None = None
         self.planner: int | None = None
+        self.taken: list[int] = []
 
     def kill(self, *who: str, number: int = signal.SIGKILL) -> float:
         """Send a signal to "program", "guardian", "planner", "emulator" at once; return when."""
@@ -67,7 +69,18 @@ class Trial:
             if pid is not None:
                 with suppress(ProcessLookupError):
                     os.kill(pid, number)
+        if "emulator" in who and number == signal.SIGKILL:
+            self._take_its_terminals()
         return when
+
+    def _take_its_terminals(self) -> None:
+        """Open as many pseudo-terminals as the emulator had, which get their numbers.
+
+        Else the next emulator would get them, and this trial's guardian would speak to a robot of
+        another trial.
+        """
+        self.emulator.join(PATIENCE)
+        self.taken += [end for _ in self.port.split(",") for end in os.openpty()]
 
     def press(self, number: int, times: int = 1, every: float = 0.0) -> float:
         """Send signals to the program, `every` so many s; return when the first was sent."""
