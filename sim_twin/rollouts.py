@@ -80,7 +80,7 @@ class RolloutPredictor:
         return outcomes
 
     def _felt(self, start: RolloutStart) -> Plane:
-        """Return the plane of the ground: known, else estimated in `start`, else level."""
+        """Return the ground plane: zero for known terrain, else that of `start`, else level."""
         if not self.ground.flat:
             return KNOWN
         if start.ground is not None:

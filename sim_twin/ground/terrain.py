@@ -12,7 +12,7 @@ from windup.sim_twin.ground.rough import RoughGround
 
 WIDE = 20.0  # half the width of a tile, m
 DEEP = 0.25  # half the thickness of a tile, m
-BEHIND = 3.0  # flat ground behind the start, m
+BEHIND = 3.0  # length of the flat ground before `start`, m
 SLOPE_TILE = 4.0
 TILES = 60
 

@@ -130,7 +130,7 @@ def respond(descriptor: int) -> None:
     while data := os.read(descriptor, 4096):
         pending += data
         while len(pending) >= 7 or (len(pending) >= 6 and pending[2] != 0xFD):
-            newer = pending[2] == 0xFD  # no servo of protocol 1 has this id here
+            newer = pending[2] == 0xFD  # else protocol 1, where no servo here has this id
             end = 7 + int.from_bytes(pending[5:7], "little") if newer else 4 + pending[3]
             if len(pending) < end:
                 break

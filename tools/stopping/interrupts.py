@@ -22,7 +22,7 @@ WORDS = {
     signal.SIGTERM: "SIGTERM",
     signal.SIGINT: "Ctrl-C",
 }
-"""The signals that end a run on servos. SIGINT is last, so that its handler is restored last."""
+"""The signals that end a run on servos. SIGINT, which raises, is last, to be restored last."""
 IN_SIMULATION = (signal.SIGTERM, signal.SIGINT)
 """The signals that end a run on a twin, which may be suspended by Ctrl-Z."""
 LAST_STRAW = 10

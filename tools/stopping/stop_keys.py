@@ -15,7 +15,7 @@ from contextlib import contextmanager, suppress
 KEYS = {b" ": "the space bar", b"q": "the key q", b"Q": "the key q"}
 
 Ask = Callable[[], str | None]
-"""Returns the name of a stop key that has been pressed, or None."""
+"""Function that returns the name of a stop key that has been pressed, or None."""
 
 
 def keyboard() -> int | None:

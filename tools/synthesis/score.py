@@ -52,9 +52,9 @@ def _skip(row: Row, _: float) -> float:
 TERMS: dict[str, Callable[[Row, float], float]] = {
     "falls": lambda row, _: 1.0 - row["steps"] / row["steps_requested"],  # share not walked
     "speed": _speed,  # error of the speed, as a share of --aim
-    "effort": _effort,  # log (1 + cost of transport), work / (weight x way)
+    "effort": _effort,  # log (1 + cost of transport): work / (weight x distance)
     "shake": lambda row, _: row["shake_rad_s"],  # rms of the base's angular velocity, rad/s
-    "drift": _drift,  # heading of 90 degrees, or as far sideways as forward
+    "drift": _drift,  # 1 for a heading of 90 degrees, or for as far sideways as forward
     "cross": _cross,  # interpenetration of the feet
     "flight": _flight,  # share of the steps without a flight phase
     "skip": _skip,  # share of the touchdowns that do not skip: left, left, right, right

@@ -97,7 +97,7 @@ class Search:
         options: dict[str, Any] = {
             "bounds": [_finite(lower), _finite(upper)],
             "randn": lambda *size: random.standard_normal(size),
-            "seed": float("nan"),  # the generator above is the only one
+            "seed": float("nan"),  # cma must not seed NumPy: `randn` is its only generator
             "verbose": -9,
         }
         if self.population is not None:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 from windup.hal.ranges import Range
 
-LONGEST = 1e7  # s, four months
+LONGEST = 1e7  # about four months, s
 
 Seed = Annotated[int, Range(0, 2**32 - 1)]
 Count = Annotated[int, Range(1, 1_000_000)]

@@ -94,7 +94,7 @@ class Rule:
         self._scripted = bool(self.at)
 
     def concerns(self, bus: str, identifier: int) -> bool:
-        """Return whether the fault can hit this device."""
+        """Return whether the fault can hit the device with this id on this bus."""
         here = self.bus is None or self.bus == bus
         return here and (self.ids is None or identifier in self.ids)
 

@@ -30,7 +30,7 @@ from windup.sim_twin.wire.world.bus_world import BusWorld
 CHUNK = 4096
 AHEAD = 0.002  # longest time by which replies may be computed ahead, s
 MARGIN = 0.0005  # shortest time by which the next reply must be computed ahead, s
-QUIET = 0.00015  # time without a due action that a step of the physics may take, s
+QUIET = 0.00015  # a step of the physics waits while bytes are due sooner than this, s
 SPIN = 0.00008  # time before the ends of an answer that is polled, not slept, s
 HOP = 0.000025  # latency of a pseudo-terminal each way, which the wire does not have, s
 SLIP = 0.1  # lag behind the wall clock above which simulated time is delayed instead, s

@@ -7,7 +7,7 @@ from windup.sim_twin.wire.servos.byte_table import ByteTable, Writes
 from windup.sim_twin.wire.servos.health import AMBIENT, warmed
 from windup.sim_twin.wire.servos.motor_loop import MotorLoop
 
-BOOT_SECONDS = 0.3  # silence after a reset, assumed
+BOOT_SECONDS = 0.3  # time without answers after a reset, s, assumed
 RETURN_DELAY_UNIT = 2e-6  # s
 NO_ID = 255
 

@@ -6,7 +6,7 @@ Unlike the X series, these servos accept a write of any run of bytes, also of ha
 from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
-TWOS: Final = 16  # two's complement, of two bytes
+TWOS: Final = 16  # `Field.sign` of two bytes in two's complement
 
 
 class Field(NamedTuple):

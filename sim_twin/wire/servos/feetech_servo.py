@@ -28,7 +28,7 @@ from windup.sim_twin.wire.shafts.shaft import Shaft
 VOLTAGE, ENCODER, TEMPERATURE, CURRENT, ANGLE, OVERLOAD = 0x01, 0x02, 0x04, 0x08, 0x10, 0x20
 
 SET_MIDDLE = 128  # written to the torque register
-FINE_SPEED, ZERO_IS_FASTEST, MANY_TURNS = 0x04, 0x08, 0x10  # bits of the phase
+FINE_SPEED, ZERO_IS_FASTEST, MANY_TURNS = 0x04, 0x08, 0x10  # bits of the phase register
 POSITION, SPEED, PWM, STEP = 0, 1, 2, 3
 FULL = 1000  # full scale of torque, load and PWM
 PROTECTION_UNIT = 0.010  # s

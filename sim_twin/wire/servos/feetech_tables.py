@@ -76,7 +76,7 @@ _STS = (
     Field(81, 1, "dts", "RW", 20, 0, 254),
     Field(82, 1, "speed_unit_factor", "RW", 1, 0, 254),
     Field(83, 1, "hts", "RW", 20, 0, 254),
-    Field(84, 1, "max_speed", "RW", 68, 0, 254),  # 3400 steps/s, as bam measured
+    Field(84, 1, "max_speed", "RW", 68, 0, 254),  # 3400 steps/s, measured by bam
     Field(85, 1, "max_acceleration", "RW", 0, 0, 254),  # 0: no limit, assumed
     Field(86, 1, "acceleration_factor", "RW", 1, 0, 254),
 )

@@ -18,7 +18,7 @@ from windup.sim_twin.wire.shafts.shaft import Shaft
 
 ALERT = 0x80  # bit of a status packet's error byte: Hardware Error Status is not 0
 TORQUE_BY_GOAL = 0x08  # bit of the drive mode
-TRIPPED = 0xFF  # bus watchdog: -1
+TRIPPED = 0xFF  # bus watchdog register after it has tripped: -1
 REMOTE = 20  # first protocol type for a remote control, which X330 servos have
 STARTUP_TORQUE, STARTUP_RESTORE = 0x01, 0x02  # bits of the startup configuration
 GOAL_LIMITS = {

@@ -19,7 +19,7 @@ from windup.sim_twin.wire.servos.register_file import (
 from windup.sim_twin.wire.servos.x_series import BAUD_RATES, PRESENT, Model
 from windup.sim_twin.wire.shafts.shaft import Shaft
 
-BOOT_SECONDS = 0.3  # silence after a reboot, assumed
+BOOT_SECONDS = 0.3  # time without answers after a reboot, s, assumed
 
 
 class Servo:

@@ -25,8 +25,8 @@ from windup.sim_twin.imu_errors import LowPass
 from windup.sim_twin.servo.servo_motor import KD, KP, VMAX
 from windup.sim_twin.twin import Twin
 
-FAR = 1e6  # rad
-SOFT = 1e-6  # N m/rad
+FAR = 1e6  # goal that saturates the voltage, rad
+SOFT = 1e-6  # stiffness of a commanded torque, N m/rad
 
 
 class TwinShaft:
