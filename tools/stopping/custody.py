@@ -127,7 +127,7 @@ class Custody:
             give_up(error)
 
     def _beat(self) -> None:
-        """Send the guardian a sign of life while the robot is idle.
+        """Send the guardian an idle heartbeat, if there is one.
 
         Raises:
             GuardianError: The guardian has died.
@@ -136,7 +136,7 @@ class Custody:
             self.guardian.idle()
 
     def _alive(self) -> None:
-        """Send a sign of life; ignore a dead guardian, which must not prevent a stop."""
+        """Send an idle heartbeat; ignore a dead guardian, which must not prevent a stop."""
         with suppress(GuardianError):
             self._beat()
 

@@ -1,7 +1,7 @@
 """Holds an armed robot between two runs, while the program loads a file or waits for a key.
 
 The servos receive no commands then and hold their last goals. A thread reads them, which checks
-their state and feeds their bus watchdog, and sends the guardian signs of life. It never runs
+their state and feeds their bus watchdog, and sends heartbeats to the guardian. It never runs
 concurrently with the loop: a run ends it before its first tick.
 """
 
@@ -26,7 +26,7 @@ class IdleKeeper:
     Args:
         backend: The robot.
         seconds: Longest time for which it is held, s.
-        alive: Called periodically as a sign of life of this process.
+        alive: Called periodically to send a heartbeat.
         give_up: Stops the robot; called in the thread with None when the time is over or a button
             was pressed, or with an error.
     """

@@ -151,7 +151,7 @@ class Parser:
             found.append(item)
 
     def _next(self, offset: int) -> tuple[Frame | FrameError | None, int]:
-        """Return the first complete item and its length; `offset` is the start in the chunk."""
+        """Return the first complete item and the bytes used; the data starts at `offset`."""
         data = self._pending
         start = data.find(HEADER)
         if start < 0:

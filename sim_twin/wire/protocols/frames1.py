@@ -116,7 +116,7 @@ class Parser1:
             found.append(item)
 
     def _next(self, offset: int) -> tuple[Frame1 | Frame1Error | None, int]:
-        """Return the first complete item and its length; `offset` is the start in the chunk."""
+        """Return the first complete item and the bytes used; the data starts at `offset`."""
         data = self._pending
         start = data.find(HEADER)
         if start < 0:
