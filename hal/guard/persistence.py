@@ -81,7 +81,7 @@ class Persistence:
         return values >= self._levels[1]
 
     def _together(self, beyond: Mask, supply: Array, fresh: Mask, now: float) -> Mask:
-        """Return (2, 2, 1) bool: all supply readings of the last `TOGETHER` s were `beyond`."""
+        """Return (2, 2, 1) bool: all supply readings for `TOGETHER` s or longer were `beyond`."""
         well = ((supply < self._levels[:, SUPPLY]) & fresh).any(axis=2)
         unwell = (beyond & fresh).any(axis=2)
         self._first = np.where(unwell, np.minimum(self._first, now), self._first)
