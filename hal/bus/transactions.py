@@ -189,7 +189,7 @@ class BusTransactions:
         return chain.valid
 
     def _collect_part(self, part: CyclicRead) -> None:
-        """Collect the answer of one servo; a late earlier one is told by the bytes after it."""
+        """Collect the answer of one servo; a late one is recognised by bytes after it."""
         id = part.spans[0].id
         stream, now = self._answer(part), self.port.clock.now()
         if id in self._owed or now < self._parts_owed.get(id, -inf):
