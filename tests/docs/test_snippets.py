@@ -15,6 +15,7 @@ from windup.tools import cli
 PYTHON = [block for block in all_blocks("python") if not block.text.startswith("--8<--")]
 RUNS = [block for block in PYTHON if not block.note.startswith("not run")]
 SHELL = all_blocks("sh")
+PLUGIN = "windup.tools.testing.pytest_plugin"
 
 
 @pytest.fixture(autouse=True)
@@ -29,8 +30,12 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 
 @pytest.mark.parametrize("block", RUNS, ids=lambda block: block.place)
-def test_python_runs(block: Block) -> None:
-    exec(compile(block.text, block.place, "exec"), {"__name__": block.place})
+def test_python_runs(block: Block, pytester: pytest.Pytester) -> None:
+    if "\ndef test_" not in block.text:
+        exec(compile(block.text, block.place, "exec"), {"__name__": block.place})
+        return
+    pytester.makepyfile(block.text)
+    pytester.runpytest("-p", PLUGIN).assert_outcomes(passed=block.text.count("\ndef test_"))
 
 
 def test_python_that_does_not_run_says_why() -> None:
