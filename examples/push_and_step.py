@@ -30,7 +30,7 @@ def main() -> dict[str, dict[str, Any]]:
     for way, result in results.items():
         if result["survived"]:
             settling = result["settling_s"]
-            print(f"{way:12s} stays up, {result['steps']} steps, still after {settling:.2f} s")
+            print(f"{way:12s} stays up, steps: {result['steps']}, still after {settling:.2f} s")
         else:
             print(f"{way:12s} {result['reason']}")
     return results
