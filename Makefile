@@ -15,7 +15,7 @@ test: .venv/dev.stamp .venv/clients.stamp
 	$(BIN)/pytest -n 2
 
 docs: .venv/docs.stamp
-	$(BIN)/mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 	@echo "documentation: .venv/site/index.html"
 
 .venv/bin/python:

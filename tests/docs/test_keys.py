@@ -33,8 +33,8 @@ def defaults(kind: Any) -> dict[str, Any]:
     if dataclasses.is_dataclass(kind):
         fields = dataclasses.fields(kind)
         return {field.name: field.default for field in fields if field.name != "robot"}
-    fields = msgspec.structs.fields(kind)
-    return {field.encode_name: None if field.required else default(field) for field in fields}
+    keys = msgspec.structs.fields(kind)
+    return {key.encode_name: None if key.required else default(key) for key in keys}
 
 
 def default(field: msgspec.structs.FieldInfo) -> Any:
