@@ -54,7 +54,7 @@ def without_times(value: Any) -> Any:
 
 def result_of(words: list[str]) -> str:
     """Return the JSON of a command, without times, and its exit status."""
-    windup = [sys.executable, "-c", "from tools.cli import main; main()"]
+    windup = [sys.executable, "-c", "from windup.tools.cli import main; main()"]
     done = subprocess.run(
         [*windup, *words, "--json", "-"], capture_output=True, text=True, check=False
     )

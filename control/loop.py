@@ -7,10 +7,10 @@ from typing import Protocol
 
 import numpy as np
 
-from hal.command import JointCommand
-from hal.controller import Controller, Stopwatch
-from hal.guard import GuardedBackend
-from hal.observation import Observation
+from windup.hal.command import JointCommand
+from windup.hal.controller import Controller, Stopwatch
+from windup.hal.guard import GuardedBackend
+from windup.hal.observation import Observation
 
 # Called once a tick; a reason ends the run.
 Until = Callable[[Observation], str | None]

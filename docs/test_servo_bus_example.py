@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hal.errors import StaleStateError
+from windup.hal.errors import StaleStateError
 
 
 def test_a_robot_stands_although_its_bus_is_bad(servo_bus):

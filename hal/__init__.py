@@ -1,13 +1,13 @@
-"""What a robot is to a controller, and the buses that move one."""
+"""Hardware abstraction layer: the interfaces between controller and robot, and the servo buses."""
 
-from hal.backend import Backend, Clock
-from hal.command import JointCommand
-from hal.contacts import ContactSensors
-from hal.controller import Controller, Predictor
-from hal.errors import WindupError
-from hal.guard import GuardedBackend, SafetyLimits
-from hal.joints import Joint, Joints
-from hal.observation import BaseState, ImuState, JointState, Observation
+from windup.hal.backend import Backend, Clock
+from windup.hal.command import JointCommand
+from windup.hal.contacts import ContactSensors
+from windup.hal.controller import Controller, Predictor
+from windup.hal.errors import WindupError
+from windup.hal.guard import GuardedBackend, SafetyLimits
+from windup.hal.joints import Joint, Joints
+from windup.hal.observation import BaseState, ImuState, JointState, Observation
 
 __all__ = [
     "Backend",

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hal.joints import Array
-from hal.observation import BaseState, ImuState, JointState, Observation
-from sim_twin.imu_errors import ImuErrors
-from sim_twin.places import places
-from sim_twin.twin import Twin
+from windup.hal.joints import Array
+from windup.hal.observation import BaseState, ImuState, JointState, Observation
+from windup.sim_twin.imu_errors import ImuErrors
+from windup.sim_twin.places import places
+from windup.sim_twin.twin import Twin
 
 AMBIENT = 25.0
 

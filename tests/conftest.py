@@ -4,7 +4,7 @@ import tempfile
 import pytest
 from hypothesis import settings
 
-from robots import RobotDescription, load_robot
+from windup.robots import RobotDescription, load_robot
 
 pytest_plugins = ["pytester"]
 

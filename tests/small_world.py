@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
-from control.gait import Gait, load_gait
-from hal.command import JointCommand
-from hal.contacts import ContactSensors
-from hal.controller import PolicyInput
-from hal.joints import Array, Joint, Joints, Mask
-from hal.mirror import Mirror
-from hal.observation import BaseState, JointState, Observation
-from hal.torque_state import TorqueState
+from windup.control.pose_graph.gait import Gait, load_gait
+from windup.hal.command import JointCommand
+from windup.hal.contacts import ContactSensors
+from windup.hal.controller import PolicyInput
+from windup.hal.joints import Array, Joint, Joints, Mask
+from windup.hal.mirror import Mirror
+from windup.hal.observation import BaseState, JointState, Observation
+from windup.hal.torque_state import TorqueState
 
 JOINTS = Joints(
     (

@@ -58,12 +58,23 @@ def parse(path: Path) -> ast.AST:
 
 @pytest.mark.parametrize("room", MAY_IMPORT)
 def test_a_room_imports_only_the_rooms_it_may(room: str) -> None:
-    closed = set(MAY_IMPORT) - MAY_IMPORT[room] - {room}
+    closed = {f"windup.{other}" for other in set(MAY_IMPORT) - MAY_IMPORT[room] - {room}}
     found = {
         f"{path.relative_to(ROOT)}: {module}"
         for path in files(room)
         for module in imported(parse(path))
         if names(module, closed | {"tests"})
+    }
+    assert found == set()
+
+
+@pytest.mark.parametrize("room", [*MAY_IMPORT, "tests"])
+def test_rooms_are_imported_by_the_one_name_of_the_package(room: str) -> None:
+    found = {
+        f"{path.relative_to(ROOT)}: {module}"
+        for path in files(room)
+        for module in imported(parse(path))
+        if names(module, set(MAY_IMPORT))
     }
     assert found == set()
 
@@ -88,15 +99,15 @@ def test_only_tools_talk_to_people(room: str) -> None:
 @pytest.mark.parametrize(
     "source",
     [
-        "import sim_twin.twin",
-        "from sim_twin import twin",
-        "from sim_twin.twin import Twin",
-        "def late():\n    import sim_twin",
-        "if TYPE_CHECKING:\n    from sim_twin.twin import Twin",
+        "import windup.sim_twin.twin",
+        "from windup.sim_twin import twin",
+        "from windup.sim_twin.twin import Twin",
+        "def late():\n    import windup.sim_twin",
+        "if TYPE_CHECKING:\n    from windup.sim_twin.twin import Twin",
     ],
 )
 def test_the_rule_sees_every_way_to_import(source: str) -> None:
-    assert any(names(module, {"sim_twin"}) for module in imported(ast.parse(source)))
+    assert any(names(module, {"windup.sim_twin"}) for module in imported(ast.parse(source)))
 
 
 def test_the_rule_sees_a_print() -> None:

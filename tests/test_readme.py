@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tools import cli
+from windup.tools import cli
 
 README = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"```(\w*)\n(.*?)```", README, flags=re.DOTALL)

@@ -1,66 +1,21 @@
 """The `windup` command: parse, run, and turn errors into one line and an exit status."""
 
-import io
 import logging
 import sys
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
-from typing import Annotated, Any, get_args
+from typing import Any
 
-import mujoco
-import tyro
-
-from hal.errors import UnwellError, UsageError, WindupError
-from tools.bench import Bench
-from tools.emulate import Emulate
-from tools.estimate import Estimate
-from tools.footprints import Footprints
-from tools.health import Health
-from tools.interrupts import end_on_signals, ignore_signals
-from tools.output import console, error_record, print_result, write_json
-from tools.overview import overview
-from tools.parse_errors import mistake
-from tools.play import Play
-from tools.push import Push
-from tools.reproduce import Reproduce
-from tools.rise import Rise
-from tools.robots_list import Robots
-from tools.run_notes import NOTES
-from tools.scan import Scan
-from tools.stand import Stand
-from tools.step import Step
-from tools.stop import Stop
-from tools.streams import drop_unwritten, fill_closed_streams
-from tools.stride import Stride
-from tools.sweep import Sweep, separate
-from tools.synthesis import Synthesise
-from tools.walk import Walk
-from tools.writing import STANDARD_OUTPUT, check_writable, writing
-
-Command = (
-    Annotated[Walk, tyro.conf.subcommand("walk")]
-    | Annotated[Play, tyro.conf.subcommand("play")]
-    | Annotated[Stand, tyro.conf.subcommand("stand")]
-    | Annotated[Rise, tyro.conf.subcommand("rise")]
-    | Annotated[Push, tyro.conf.subcommand("push")]
-    | Annotated[Step, tyro.conf.subcommand("step")]
-    | Annotated[Footprints, tyro.conf.subcommand("footprints")]
-    | Annotated[Stride, tyro.conf.subcommand("stride")]
-    | Annotated[Stop, tyro.conf.subcommand("stop")]
-    | Annotated[Scan, tyro.conf.subcommand("scan")]
-    | Annotated[Emulate, tyro.conf.subcommand("emulate")]
-    | Annotated[Health, tyro.conf.subcommand("health")]
-    | Annotated[Robots, tyro.conf.subcommand("robots")]
-    | Annotated[Estimate, tyro.conf.subcommand("estimate")]
-    | Annotated[Bench, tyro.conf.subcommand("bench")]
-    | Annotated[Sweep, tyro.conf.subcommand("sweep")]
-    | Annotated[Reproduce, tyro.conf.subcommand("reproduce")]
-    | Annotated[Synthesise, tyro.conf.subcommand("synthesise")]
-)
-
-COMMANDS: dict[str, type] = {
-    get_args(command)[1].name: get_args(command)[0] for command in get_args(Command)
-}
+from windup.hal.errors import UnwellError, UsageError, WindupError
+from windup.tools.command_line.near_word import near_word
+from windup.tools.command_line.overview import overview
+from windup.tools.command_line.sweep_line import separate
+from windup.tools.command_line.table import COMMANDS
+from windup.tools.command_line.version import installed_version
+from windup.tools.stopping.interrupts import end_on_signals, ignore_signals
+from windup.tools.terminal.output import console, error_record, print_result, write_json
+from windup.tools.terminal.run_notes import NOTES
+from windup.tools.terminal.streams import drop_unwritten, fill_closed_streams
+from windup.tools.terminal.writing import check_writable
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -76,15 +31,13 @@ def main(arguments: list[str] | None = None) -> None:
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line and return the exit status."""
     logging.basicConfig(level=logging.WARNING, format="windup: %(message)s")
-    # MuJoCo would write its warnings into a file in the present folder; a twin that diverges says
-    # so itself.
-    mujoco.set_mju_user_warning(logging.getLogger("mujoco").debug)
     command = None
     NOTES.begin()
     words = list(sys.argv[1:] if arguments is None else arguments)
     end_on_signals()
     try:
-        command = parse(separate(words))
+        command = parse(words)
+        _quiet_mujoco()
         command.check()
         check_writable(getattr(command, "json", None))
         command.warn()
@@ -107,6 +60,15 @@ def run(arguments: list[str] | None = None) -> int:
         return 1  # whoever read our words, such as `head`, has gone
     except SystemExit as parsed:
         return parsed.code if isinstance(parsed.code, int) else 2
+
+
+def _quiet_mujoco() -> None:
+    """Keep MuJoCo from writing its warnings into a file in the present folder.
+
+    A twin that diverges says so itself.
+    """
+    if (mujoco := sys.modules.get("mujoco")) is not None:
+        mujoco.set_mju_user_warning(logging.getLogger("mujoco").debug)
 
 
 def _say_warnings(ended_by: str = "") -> None:
@@ -141,28 +103,18 @@ def parse(arguments: list[str]) -> Any:
     if arguments in (["-h"], ["--help"]):
         print_result(overview(COMMANDS))
         raise SystemExit(0)
-    said = io.StringIO()
-    try:
-        with redirect_stderr(said), redirect_stdout(said):
-            return _parse(arguments)
-    except SystemExit as ended:
-        if ended.code:
-            raise UsageError(mistake(arguments, COMMANDS, said.getvalue())) from None
-    check_writable(STANDARD_OUTPUT)
-    with writing(STANDARD_OUTPUT):
-        try:
-            return _parse(arguments)  # its help: again, as wide as the terminal is
-        finally:
-            sys.stdout.flush()
-
-
-def _parse(arguments: list[str]) -> Any:
-    return tyro.cli(
-        Command,
-        prog="windup",
-        args=arguments,
-        config=(tyro.conf.OmitSubcommandPrefixes, tyro.conf.OmitArgPrefixes),
+    if arguments == ["--version"]:
+        print_result(f"windup {installed_version()}\n")
+        raise SystemExit(0)
+    if (name := arguments[0]) not in COMMANDS:
+        near = near_word(name, (*COMMANDS, "--help"))
+        raise UsageError(f"unknown command {name!r}{near}; `windup --help` lists all")
+    from windup.tools.command_line.parsing import (
+        parse_options,  # only now: it takes longer than the help
     )
+
+    kind = COMMANDS[name].load()
+    return parse_options(name, kind, separate(arguments)[1:])
 
 
 def _write_error(command: object, error: WindupError) -> None:

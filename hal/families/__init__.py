@@ -1,10 +1,10 @@
-"""Families of servos: what differs between makes, one object each."""
+"""Families of servos: one object each with all that differs between makers."""
 
-from hal.errors import UnknownNameError
-from hal.families.dynamixel_1 import DYNAMIXEL_1
-from hal.families.dynamixel_x import DYNAMIXEL_X
-from hal.families.family import Block, Family, Want
-from hal.families.feetech import FEETECH_SCS, FEETECH_STS
+from windup.hal.errors import UnknownNameError
+from windup.hal.families.dynamixel_1 import DYNAMIXEL_1
+from windup.hal.families.dynamixel_x import DYNAMIXEL_X
+from windup.hal.families.family import Block, Family, RequiredSetting
+from windup.hal.families.feetech import FEETECH_SCS, FEETECH_STS
 
 FAMILIES = (DYNAMIXEL_X, DYNAMIXEL_1, FEETECH_STS, FEETECH_SCS)
 
@@ -12,13 +12,13 @@ _OF_MODEL = {name: family for family in FAMILIES for name in family.numbers.valu
 
 
 def family_of(model: str) -> Family:
-    """Return the family of a servo; what follows a dash may be its winding.
+    """Return the family of a servo model; a suffix after a dash, such as its winding, is ignored.
 
     >>> family_of("STS3215-7.4V").name, family_of("MX-28").name
     ('Feetech STS', 'Dynamixel AX/MX')
 
     Raises:
-        UnknownNameError: No family has such a servo.
+        UnknownNameError: No family has such a model.
     """
     name = model if model in _OF_MODEL else model.split("-")[0]
     try:
@@ -35,6 +35,6 @@ __all__ = [
     "FEETECH_STS",
     "Block",
     "Family",
-    "Want",
+    "RequiredSetting",
     "family_of",
 ]

@@ -1,11 +1,10 @@
-"""Dynamixel AX and MX under protocol 1, mixed on a bus as Poppy and Darwin have them."""
+"""Dynamixel AX and MX with protocol 1, also mixed on one bus, as in Poppy and Darwin."""
 
-from hal.families.dialect import Dynamixel1
-from hal.families.family import Block, Family, Mark, Want
-from hal.families.gain import Gain, slope_pair, slope_steps
-from hal.protocols.protocol1 import LONGEST_DYNAMIXEL
-from hal.servo_model import ServoModel
-from hal.servos.mx_registers import (
+from windup.hal.families.dialect import Dynamixel1
+from windup.hal.families.family import Block, Family, Mark, RequiredSetting
+from windup.hal.families.gain import Gain, slope_pair, slope_steps
+from windup.hal.protocols.protocol1 import LONGEST_DYNAMIXEL
+from windup.hal.servos.mx_registers import (
     BAUD_CODES,
     COMMON,
     FAST_CODES,
@@ -13,11 +12,12 @@ from hal.servos.mx_registers import (
     NUMBERS,
     mx_registers,
 )
+from windup.hal.servos.servo_model import ServoModel
 
 FULL = 1023
-"""Torque limit that limits nothing."""
+"""Maximum torque limit: no limitation."""
 MARKED = FULL - 1
-"""The same, and it shows a restart, which loads `max_torque`; a shutdown leaves 0."""
+"""Torque limit set by arming, to detect a restart, which loads `max_torque`; a shutdown sets 0."""
 STATE = (
     COMMON["present_position"],
     COMMON["present_velocity"],
@@ -28,25 +28,25 @@ _P_GAIN = Gain(mx_registers("MX-28")["position_p_gain"], 254)
 _SLOPES = Gain(mx_registers("AX-12A")["compliance_slopes"], 512, slope_steps, slope_pair)
 
 
-def _wanted(model: ServoModel) -> tuple[Want, ...]:
-    """Return the settings; those a model does not have are passed over."""
+def _wanted(model: ServoModel) -> tuple[RequiredSetting, ...]:
+    """Return the required settings; those that a model does not have are skipped."""
     return (
-        Want("return_delay", 0),
-        Want("drive_mode", 0),
-        Want("min_position_limit", 0),
-        Want("max_position_limit", model.last_count),
-        Want("multi_turn_offset", 0),
-        Want("resolution_divider", 1),
-        Want("max_torque", FULL),
-        Want("status_return_level", 2),
-        Want("torque_mode", 0),
-        Want("torque_limit", MARKED),
-        Want("goal_speed", 0),  # no limit
-        Want("goal_acceleration", 0),
-        Want("position_i_gain", 0),
-        Want("position_d_gain", 0),
-        Want("cw_compliance_margin", 0),
-        Want("ccw_compliance_margin", 0),
+        RequiredSetting("return_delay", 0),
+        RequiredSetting("drive_mode", 0),
+        RequiredSetting("min_position_limit", 0),
+        RequiredSetting("max_position_limit", model.last_count),
+        RequiredSetting("multi_turn_offset", 0),
+        RequiredSetting("resolution_divider", 1),
+        RequiredSetting("max_torque", FULL),
+        RequiredSetting("status_return_level", 2),
+        RequiredSetting("torque_mode", 0),
+        RequiredSetting("torque_limit", MARKED),
+        RequiredSetting("goal_speed", 0),  # no limit
+        RequiredSetting("goal_acceleration", 0),
+        RequiredSetting("position_i_gain", 0),
+        RequiredSetting("position_d_gain", 0),
+        RequiredSetting("cw_compliance_margin", 0),
+        RequiredSetting("ccw_compliance_margin", 0),
     )
 
 

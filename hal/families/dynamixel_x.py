@@ -1,11 +1,11 @@
-"""Dynamixel X: protocol 2, little-endian, two's complement, a watchdog."""
+"""Dynamixel X: protocol 2, little-endian, two's complement, with a Bus Watchdog."""
 
-from hal.families.dialect import Protocol2
-from hal.families.family import Block, Family, Mark, Want
-from hal.families.gain import Gain
-from hal.registers import Register
-from hal.servo_model import ServoModel
-from hal.servos.x_series_registers import (
+from windup.hal.families.dialect import Protocol2
+from windup.hal.families.family import Block, Family, Mark, RequiredSetting
+from windup.hal.families.gain import Gain
+from windup.hal.registers import Register
+from windup.hal.servos.servo_model import ServoModel
+from windup.hal.servos.x_series_registers import (
     BAUD_CODES,
     COMMON,
     HARDWARE_ERRORS,
@@ -18,10 +18,10 @@ EXTENDED_MODE = 4
 PWM_FULL = 885
 NO_SECOND_ID = 255
 GUARDED = 0x34
-"""Errors that have to end torque: overheating, electrical shock, overload (e-Manual, Shutdown)."""
+"""Shutdown bits required: overheating, electrical shock, overload (e-Manual, Shutdown)."""
 REGISTERS = {register.name: register for register in COMMON}
 
-# Current or load, velocity, position: one run of registers, the same in the whole family.
+# Current or load, velocity, position: consecutive registers, the same in the whole family.
 STATE = (
     REGISTERS["present_position"],
     REGISTERS["present_velocity"],
@@ -29,29 +29,31 @@ STATE = (
 )
 
 WANTED = (
-    Want("return_delay", 0),
-    Want("drive_mode", 0),  # counts up, velocity profile, a goal does not switch torque on
-    Want("operating_mode", POSITION_MODE),
-    Want("secondary_id", NO_SECOND_ID),  # with one it obeys what others are told
-    Want("shutdown", GUARDED, GUARDED),
-    Want("pwm_limit", PWM_FULL),
-    Want("min_position_limit", 0),  # a goal beyond these is ignored without a word
-    Want("max_position_limit", 4095),
-    Want("startup_configuration", 0),  # no torque after a brown-out
-    Want("status_return_level", 2),
-    Want("bus_watchdog", 0),
-    Want("goal_pwm", PWM_FULL),
-    Want("profile_velocity", 0),
-    Want("profile_acceleration", 0),
-    Want("position_i_gain", 0),
-    Want("position_d_gain", 0),
-    Want("feedforward_1st_gain", 0),
-    Want("feedforward_2nd_gain", 0),
+    RequiredSetting("return_delay", 0),
+    RequiredSetting(
+        "drive_mode", 0
+    ),  # normal direction, velocity-based profile, a goal does not switch torque on
+    RequiredSetting("operating_mode", POSITION_MODE),
+    RequiredSetting("secondary_id", NO_SECOND_ID),  # with one it obeys commands to other servos
+    RequiredSetting("shutdown", GUARDED, GUARDED),
+    RequiredSetting("pwm_limit", PWM_FULL),
+    RequiredSetting("min_position_limit", 0),  # goals beyond these are ignored
+    RequiredSetting("max_position_limit", 4095),
+    RequiredSetting("startup_configuration", 0),  # no torque after a brown-out
+    RequiredSetting("status_return_level", 2),
+    RequiredSetting("bus_watchdog", 0),
+    RequiredSetting("goal_pwm", PWM_FULL),
+    RequiredSetting("profile_velocity", 0),
+    RequiredSetting("profile_acceleration", 0),
+    RequiredSetting("position_i_gain", 0),
+    RequiredSetting("position_d_gain", 0),
+    RequiredSetting("feedforward_1st_gain", 0),
+    RequiredSetting("feedforward_2nd_gain", 0),
 )
 _GAIN = Gain(REGISTERS["position_p_gain"], 16383)
 
 
-def _wanted(model: ServoModel) -> tuple[Want, ...]:
+def _wanted(model: ServoModel) -> tuple[RequiredSetting, ...]:
     return WANTED
 
 
@@ -72,7 +74,7 @@ DYNAMIXEL_X = Family(
     check=Block(64, 83, STATE),
     check_alone=True,
     wanted=_wanted,
-    extended=Want("operating_mode", EXTENDED_MODE),
+    extended=RequiredSetting("operating_mode", EXTENDED_MODE),
     gain=_gain,
     alert=0x80,
     errors=HARDWARE_ERRORS,

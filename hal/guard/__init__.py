@@ -1,9 +1,9 @@
-"""The guard between every controller and every backend: limits, clamps, health, and how to stop."""
+"""The guard between controllers and backends: limits, clamps, health checks and stop policies."""
 
-from hal.guard.guarded import CROUCH_SECONDS, GuardedBackend
-from hal.guard.levels import HealthLevels, Kind
-from hal.guard.limits import SafetyLimits, StopPolicy
-from hal.guard.watch import HealthWatch
+from windup.hal.guard.guarded import CROUCH_SECONDS, GuardedBackend
+from windup.hal.guard.levels import HealthLevels, Kind
+from windup.hal.guard.limits import SafetyLimits, StopPolicy
+from windup.hal.guard.watch import HealthWatch
 
 __all__ = [
     "CROUCH_SECONDS",

@@ -1,12 +1,12 @@
-"""How it is said that torque is not off after a stop."""
+"""Errors for a stop after which torque is not, or may not be, off."""
 
-from hal.errors import TorqueOnError, TorqueUnknownError
-from hal.joints import Joints
-from hal.torque_state import TorqueState
+from windup.hal.errors import TorqueOnError, TorqueUnknownError
+from windup.hal.joints import Joints
+from windup.hal.torque_state import TorqueState
 
 
 def check_off(state: TorqueState, joints: Joints) -> None:
-    """Raise unless all torque was read back as off.
+    """Raise unless the torque of all joints was read back as off.
 
     Raises:
         TorqueOnError: A joint read back as on.

@@ -20,11 +20,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hal.imu.frame_clock import FrameClock
-from hal.imu.quaternion import between, conjugate, euler_zxy, multiply, rotate
-from hal.joints import Array
-from hal.observation import ImuState
-from hal.port import Port
+from windup.hal.imu.frame_clock import FrameClock
+from windup.hal.imu.quaternion import between, conjugate, euler_zxy, multiply, rotate
+from windup.hal.joints import Array
+from windup.hal.observation import ImuState
+from windup.hal.port.port import Port
 
 HEADER = b"\xaa\xaa"
 LENGTH = 19

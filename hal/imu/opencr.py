@@ -10,10 +10,10 @@ from math import pi
 
 import numpy as np
 
-from hal.joints import Array
-from hal.observation import ImuState
-from hal.protocols.protocol2 import Span
-from hal.registers import Register
+from windup.hal.joints import Array
+from windup.hal.observation import ImuState
+from windup.hal.protocols.protocol2 import Span
+from windup.hal.registers import Register
 
 MODEL_NUMBER = 0x7400
 """What the board answers to a ping."""

@@ -4,7 +4,7 @@ from math import atan2, cos, sin
 
 import numpy as np
 
-from hal.joints import Array
+from windup.hal.joints import Array
 
 
 def multiply(a: Array, b: Array) -> Array:

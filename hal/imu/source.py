@@ -2,8 +2,8 @@
 
 from typing import Protocol
 
-from hal.observation import ImuState
-from hal.port import Port
+from windup.hal.observation import ImuState
+from windup.hal.port.port import Port
 
 
 class ImuSource(Protocol):

@@ -1,5 +1,5 @@
-"""Data sheets of servos: one table a family, one line a servo."""
+"""Data sheets of servos: one table per family, one entry per servo model."""
 
-from hal.servos.catalogue import servo_model, servo_names
+from windup.hal.servos.catalogue import servo_model, servo_names
 
 __all__ = ["servo_model", "servo_names"]

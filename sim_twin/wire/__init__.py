@@ -1,18 +1,19 @@
-"""Emulated servos on a bus. Importing this makes ``twin://`` a port that pyserial can open."""
+"""Emulated servos on a bus; importing this lets pyserial open ports named ``twin://...``."""
 
 import serial
 
-from sim_twin.wire.address import Address, parse_address
-from sim_twin.wire.build import build_world
-from sim_twin.wire.world import World
-from sim_twin.wire.worlds import drop_world, find_world, put_world
+from windup.sim_twin.wire.world.address import Address, parse_address
+from windup.sim_twin.wire.world.build import build_world
+from windup.sim_twin.wire.world.bus_world import BusWorld
+from windup.sim_twin.wire.world.worlds import drop_world, find_world, put_world
 
-if __name__ not in serial.protocol_handler_packages:
-    serial.protocol_handler_packages.append(__name__)
+HANDLERS = f"{__name__}.serve"
+if HANDLERS not in serial.protocol_handler_packages:
+    serial.protocol_handler_packages.append(HANDLERS)
 
 __all__ = [
     "Address",
-    "World",
+    "BusWorld",
     "build_world",
     "drop_world",
     "find_world",

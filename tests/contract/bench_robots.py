@@ -7,18 +7,18 @@ from typing import Final
 
 import numpy as np
 
-from hal.coupling import Coupling, Couplings
-from hal.joints import Joint, Joints
-from hal.servo_backend import BusPort, ServoBackend
-from hal.servo_model import ServoMount
-from hal.servos import servo_model
-from sim_twin.wire import put_world
-from sim_twin.wire.bus import Bus
-from sim_twin.wire.device import Device
-from sim_twin.wire.families import PROTOCOLS, make_language, make_servo
-from sim_twin.wire.schedule import Schedule
-from sim_twin.wire.shaft import InertiaShaft
-from sim_twin.wire.world import Bench, World
+from windup.hal.coupling import Coupling, Couplings
+from windup.hal.joints import Joint, Joints
+from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
+from windup.hal.servos import servo_model
+from windup.hal.servos.servo_model import ServoMount
+from windup.sim_twin.wire import put_world
+from windup.sim_twin.wire.bus.bus import Bus
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.schedule import Schedule
+from windup.sim_twin.wire.shafts.shaft import InertiaShaft
+from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
+from windup.sim_twin.wire.world.families import PROTOCOLS, make_language, make_servo
 
 BAUD = 1_000_000
 REACH = 1.0  # rad, of every joint, both ways
@@ -100,7 +100,7 @@ def _joints(places: Sequence[Place], couplings: Sequence[Coupling], supply: floa
     return Joints(tuple(Joint(name, -REACH, REACH, float(kp), float(kd)) for name, kp, kd in rows))
 
 
-def _world(places: Sequence[Place], supply: float) -> World:
+def _world(places: Sequence[Place], supply: float) -> BusWorld:
     schedule, shafts = Schedule(), []
     hung: dict[str, list[Device]] = {}
     for place in places:
@@ -113,7 +113,7 @@ def _world(places: Sequence[Place], supply: float) -> World:
         name: Bus(name, devices, make_language(languages[name]), schedule, BAUD)
         for name, devices in hung.items()
     }
-    return World(Bench(shafts), schedule, buses, supply)
+    return BusWorld(Bench(shafts), schedule, buses, supply)
 
 
 Opener = Callable[[], ServoBackend]

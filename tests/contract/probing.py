@@ -6,11 +6,11 @@ from typing import Final
 
 import numpy as np
 
-from hal.backend import Backend
-from hal.joints import Array
-from hal.servo_backend import ServoBackend
-from robots import load_robot
-from tools.stack import servo_backend
+from windup.hal.backend import Backend
+from windup.hal.joints import Array
+from windup.hal.servo_bus.servo_backend import ServoBackend
+from windup.robots import load_robot
+from windup.tools.robot.stack import servo_backend
 
 TICK: Final = 0.008
 """Between two ticks, s."""

@@ -5,17 +5,17 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from hal.backend import Backend
-from hal.command import FIELDS, JointCommand, joint_torque
-from hal.errors import UnsafeCommandError
-from hal.guard import GuardedBackend, SafetyLimits
-from hal.joints import Array
-from hal.observation import Observation
-from robots import load_robot
-from sim_twin.backend import TwinBackend
-from sim_twin.twin import Twin
 from tests.contract.bench_robots import ROBOTS
 from tests.contract.probing import TICK, free, resolution, wired
+from windup.hal.backend import Backend
+from windup.hal.command import FIELDS, JointCommand, joint_torque
+from windup.hal.errors import UnsafeCommandError
+from windup.hal.guard import GuardedBackend, SafetyLimits
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
+from windup.robots import load_robot
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.twin import Twin
 
 Opener = Callable[[], Backend]
 BACKENDS: dict[str, Opener] = {

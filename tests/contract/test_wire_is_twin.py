@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-import sim_twin.wire as wire
-from hal.backend import Backend
-from hal.command import JointCommand
-from hal.joints import Array
-from hal.servo_backend import ServoBackend
-from robots import load_robot
-from sim_twin.backend import TwinBackend
-from sim_twin.twin import Twin
+import windup.sim_twin.wire as wire
 from tests.contract.probing import COUNT, TICK, wired
+from windup.hal.backend import Backend
+from windup.hal.command import JointCommand
+from windup.hal.joints import Array
+from windup.hal.servo_bus.servo_backend import ServoBackend
+from windup.robots import load_robot
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.twin import Twin
 
 
 def way(backend: Backend, swing: float) -> Array:

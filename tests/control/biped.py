@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 import mujoco
 import numpy as np
 
-from control.estimator import BaseEstimator
-from control.foot_load import FootLoad
-from control.soles import Soles
-from hal.contacts import ContactSensors
-from hal.joints import Array
-from hal.observation import BaseState, ImuState, JointState, Observation
+from windup.control.estimation.estimator import BaseEstimator
+from windup.control.estimation.foot_load import FootLoad
+from windup.control.kinematics.soles import Soles
+from windup.hal.contacts import ContactSensors
+from windup.hal.joints import Array
+from windup.hal.observation import BaseState, ImuState, JointState, Observation
 
 DT = 0.004
 GRAVITY = 9.81

@@ -3,13 +3,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import pytest
 
-from control.loop import LoopReport, run_loop
-from hal.command import JointCommand
-from hal.controller import Stopwatch
-from hal.errors import UnsafeCommandError
-from hal.guard import GuardedBackend, SafetyLimits
-from hal.observation import BaseState, Observation
 from tests.small_world import JOINTS, FakeBackend, FakeClock, N
+from windup.control.loop import LoopReport, run_loop
+from windup.hal.command import JointCommand
+from windup.hal.controller import Stopwatch
+from windup.hal.errors import UnsafeCommandError
+from windup.hal.guard import GuardedBackend, SafetyLimits
+from windup.hal.observation import BaseState, Observation
 
 PERIOD = 0.25  # binary, so that times add up exactly
 

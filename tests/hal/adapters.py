@@ -1,10 +1,10 @@
 """The fake wires behind an adapter that holds answers back, or gives back what it is sent."""
 
-from hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FEETECH_SCS, FEETECH_STS, Family
-from hal.port import Port
-from hal.servo_model import ServoModel
 from tests.hal.fake_bus import FakeSerial
 from tests.hal.fake_bus1 import MX, SCS, STS, FakeSerial1
+from windup.hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FEETECH_SCS, FEETECH_STS, Family
+from windup.hal.port.port import Port
+from windup.hal.servos.servo_model import ServoModel
 
 
 class Adapter(FakeSerial):

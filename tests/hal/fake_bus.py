@@ -6,9 +6,9 @@ are plain bytes without any rules. What goes wrong is said by attributes.
 
 from collections.abc import Callable
 
-from hal.port import Port
-from hal.protocols import protocol2
-from hal.protocols.crc16 import crc16
+from windup.hal.port.port import Port
+from windup.hal.protocols import protocol2
+from windup.hal.protocols.crc16 import crc16
 
 FAST_HEAD = bytes.fromhex("fffffd00fe")
 

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hal.guard.finding import Finding
-from hal.guard.imu_watch import ImuWatch
-from hal.joints import Array
-from hal.observation import ImuState, JointState, Observation
+from windup.hal.guard.finding import Finding
+from windup.hal.guard.imu_watch import ImuWatch
+from windup.hal.joints import Array
+from windup.hal.observation import ImuState, JointState, Observation
 
 DT = 1.0 / 128.0  # no rounding in sums of it
 GRAVITY = 9.81
@@ -71,6 +71,6 @@ def tipping(seconds: float, begin: float, height: float = 0.25) -> list[Observat
 def found(watch: ImuWatch, run: Sequence[Observation]) -> tuple[float, Finding] | None:
     """Return when something is first wrong, and what."""
     for observation in run:
-        if (finding := watch.look(observation)) is not None:
+        if (finding := watch.update(observation)) is not None:
             return observation.time, finding
     return None

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from typing import Any
 
-from hal.errors import PortError
-from hal.joints import Joint, Joints
-from hal.port import Port
-from hal.servo_backend import BusPort, ServoBackend
-from hal.servo_model import ServoModel, ServoMount
 from tests.hal.fake_bus import FakeSerial, VirtualClock
 from tests.hal.fake_bus1 import FakeSerial1
+from windup.hal.errors import PortError
+from windup.hal.joints import Joint, Joints
+from windup.hal.port.port import Port
+from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
+from windup.hal.servos.servo_model import ServoModel, ServoMount
 
 
 class Wires:

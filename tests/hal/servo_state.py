@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hal.command import JointCommand
-from hal.guard import HealthLevels, HealthWatch
-from hal.joints import Joint, Joints
-from hal.observation import JointState, Observation
-from hal.servo_model import ServoMount
-from hal.servos import servo_model
+from windup.hal.command import JointCommand
+from windup.hal.guard import HealthLevels, HealthWatch
+from windup.hal.joints import Joint, Joints
+from windup.hal.observation import JointState, Observation
+from windup.hal.servos import servo_model
+from windup.hal.servos.servo_model import ServoMount
 
 NAMES = ("hip", "knee", "ankle")
 KNEE = 1
@@ -44,7 +44,7 @@ def stop_of(
 ) -> tuple[float, str] | None:
     """Return when the watch wants to stop, and why, or None."""
     for observation in observations:
-        if (unwell := judge.look(observation, command)) is not None:
+        if (unwell := judge.update(observation, command)) is not None:
             return observation.time, str(judge.error(unwell))
     return None
 

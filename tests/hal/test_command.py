@@ -1,7 +1,7 @@
 import numpy as np
 
-from hal.command import FIELDS, JointCommand, joint_torque, shifted_goal
 from tests.small_world import JOINTS, N
+from windup.hal.command import FIELDS, JointCommand, joint_torque, shifted_goal
 
 
 def command(**rows: float) -> JointCommand:

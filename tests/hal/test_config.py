@@ -2,8 +2,8 @@ from pathlib import Path
 
 import pytest
 
-from hal.config import Record, load_toml
-from hal.errors import ConfigError
+from windup.hal.config import Record, load_toml
+from windup.hal.errors import ConfigError
 
 
 class Wheel(Record, frozen=True):

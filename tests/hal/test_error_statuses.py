@@ -1,7 +1,7 @@
 import pytest
 
-from hal import errors
-from hal.errors import UnknownNameError, WindupError, suggest
+from windup.hal import errors
+from windup.hal.errors import UnknownNameError, WindupError, suggest
 
 
 @pytest.mark.parametrize(

@@ -5,20 +5,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hal.command import FIELDS, JointCommand
-from hal.errors import (
+from tests.hal import servo_state
+from tests.small_world import JOINTS, FakeBackend, N
+from windup.hal.command import FIELDS, JointCommand
+from windup.hal.errors import (
     HardwareError,
     StaleStateError,
     TorqueUnknownError,
     UnhealthyError,
     UnsafeCommandError,
 )
-from hal.guard import GuardedBackend, SafetyLimits, StopPolicy
-from hal.joints import Joint, Joints
-from hal.observation import Observation
-from hal.torque_state import TorqueState
-from tests.hal import servo_state
-from tests.small_world import JOINTS, FakeBackend, N
+from windup.hal.guard import GuardedBackend, SafetyLimits, StopPolicy
+from windup.hal.joints import Joint, Joints
+from windup.hal.observation import Observation
+from windup.hal.torque_state import TorqueState
 
 
 def guarded(stop: StopPolicy = "limp", crouch: float | None = None) -> GuardedBackend:

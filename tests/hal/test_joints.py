@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from hal.contacts import ContactSensors
-from hal.errors import UnknownNameError
 from tests.small_world import CONTACTS, JOINTS, L_TOE, R_HEEL
+from windup.hal.contacts import ContactSensors
+from windup.hal.errors import UnknownNameError
 
 
 def test_names_are_looked_up_once_and_in_the_order_asked_for() -> None:

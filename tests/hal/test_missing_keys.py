@@ -3,8 +3,8 @@ from typing import Annotated
 import pytest
 from msgspec import Meta
 
-from hal.config import Record
-from hal.missing_keys import missing_keys
+from windup.hal.config import Record
+from windup.hal.missing_keys import missing_keys
 
 
 class Wheel(Record, frozen=True):

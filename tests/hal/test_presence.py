@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from hal.errors import PortError, StaleStateError, TorqueLostError
-from hal.guard import GuardedBackend, SafetyLimits
-from hal.observation import Observation
-from hal.torque_loss import SWITCHED_OFF, Loss
 from tests.small_world import JOINTS, FakeBackend, N
+from windup.hal.errors import PortError, StaleStateError, TorqueLostError
+from windup.hal.guard import GuardedBackend, SafetyLimits
+from windup.hal.observation import Observation
+from windup.hal.torque_loss import SWITCHED_OFF, Loss
 
 GONE = "port x went away"
 

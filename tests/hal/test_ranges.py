@@ -5,8 +5,8 @@ from typing import Annotated, Literal
 import numpy as np
 import pytest
 
-from hal.errors import UsageError
-from hal.ranges import Range, check_numbers, numbers_checked, read_number
+from windup.hal.errors import UsageError
+from windup.hal.ranges import Range, check_numbers, numbers_checked, read_number
 
 Share = Annotated[float, Range(0.0, 1.0, "m")]
 

@@ -6,12 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scservo_sdk import SCS_TOHOST, SCS_TOSCS
 
-from hal.errors import UnknownNameError
-from hal.families import FAMILIES, Family, family_of
-from hal.registers import Register
-from hal.servos import servo_model, servo_names
-from hal.servos.feetech_registers import BAUD_CODES, SCS, STS, feetech_registers
-from hal.servos.mx_registers import mx_registers
+from windup.hal.errors import UnknownNameError
+from windup.hal.families import FAMILIES, Family, family_of
+from windup.hal.registers import Register
+from windup.hal.servos import servo_model, servo_names
+from windup.hal.servos.feetech_registers import BAUD_CODES, SCS, STS, feetech_registers
+from windup.hal.servos.mx_registers import mx_registers
 
 SIGNED = [STS["present_position"], STS["present_load"], STS["homing_offset"], SCS["present_load"]]
 ids = [f"{register.name} {register.order}" for register in SIGNED]

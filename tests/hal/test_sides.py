@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from hal.mirror import other_side
 from tests.small_world import MIRROR
+from windup.hal.mirror import other_side
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from hal.small_file import MOST, read_small
+from windup.hal.small_file import MOST, read_small
 
 
 def test_a_file_is_read_whole(tmp_path: Path) -> None:

@@ -2,10 +2,10 @@ import mujoco
 import numpy as np
 import pytest
 
-from control.play import PoseHolder
-from robots import RobotDescription, load_robot
-from tools import Robot
-from tools.walk_options import WalkOptions
+from windup import Robot
+from windup.control.motions.play import PoseHolder
+from windup.robots import RobotDescription, load_robot
+from windup.tools.assembly.walk_options import WalkOptions
 
 LEGS = ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle")
 HEAD = ("neck_pitch", "head_pitch", "head_yaw", "head_roll")

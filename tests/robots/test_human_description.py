@@ -2,7 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from robots import RobotDescription, load_robot
+from windup.robots import RobotDescription, load_robot
 
 
 @pytest.fixture(scope="module")

@@ -2,8 +2,8 @@ from pathlib import Path
 
 import pytest
 
-from hal.errors import ConfigError
-from robots.mjcf import compile_mjcf
+from windup.hal.errors import ConfigError
+from windup.robots.mjcf import compile_mjcf
 
 MJCF = """<mujoco><option timestep="0.002" gravity="0 0 -9.81"/><worldbody>
 <body name="trunk" pos="0 0 1"><freejoint/><geom name="hull" size=".1" mass="2"/>

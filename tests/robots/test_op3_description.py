@@ -2,8 +2,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from hal.errors import UsageError
-from robots import RobotDescription, load_robot
+from windup.hal.errors import UsageError
+from windup.robots import RobotDescription, load_robot
 
 
 @pytest.fixture(scope="module")

@@ -2,9 +2,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from robots import RobotDescription, load_robot
-from tools import Robot
-from tools.walk_options import WalkOptions
+from windup import Robot
+from windup.robots import RobotDescription, load_robot
+from windup.tools.assembly.walk_options import WalkOptions
 
 DENSITY = 1000.0  # kg/m3
 

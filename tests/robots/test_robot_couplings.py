@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hal.errors import ConfigError
-from robots import RobotDescription, load_robot
-from sim_twin.twin import Twin
 from tests.shapes import Limb, Shape, write_shape
+from windup.hal.errors import ConfigError
+from windup.robots import RobotDescription, load_robot
+from windup.sim_twin.twin import Twin
 
 ONE = Shape("one", (Limb("arm", "0 0 0.03", 1, "z", down=False),), floats=False, height=0.03)
 FINGER = """<body name="finger" pos="0 0 0.1">

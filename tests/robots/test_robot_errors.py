@@ -3,8 +3,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hal.errors import ConfigError, UnknownNameError
-from robots import load_robot, robot_names
+from windup.hal.errors import ConfigError, UnknownNameError
+from windup.robots import load_robot, robot_names
 
 MJCF = """
 <mujoco>

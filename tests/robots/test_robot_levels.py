@@ -2,10 +2,10 @@ from pathlib import Path
 
 import pytest
 
-from hal.errors import ConfigError
-from hal.guard import Kind
-from robots import load_robot
 from tests.robots.test_robot_errors import MJCF, TOML
+from windup.hal.errors import ConfigError
+from windup.hal.guard import Kind
+from windup.robots import load_robot
 
 
 def hopper(folder: Path, safety: str) -> Path:

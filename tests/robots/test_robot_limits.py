@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hal.errors import ConfigError
-from robots import RobotDescription, load_robot
 from tests.shapes import Limb, Shape, write_shape
+from windup.hal.errors import ConfigError
+from windup.robots import RobotDescription, load_robot
 
 ONE = Shape("one", (Limb("arm", "0 0 0.03", 1, "z", down=False),), floats=False, height=0.03)
 BOUNDED = "lower = -1.5, upper = 1.5"

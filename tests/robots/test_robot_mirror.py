@@ -2,9 +2,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from hal.errors import ConfigError
-from robots import RobotDescription, load_robot
-from robots.mirror import mirror_map
+from windup.hal.errors import ConfigError
+from windup.robots import RobotDescription, load_robot
+from windup.robots.mirror import mirror_map
 
 ROBOTS = ["op3", "human", "human12", "robobird", "duck", "human_handstand"]
 CROOKED = {"duck": 4e-3}  # its legs are not quite mirror images; m

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hal.errors import ConfigError
-from robots import load_robot
-from robots.doubts import doubts
 from tests.shapes import ARM, QUADRUPED, THIRTY, Limb, Shape, write_shape
+from windup.hal.errors import ConfigError
+from windup.robots import load_robot
+from windup.robots.doubts import doubts
 
 TOE = '<body name="toe" pos="0 0 0.1"><joint name="toe" {}/><geom size="0.01" mass="0.01"/></body>'
 

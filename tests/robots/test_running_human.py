@@ -2,8 +2,8 @@
 
 from itertools import pairwise
 
-from tools.robot import Robot
-from tools.walk_options import WalkOptions
+from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.robot.robot import Robot
 
 
 def test_it_runs_with_a_flight_in_every_step_and_does_not_hop() -> None:

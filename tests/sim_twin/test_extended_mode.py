@@ -6,15 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from control.play import PoseHolder
-from hal.backend import BusHealth
-from hal.guardian.order import Charge
-from hal.guardian.remote_bus import RemoteBus
-from robots import RobotDescription, load_robot
-from sim_twin.twin import Twin
 from tests.shapes import Limb, Shape, write_shape
-from tools import Robot
-from tools.servo_bus import ServoBus
+from windup import Robot
+from windup.control.motions.play import PoseHolder
+from windup.hal.backend import BusHealth
+from windup.hal.guardian.order import Charge
+from windup.hal.guardian.remote_bus import RemoteBus
+from windup.robots import RobotDescription, load_robot
+from windup.sim_twin.twin import Twin
+from windup.tools.testing.servo_bus import ServoBus
 
 ONE = Shape("one", (Limb("arm", "0 0 0.03", 1, "z", down=False),), floats=False, height=0.03)
 FAR = 15.0

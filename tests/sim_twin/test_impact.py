@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 import pytest
 
-from robots import RobotDescription
-from sim_twin.impact import ImpactGauge
-from sim_twin.twin import Twin
+from windup.robots import RobotDescription
+from windup.sim_twin.impact import ImpactGauge
+from windup.sim_twin.twin import Twin
 
 
 def dropped(op3: RobotDescription, height: float, head: bool = False) -> tuple[ImpactGauge, float]:

@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from robots import RobotDescription, load_robot
-from sim_twin.backend import TwinBackend
-from sim_twin.imu_errors import OPENCR, ImuErrors
-from sim_twin.twin import Twin
+from windup.robots import RobotDescription, load_robot
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.imu_errors import OPENCR, ImuErrors
+from windup.sim_twin.twin import Twin
 
 REST = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 9.81])
 SILENT = replace(OPENCR, noise=(0.0, 0.0), bias=(0.0, 0.0))

@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hal.command import JointCommand
-from robots import RobotDescription, load_robot
-from sim_twin.backend import TwinBackend
-from sim_twin.places import places
-from sim_twin.twin import Twin
 from tests.shapes import Limb, Shape, write_shape
-from tools.servo_bus import ServoBus
+from windup.hal.command import JointCommand
+from windup.robots import RobotDescription, load_robot
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.places import places
+from windup.sim_twin.twin import Twin
+from windup.tools.testing.servo_bus import ServoBus
 
 ONE = Shape("one", (Limb("arm", "0 0 0.03", 1, "z", down=False),), floats=False, height=0.03)
 FINGER = """<body name="finger" pos="0 0 0.1">

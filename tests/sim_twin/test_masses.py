@@ -6,11 +6,11 @@ import mujoco
 import numpy as np
 import pytest
 
-from robots import load_robot
-from sim_twin.masses import keep_masses
-from sim_twin.plant import Plant
-from sim_twin.world import World, build_model
 from tests.shapes import SHAPES, Shape, write_shape
+from windup.robots import load_robot
+from windup.sim_twin.environment import Environment, build_model
+from windup.sim_twin.masses import keep_masses
+from windup.sim_twin.plant import Plant
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.name)
@@ -25,7 +25,7 @@ def test_rollout_and_twin_have_the_same_masses_and_inertias(shape: Shape, tmp_pa
 
 def test_a_heavier_plant_is_heavier_with_masses_in_geoms(tmp_path: Path) -> None:
     robot = load_robot(write_shape(tmp_path / "robot", SHAPES[1]))
-    heavy = build_model(robot, world=World(plant=Plant(mass=1.5)))
+    heavy = build_model(robot, world=Environment(plant=Plant(mass=1.5)))
     plain = build_model(robot)
     np.testing.assert_allclose(heavy.body_mass, 1.5 * plain.body_mass)
     np.testing.assert_allclose(heavy.body_inertia, 1.5 * plain.body_inertia)
@@ -33,7 +33,7 @@ def test_a_heavier_plant_is_heavier_with_masses_in_geoms(tmp_path: Path) -> None
 
 def test_full_inertias_are_scaled_too() -> None:
     robot = load_robot("robobird")
-    heavy = build_model(robot, world=World(plant=Plant(mass=1.5)))
+    heavy = build_model(robot, world=Environment(plant=Plant(mass=1.5)))
     np.testing.assert_allclose(heavy.body_inertia, 1.5 * build_model(robot).body_inertia)
 
 

@@ -4,15 +4,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from hal.command import JointCommand
-from hal.controller import Outcomes, PolicyInput, RolloutStart
-from hal.joints import Array, Mask
-from hal.observation import Observation
-from robots import RobotDescription
-from sim_twin.backend import TwinBackend
-from sim_twin.rollouts import RolloutPredictor
-from sim_twin.terrain import Ground
-from sim_twin.twin import Twin
+from windup.hal.command import JointCommand
+from windup.hal.controller import Outcomes, PolicyInput, RolloutStart
+from windup.hal.joints import Array, Mask
+from windup.hal.observation import Observation
+from windup.robots import RobotDescription
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.ground.terrain import Ground
+from windup.sim_twin.rollouts import RolloutPredictor
+from windup.sim_twin.twin import Twin
 
 BEFORE = 20  # ticks that the twin has moved when the prediction begins
 AHEAD = 25  # ticks predicted

@@ -3,10 +3,10 @@ from math import pi
 import numpy as np
 import pytest
 
-from hal.command import JointCommand
-from robots import RobotDescription
-from sim_twin.backend import TwinBackend
-from sim_twin.twin import Twin
+from windup.hal.command import JointCommand
+from windup.robots import RobotDescription
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.twin import Twin
 
 COUNTS = 4096 / (2.0 * pi)
 

@@ -3,13 +3,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hal.command import JointCommand
-from hal.errors import DivergedError, UnknownNameError
-from hal.joints import Array
-from robots import RobotDescription
-from sim_twin.backend import TwinBackend, TwinClock
-from sim_twin.push import Push
-from sim_twin.twin import Twin
+from windup.hal.command import JointCommand
+from windup.hal.errors import DivergedError, UnknownNameError
+from windup.hal.joints import Array
+from windup.robots import RobotDescription
+from windup.sim_twin.backend import TwinBackend, TwinClock
+from windup.sim_twin.push import Push
+from windup.sim_twin.twin import Twin
 
 
 def swing(twin: Twin, ticks: int, first: int = 0, steps: int = 2) -> bytes:

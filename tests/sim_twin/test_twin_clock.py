@@ -3,14 +3,14 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-import sim_twin.backend
-from control.loop import run_loop
-from hal.command import JointCommand
-from hal.guard import GuardedBackend, SafetyLimits
-from hal.observation import Observation
-from robots import load_robot
-from sim_twin.backend import TwinBackend
-from sim_twin.twin import Twin
+import windup.sim_twin.backend
+from windup.control.loop import run_loop
+from windup.hal.command import JointCommand
+from windup.hal.guard import GuardedBackend, SafetyLimits
+from windup.hal.observation import Observation
+from windup.robots import load_robot
+from windup.sim_twin.backend import TwinBackend
+from windup.sim_twin.twin import Twin
 
 TICK = 0.008
 
@@ -31,8 +31,8 @@ class Wall:
 @pytest.fixture
 def wall(monkeypatch: pytest.MonkeyPatch) -> Wall:
     wall = Wall()
-    monkeypatch.setattr(sim_twin.backend, "wall", wall)
-    monkeypatch.setattr(sim_twin.backend, "sleep_until", wall.sleep_until)
+    monkeypatch.setattr(windup.sim_twin.backend, "wall", wall)
+    monkeypatch.setattr(windup.sim_twin.backend, "sleep_until", wall.sleep_until)
     return wall
 
 

@@ -10,11 +10,9 @@ from typing import Any
 
 import pytest
 
-import hal.open_port
-import sim_twin.wire.worlds
-from robots import RobotDescription
-from sim_twin.twin import Twin
-from tools import cli
+from windup.robots import RobotDescription
+from windup.sim_twin.twin import Twin
+from windup.tools import cli
 
 
 @dataclass(frozen=True)
@@ -35,7 +33,7 @@ Windup = Callable[..., Ran]
 
 
 @pytest.fixture
-def windup(capsys: pytest.CaptureFixture[str]) -> Iterator[Windup]:
+def shell(capsys: pytest.CaptureFixture[str]) -> Iterator[Windup]:
     before = signal.getsignal(signal.SIGTERM)
 
     def command(*arguments: object) -> Ran:
@@ -58,8 +56,8 @@ def nothing_opens(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[N
     def opened(*arguments: object, **named: object) -> None:
         raise AssertionError(f"opened: {arguments} {named}")
 
-    monkeypatch.setattr(hal.open_port, "_open", opened)
-    monkeypatch.setattr(sim_twin.wire.worlds, "build_world", opened)
+    monkeypatch.setattr("windup.hal.port.open_port._open", opened)
+    monkeypatch.setattr("windup.sim_twin.wire.world.worlds.build_world", opened)
     monkeypatch.setattr(Twin, "__init__", opened)
     monkeypatch.chdir(tmp_path)
     before = signal.getsignal(signal.SIGTERM)

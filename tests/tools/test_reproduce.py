@@ -8,16 +8,24 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tools import cli
-from tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results, Study
-from tools.reproduce.laszlo import LASZLO
-from tools.reproduce.laszlo.cycles import pitch_range, scatter
-from tools.reproduce.laszlo.jobs import walk
-from tools.reproduce.laszlo.recorder import NAMES
-from tools.reproduce.laszlo.tours import tour
-from tools.reproduce.laszlo.work import VECTORS, work
-from tools.reproduce.report import collect, reproduce
-from tools.reproduce.store import Store
+from windup.tools import cli
+from windup.tools.reproduce.laszlo import LASZLO
+from windup.tools.reproduce.laszlo.cycles import pitch_range, scatter
+from windup.tools.reproduce.laszlo.jobs import walk
+from windup.tools.reproduce.laszlo.recorder import NAMES
+from windup.tools.reproduce.laszlo.tours import tour
+from windup.tools.reproduce.laszlo.work import VECTORS, work
+from windup.tools.reproduce.study.figure import (
+    Claim,
+    DataTable,
+    Figure,
+    Job,
+    Result,
+    Results,
+    Study,
+)
+from windup.tools.reproduce.study.report import collect, reproduce
+from windup.tools.reproduce.study.store import Store
 
 JOBS = [Job("square", {"x": x}) for x in (1, 2, 3)]
 

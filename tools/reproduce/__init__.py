@@ -1,5 +1,5 @@
 """`windup reproduce`: the figures of a paper again, ours beside its statements."""
 
-from tools.reproduce.command import Reproduce
+from windup.tools.reproduce.command import Reproduce
 
 __all__ = ["Reproduce"]

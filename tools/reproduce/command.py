@@ -6,13 +6,13 @@ from typing import Annotated
 
 import tyro
 
-from hal.errors import UnknownNameError
-from tools.command import Command
-from tools.output import console, write_json
-from tools.quantities import Jobs
-from tools.reproduce.report import record, reproduce
-from tools.reproduce.studies import studies
-from tools.writing import check_folder
+from windup.hal.errors import UnknownNameError
+from windup.tools.reproduce.studies import studies
+from windup.tools.reproduce.study.report import record, reproduce
+from windup.tools.terminal.command import Command
+from windup.tools.terminal.output import console, write_json
+from windup.tools.terminal.quantities import Jobs
+from windup.tools.terminal.writing import check_folder
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,5 +1,5 @@
-"""`windup synthesise`: an optimiser finds or improves the gait of a robot."""
+"""`windup synthesise`: optimises or finds the gait of a robot."""
 
-from tools.synthesis.command import Synthesise
+from windup.tools.synthesis.command import Synthesise
 
 __all__ = ["Synthesise"]

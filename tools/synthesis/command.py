@@ -8,26 +8,26 @@ from typing import Annotated, Any
 import msgspec
 import tyro
 
-from control.gait_file import GaitFile
-from hal.config import load_toml
-from hal.errors import UsageError
-from hal.ranges import Range
-from robots import load_robot
-from tools.build import build_walk
-from tools.command import Command
-from tools.gaits import gait_path
-from tools.output import console, write_json
-from tools.parallel import Workers
-from tools.quantities import Count, Jobs, Noise, Seed, Some, Speed
-from tools.shape import check_walks
-from tools.synthesis.gait_toml import write_gait
-from tools.synthesis.genes import Genome
-from tools.synthesis.log import Entry, SearchLog
-from tools.synthesis.score import Objective, objective
-from tools.synthesis.search import Search, Values
-from tools.synthesis.trial import Trial, walk_trial
-from tools.walk_options import WalkOptions
-from tools.writing import check_writable
+from windup.control.pose_graph.gait_file import GaitFile
+from windup.hal.config import load_toml
+from windup.hal.errors import UsageError
+from windup.hal.ranges import Range
+from windup.robots import load_robot
+from windup.tools.assembly.build import build_walk
+from windup.tools.assembly.gaits import gait_path
+from windup.tools.assembly.shape import check_walks
+from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.synthesis.gait_toml import write_gait
+from windup.tools.synthesis.genes import Genome
+from windup.tools.synthesis.log import Entry, SearchLog
+from windup.tools.synthesis.score import Objective, objective
+from windup.tools.synthesis.search import Search, Values
+from windup.tools.synthesis.trial import Trial, walk_trial
+from windup.tools.terminal.command import Command
+from windup.tools.terminal.output import console, write_json
+from windup.tools.terminal.parallel import Workers
+from windup.tools.terminal.quantities import Count, Jobs, Noise, Seed, Some, Speed
+from windup.tools.terminal.writing import check_writable
 
 FINALISTS = 5
 Positional = Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
@@ -37,50 +37,50 @@ Positional = Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")
 class Synthesise(Command):
     """Improve a gait, or find one, with CMA-ES: `windup walk ROBOT --gait FILE` walks the result.
 
-    Trials are kept beside the result in FILE.trials: after Ctrl-C the same line goes on where it
-    was, and a larger --trials searches on. In the end the best trials walk again from other starts,
-    and the best of these is written.
+    Trials are stored beside the result in FILE.trials: after Ctrl-C the same command line continues
+    the search, and a larger --trials extends it. In the end the best trials are walked again from
+    other starts, and the best of these is written.
 
     windup synthesise op3 --speed 0.2 --aim 0.2 --objective falls speed effort --out thrifty.toml
     """
 
     robot: Positional
-    """A robot's name, or the path of a folder with your own."""
+    """Name of a robot, or path of a folder with your own."""
     gait: str = "walk"
-    """The gait to begin with: its name, or the path of a gait file."""
+    """Initial gait: its name, or the path of a gait file."""
     vary: tuple[str, ...] | None = None
-    """What may change, * for anything: pose.STATE.JOINT, hold.STATE, target.VARIABLE, limit.NAME,
-    change.NAME.JOINT. By default the angles of joints that move, hold times, and targets."""
+    """Numbers that may change, * for any: pose.STATE.JOINT, hold.STATE, target.VARIABLE,
+    limit.NAME, change.NAME.JOINT. By default angles of moving joints, hold times, and targets."""
     objective: tuple[str, ...] = ()
-    """What counts, TERM or TERM=WEIGHT: falls, speed, effort, shake, drift, cross,
+    """Terms of the cost, TERM or TERM=WEIGHT: falls, speed, effort, shake, drift, cross,
     flight, air, skip."""
     aim: Speed | None = None
-    """The speed that `speed` wants, m/s."""
+    """Desired speed for the term `speed`, m/s."""
     speed: Speed | None = None
     """Commanded speed, m/s; the gait's own by default."""
     trials: Count = 300
-    """How many gaits to try."""
+    """Number of gaits to try."""
     steps: Count = 40
-    """Steps of a walk."""
+    """Steps of each walk."""
     seeds: Some = 3
-    """Noisy starts of each trial."""
+    """Number of noisy starts of each trial."""
     noise: Noise = 0.2
     """Standard deviation of noise on the start pose, degrees."""
     seed: Seed = 0
     """Seed of the search."""
     population: Annotated[int, Range(4, 10_000)] | None = None
-    """Trials in a generation."""
+    """Number of trials per generation."""
     spread: Annotated[float, Range(0.0, 100.0, above=True)] = 1.0
-    """How far the first trials are from the gait: one is 4 degrees, 0.02 s, 0.03 of a target."""
+    """Scale of the first changes of the gait: 1 is 4 degrees, 0.02 s, 0.03 of a target."""
     out: Path
     """Gait file to write, .toml."""
     jobs: Jobs | None = None
-    """Processes; one a core by default."""
+    """Number of processes; one per core by default."""
     json: Path | None = None
-    """Write what came of it as JSON to a file, or to standard output with '-'."""
+    """Write the result as JSON to a file, or to standard output with '-'."""
 
     def run(self) -> int:
-        """Search; returns 0 if the gait written walks from all starts, else 1."""
+        """Search; return 0 if the written gait walks from all starts, else 1."""
         robot = load_robot(self.robot)
         check_walks(robot)
         start = load_toml(gait_path(robot, self.gait), GaitFile)
@@ -105,7 +105,7 @@ class Synthesise(Command):
         return self._conclude(search, genome, finals)
 
     def check(self) -> None:
-        """Raise what cannot be; see `Command.check`."""
+        """Check the options; see `Command.check`."""
         super().check()
         if self.out.suffix != ".toml":
             raise UsageError(f"--out {self.out}: name it .toml")
@@ -115,7 +115,7 @@ class Synthesise(Command):
         return self.out.with_suffix(".trials")
 
     def _setup(self, start: GaitFile, genes: list[str], aim: Objective) -> dict[str, Any]:
-        """Return what has to be the same for a search to go on."""
+        """Return the settings that must be equal for a search to continue."""
         names = ("robot", "speed", "steps", "seeds", "noise", "seed", "population", "spread")
         options = {name: getattr(self, name) for name in names}
         told = {"objective": aim.weights, "aim": aim.aim, "vary": genes}
@@ -127,7 +127,7 @@ class Synthesise(Command):
     def _finals(
         self, search: Search, genome: Genome, aim: Objective, workers: Workers
     ) -> dict[int, Entry]:
-        """Walk the gait that was there, and the best ones, from starts they were not chosen by."""
+        """Walk the initial gait and the best ones again, from starts not used in the search."""
         seeds = tuple(range(self.seeds, 3 * self.seeds))
         numbers = list(dict.fromkeys([0, *search.ranking()[:FINALISTS]]))
         trials = [self._trial(n, genome.express(search.values(n)), seeds) for n in numbers]

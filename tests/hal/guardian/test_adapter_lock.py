@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
-from hal.errors import PortError
-from hal.guardian import lock
-from hal.guardian.lock import AdapterLock, Note, wait_while_guarded, write_note
 from tests.hal.guardian.two_servos import ENVIRONMENT
+from windup.hal.errors import PortError
+from windup.hal.port import lock
+from windup.hal.port.lock import AdapterLock, Note, wait_while_guarded, write_note
 
 ACTING = """
 import sys, time
-from hal.guardian.lock import AdapterLock, Note, write_note
+from windup.hal.port.lock import AdapterLock, Note, write_note
 number = AdapterLock(sys.argv[1]).take()
 write_note(number, Note(1234, "switching the torque off"))
 print("taken", flush=True)

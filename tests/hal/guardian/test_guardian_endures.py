@@ -9,10 +9,6 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from hal.guardian import takeover
-from hal.guardian.order import Order
-from hal.guardian.remote_bus import RemoteBus
-from hal.guardian.takeover import Takeover
 from tests.hal.guardian.two_servos import (
     NAMES,
     TORQUE,
@@ -24,6 +20,10 @@ from tests.hal.guardian.two_servos import (
     switch_on,
     wait_for_end,
 )
+from windup.hal.guardian import takeover
+from windup.hal.guardian.order import Order
+from windup.hal.guardian.remote_bus import RemoteBus
+from windup.hal.guardian.takeover import Takeover
 
 
 def order(path: Path, policy: str = "limp") -> Order:

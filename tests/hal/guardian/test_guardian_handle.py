@@ -6,16 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from hal.errors import GuardianError, HardwareError, PortError, UsageError
-from hal.guard.levels import HealthLevels, Kind
-from hal.guardian.charges import charge_of
-from hal.guardian.handle import Guardian, guardian_for
-from hal.open_port import open_port
-from hal.servos import servo_model
 from tests.hal.fake_bus1 import STS
 from tests.hal.guardian.two_servos import TORQUE, charge, emulated, patiently, show, switch_on
 from tests.hal.mixed_robot import Wires, mount, robot
-from tools.robot import Robot
+from windup.hal.errors import GuardianError, HardwareError, PortError, UsageError
+from windup.hal.guard.levels import HealthLevels, Kind
+from windup.hal.guardian.charges import charge_of
+from windup.hal.guardian.handle import Guardian, guardian_for
+from windup.hal.port.open_port import open_port
+from windup.hal.servos import servo_model
+from windup.tools.robot.robot import Robot
 
 
 @pytest.fixture

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from hal.guardian import handle
-from hal.guardian.handle import Guardian
-from hal.guardian.launch import launch
-from hal.guardian.signals import IGNORED, held_back
 from tests.hal.guardian.two_servos import TORQUE, charge, host, show, switch_on, wait_for_end
+from windup.hal.guardian import handle
+from windup.hal.guardian.handle import Guardian
+from windup.hal.guardian.launch import launch
+from windup.hal.guardian.signals import IGNORED, held_back
 
 
 def send_all(number: int) -> None:

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import pytest
 
-from hal.errors import HardwareError, PortError
-from hal.guardian import handle
-from hal.guardian.handle import Guardian
-from hal.guardian.launch import launch
-from hal.guardian.lock import AdapterLock
-from hal.guardian.order import Order
 from tests.hal.guardian.two_servos import charge
+from windup.hal.errors import HardwareError, PortError
+from windup.hal.guardian import handle
+from windup.hal.guardian.handle import Guardian
+from windup.hal.guardian.launch import launch
+from windup.hal.guardian.order import Order
+from windup.hal.port.lock import AdapterLock
 
 
 def free(path: Path) -> bool:

@@ -7,11 +7,6 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from hal.errors import UnknownNameError
-from hal.guardian.handle import Guardian
-from hal.guardian.host import Host
-from hal.guardian.order import Charge, Order
-from hal.guardian.takeover import Takeover
 from tests.hal.guardian.two_servos import (
     GOAL,
     NAMES,
@@ -23,6 +18,11 @@ from tests.hal.guardian.two_servos import (
     switch_on,
     wait_for_end,
 )
+from windup.hal.errors import UnknownNameError
+from windup.hal.guardian.handle import Guardian
+from windup.hal.guardian.host import Host
+from windup.hal.guardian.order import Charge, Order
+from windup.hal.guardian.takeover import Takeover
 
 
 def test_the_servos_of_a_host_that_was_killed_go_off(sts_bus: Path) -> None:

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from hal.guardian.host import Host
-from hal.guardian.order import FIRST, HAND_OVER, IDLE, RELEASE, SILENCE, TICK
-from hal.guardian.process import Ending, watch
+from windup.hal.guardian.host import Host
+from windup.hal.guardian.order import FIRST, HAND_OVER, IDLE, RELEASE, SILENCE, TICK
+from windup.hal.guardian.process import Ending, watch
 
 Pipe = tuple[int, int]
 

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from hal.guardian.words import LINES, Words
 from tests.hal.guardian.two_servos import full_pipe
+from windup.hal.guardian.words import LINES, Words
 
 LONG_ENOUGH = 10.0
 

@@ -10,19 +10,19 @@ from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
-from hal.bus import Bus
-from hal.errors import HardwareError
-from hal.families import FEETECH_STS
-from hal.guardian.order import Charge
-from hal.open_port import open_port
-from hal.registers import Register
+from windup.hal.bus.bus import Bus
+from windup.hal.errors import HardwareError
+from windup.hal.families import FEETECH_STS
+from windup.hal.guardian.order import Charge
+from windup.hal.port.open_port import open_port
+from windup.hal.registers import Register
 
 NAMES = {1: "l_knee", 2: "r_knee"}
 IDS = {1: "STS3215-7.4V", 2: "STS3215-7.4V"}
 TORQUE = FEETECH_STS.registers["torque_enable"]
 GOAL = FEETECH_STS.registers["goal_position"]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-EMULATE = [sys.executable, "-c", "from tools.cli import main; main()", "emulate"]
+EMULATE = [sys.executable, "-c", "from windup.tools.cli import main; main()", "emulate"]
 T = TypeVar("T")
 
 
@@ -96,8 +96,8 @@ def runs(number: int) -> bool:
 
 HOST = """
 import sys, time
-from hal.guardian.handle import Guardian
-from hal.guardian.order import Charge
+from windup.hal.guardian.handle import Guardian
+from windup.hal.guardian.order import Charge
 from tests.hal.guardian.two_servos import IDS, switch_on
 path, policy, hold = sys.argv[1:]
 crouch = {1: 1800, 2: 2300}

@@ -11,8 +11,8 @@ from typing import IO
 SCRIPT = """
 import signal, sys, threading
 from pathlib import Path
-from sim_twin.wire import parse_address
-from sim_twin.wire.emulate import Emulator, emulate
+from windup.sim_twin.wire import parse_address
+from windup.sim_twin.wire.serve.emulate import Emulator, emulate
 
 def ready(emulator: Emulator) -> None:
     signal.signal(signal.SIGTERM, lambda *_: emulator.stop())

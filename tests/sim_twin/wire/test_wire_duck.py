@@ -5,11 +5,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from hal.command import JointCommand
-from hal.servo_backend import BusPort, ServoBackend
-from robots import load_robot
-from sim_twin.twin import Twin
-from tools.servo_bus import ServoBus
+from windup.hal.command import JointCommand
+from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
+from windup.robots import load_robot
+from windup.sim_twin.twin import Twin
+from windup.tools.testing.servo_bus import ServoBus
 
 PERIOD = 0.008
 TICKS = 250

@@ -6,11 +6,11 @@ from typing import Any
 
 import serial
 
-import sim_twin.wire  # noqa: F401 - makes twin:// known to pyserial
-from sim_twin.wire.frames import BROADCAST, Frame, Parser, encode
-from sim_twin.wire.servo import Servo
-from sim_twin.wire.shaft import InertiaShaft
-from sim_twin.wire.world import Bench, World
+import windup.sim_twin.wire  # noqa: F401 - makes twin:// known to pyserial
+from windup.sim_twin.wire.protocols.frames import BROADCAST, Frame, Parser, encode
+from windup.sim_twin.wire.servos.servo import Servo
+from windup.sim_twin.wire.shafts.shaft import InertiaShaft
+from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
 
 
 class Host:
@@ -18,8 +18,8 @@ class Host:
         self.port = port
 
     @property
-    def world(self) -> World:
-        world: World = self.port.world
+    def world(self) -> BusWorld:
+        world: BusWorld = self.port.world
         return world
 
     @property

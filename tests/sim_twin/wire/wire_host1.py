@@ -6,11 +6,11 @@ from typing import Any, Literal
 
 import serial
 
-import sim_twin.wire  # noqa: F401 - makes twin:// known to pyserial
-from sim_twin.wire.byte_servo import ByteServo
-from sim_twin.wire.frames1 import BROADCAST, Frame1, Parser1, encode
-from sim_twin.wire.shaft import InertiaShaft
-from sim_twin.wire.world import World
+import windup.sim_twin.wire  # noqa: F401 - makes twin:// known to pyserial
+from windup.sim_twin.wire.protocols.frames1 import BROADCAST, Frame1, Parser1, encode
+from windup.sim_twin.wire.servos.byte_servo import ByteServo
+from windup.sim_twin.wire.shafts.shaft import InertiaShaft
+from windup.sim_twin.wire.world.bus_world import BusWorld
 
 PING, READ, WRITE, REG_WRITE, ACTION, RESET, REBOOT = 1, 2, 3, 4, 5, 6, 8
 SYNC_READ, SYNC_WRITE, BULK_READ = 0x82, 0x83, 0x92
@@ -30,8 +30,8 @@ class Host1:
         self.port = port
 
     @property
-    def world(self) -> World:
-        world: World = self.port.world
+    def world(self) -> BusWorld:
+        world: BusWorld = self.port.world
         return world
 
     @property

@@ -2,11 +2,8 @@
 
 from pathlib import Path
 
-import control
-import robots
-import sim_twin
-from tools.reproduce.figure import Study, folder_of
-from tools.reproduce.kenwright import (
+from windup import control, robots, sim_twin
+from windup.tools.reproduce.kenwright import (
     comfort,
     falls,
     feet,
@@ -18,6 +15,7 @@ from tools.reproduce.kenwright import (
     walking,
     work,
 )
+from windup.tools.reproduce.study.figure import Study, folder_of
 
 KENWRIGHT = Study(
     name="kenwright",
@@ -46,7 +44,8 @@ KENWRIGHT = Study(
         folder_of(robots) / "op3",
         Path(work.__file__),
         Path(recorder.__file__),
-        *(Path(work.__file__).parents[2] / f"{name}.py" for name in ("push_trial", "striding")),
+        Path(work.__file__).parents[2] / "behaviours" / "push_trial.py",
+        Path(work.__file__).parents[2] / "behaviours" / "striding.py",
     ),
     missing={
         "7, 8": "pictures of the paper's skeleton: ours is the model of the robot",

@@ -5,15 +5,15 @@ from typing import Final
 
 import numpy as np
 
-from control.footing import Footing
-from control.momenta import capture_point
-from control.rotation import yaw_of
-from control.stepper import Stepper
-from hal.controller import Controller
-from hal.joints import Array
-from hal.observation import Observation
-from tools.reproduce.figure import Result
-from tools.robot import Robot
+from windup.control.kinematics.momenta import capture_point
+from windup.control.kinematics.rotation import yaw_of
+from windup.control.stepping.footing import Footing
+from windup.control.stepping.stepper import Stepper
+from windup.hal.controller import Controller
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
+from windup.tools.reproduce.study.figure import Result
+from windup.tools.robot.robot import Robot
 
 EVERY = 2  # ticks
 PHASES: Final = ("stand", "swing", "land", "comfort")
@@ -48,7 +48,7 @@ class Recorder:
         if self.ticks % EVERY and not begun:
             return
         footing = self.footing
-        footing.look(replace(observation, base=self.robot.twin.base))
+        footing.update(replace(observation, base=self.robot.twin.base))
         phase = PHASES.index(controller.phase) if isinstance(controller, Stepper) else 0
         self.rows.append(self._row(observation.time, phase))
         if begun and isinstance(controller, Stepper):

@@ -6,17 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from robots import load_robot
-from sim_twin.impact import ImpactGauge
-from sim_twin.touch import TouchWatch
-from tools.fall_report import fall_result
-from tools.push import Push
-from tools.push_trial import push_robot
-from tools.reproduce.figure import Job, Result
-from tools.reproduce.kenwright.recorder import Recorder
-from tools.robot import Robot
-from tools.stepping import find_stepping, footing_of, stepping_stance
-from tools.stride import Stride
+from windup.robots import load_robot
+from windup.sim_twin.ground.touch import TouchWatch
+from windup.sim_twin.impact import ImpactGauge
+from windup.tools.assembly.stepping import find_stepping, footing_of, stepping_stance
+from windup.tools.behaviours.push_trial import push_robot
+from windup.tools.commands.push import Push
+from windup.tools.commands.stride import Stride
+from windup.tools.measures.fall_report import fall_result
+from windup.tools.reproduce.kenwright.recorder import Recorder
+from windup.tools.reproduce.study.figure import Job, Result
+from windup.tools.robot.robot import Robot
 
 ARMS = ("l_el_link", "r_el_link")
 PLAN = ("impulse", "way", "height", "duration", "every", "body", "stance", "support", "forbid")
@@ -80,7 +80,7 @@ class _Arms:
             self._also()
         if self._touch.touched:
             return
-        self._touch.look()
+        self._touch.update()
         if self._touch.touched:
             data = self._twin.data
             trunk = data.body(self._torso).xipos

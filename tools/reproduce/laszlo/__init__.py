@@ -2,11 +2,8 @@
 
 from pathlib import Path
 
-import control
-import robots
-import sim_twin
-from tools.reproduce.figure import Study, folder_of
-from tools.reproduce.laszlo import (
+from windup import control, robots, sim_twin
+from windup.tools.reproduce.laszlo import (
     discrete,
     following,
     open_loop,
@@ -23,6 +20,7 @@ from tools.reproduce.laszlo import (
     turning,
     work,
 )
+from windup.tools.reproduce.study.figure import Study, folder_of
 
 LASZLO = Study(
     name="laszlo",

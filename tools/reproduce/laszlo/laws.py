@@ -4,10 +4,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from control.balancer import Balancer
-from control.course import Course
-from control.speed import SpeedControl
-from hal.joints import Array
+from windup.control.limit_cycle.balancer import Balancer
+from windup.control.steering.course import Course
+from windup.control.steering.speed import SpeedControl
+from windup.hal.joints import Array
 
 
 @dataclass

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from control.balancer import Balancer
-from control.body import Body, heading
-from hal.observation import Observation
+from windup.control.kinematics.body import Body, heading
+from windup.control.limit_cycle.balancer import Balancer
+from windup.hal.observation import Observation
 
 LISTS = ("q", "target", "k")
 TRACE = 0.02  # s between samples

@@ -5,15 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from hal.errors import DivergedError
-from hal.observation import Observation
-from tools.build import body_of, build_walk
-from tools.gauges import Gauges
-from tools.reproduce.figure import Job, Result
-from tools.reproduce.laszlo.recorder import Recorder
-from tools.robot import Robot
-from tools.walk_end import WalkEnd
-from tools.walk_options import WalkOptions
+from windup.hal.errors import DivergedError
+from windup.hal.observation import Observation
+from windup.tools.assembly.build import body_of, build_walk
+from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.measures.gauges import Gauges
+from windup.tools.measures.walk_end import WalkEnd
+from windup.tools.reproduce.laszlo.recorder import Recorder
+from windup.tools.reproduce.study.figure import Job, Result
+from windup.tools.robot.robot import Robot
 
 NOISE = 0.2  # degrees
 BEND = "spine"  # the joint that bends a human over; of the others the first one
@@ -58,7 +58,7 @@ def run_tour(
 
         def watch(observation: Observation) -> None:
             recorder.add(observation)
-            gauges.look(observation)
+            gauges.update(observation)
             if len(recorder.trace) > len(bend):  # as often as it keeps a sample
                 bend.append(float(observation.joints.position[bending]))
 

@@ -6,20 +6,20 @@ from typing import Any, cast
 
 import numpy as np
 
-from control.balancer import Balancer
-from control.gait_file import Heading
-from control.planner import StepPlanner
-from control.regulation import AXES, regulation_variables
-from control.step_model import Sample, StepModel
-from hal.errors import DivergedError
-from hal.joints import Array
-from tools.build import body_of, build_walk
-from tools.reproduce.figure import Job, Result
-from tools.reproduce.laszlo.laws import ConstantTurn, SpeedLaw
-from tools.reproduce.laszlo.recorder import Recorder
-from tools.reproduce.laszlo.tours import run_tour
-from tools.robot import Robot
-from tools.walk_options import WalkOptions
+from windup.control.limit_cycle.balancer import Balancer
+from windup.control.limit_cycle.planner import StepPlanner
+from windup.control.limit_cycle.step_model import Sample, StepModel
+from windup.control.pose_graph.gait_file import Heading
+from windup.control.regulation.variables import AXES, regulation_variables
+from windup.hal.errors import DivergedError
+from windup.hal.joints import Array
+from windup.tools.assembly.build import body_of, build_walk
+from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.reproduce.laszlo.laws import ConstantTurn, SpeedLaw
+from windup.tools.reproduce.laszlo.recorder import Recorder
+from windup.tools.reproduce.laszlo.tours import run_tour
+from windup.tools.reproduce.study.figure import Job, Result
+from windup.tools.robot.robot import Robot
 
 ROBOT = "human"
 NOISE = 0.2  # degrees

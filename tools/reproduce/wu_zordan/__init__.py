@@ -2,11 +2,9 @@
 
 from pathlib import Path
 
-import control
-import robots
-import sim_twin
-from tools.reproduce.figure import Study, folder_of
-from tools.reproduce.wu_zordan import directed, pendulum, reactive, work
+from windup import control, robots, sim_twin
+from windup.tools.reproduce.study.figure import Study, folder_of
+from windup.tools.reproduce.wu_zordan import directed, pendulum, reactive, work
 
 WU_ZORDAN = Study(
     name="wu-zordan",
@@ -27,10 +25,10 @@ WU_ZORDAN = Study(
         folder_of(robots) / "human",
         folder_of(robots) / "human_handstand",
         Path(work.__file__),
-        Path(work.__file__).parents[2] / "push_trial.py",
-        Path(work.__file__).parents[2] / "directed.py",
+        Path(work.__file__).parents[2] / "behaviours" / "push_trial.py",
+        Path(work.__file__).parents[2] / "behaviours" / "directed.py",
     ),
     missing={
-        "2, 3": "curves of the model itself: ours are control/swing.py",
+        "2, 3": "curves of the model itself: ours are control/footprints/swing.py",
     },
 )

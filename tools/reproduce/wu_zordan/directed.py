@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
-from tools.reproduce.wu_zordan.jobs import cell, turn, walk
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
+from windup.tools.reproduce.wu_zordan.jobs import cell, turn, walk
 
 CLOSE = 0.03  # m
 STEPS, SEEDS = 20, 6

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
-from tools.reproduce.wu_zordan.jobs import AROUND, FOUR, cell, count, push, where
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
+from windup.tools.reproduce.wu_zordan.jobs import AROUND, FOUR, cell, count, push, where
 
 SMALL, LARGE = 170.0, 250.0  # N, of the paper
 MORE = (350.0, 450.0)

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from tools.reproduce.figure import Claim, DataTable, Figure, Job, Results
-from tools.reproduce.wu_zordan.jobs import AROUND, EIGHT, FOUR, cell, count, push, where
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Results
+from windup.tools.reproduce.wu_zordan.jobs import AROUND, EIGHT, FOUR, cell, count, push, where
 
 FORCE = 170.0  # N, of the paper
 FORCES = (50.0, 100.0, FORCE, 250.0, 400.0, 500.0)

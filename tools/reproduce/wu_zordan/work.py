@@ -7,18 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from control.footprints import Footprint
-from control.torque_stepper import TorqueStepper
-from hal.controller import Controller
-from hal.observation import Observation
-from robots import load_robot
-from tools.directed import build_checks, build_directed, loop_rate, walk_prints
-from tools.push import Push
-from tools.push_trial import push_robot
-from tools.reproduce.figure import Job, Result
-from tools.reproduce.wu_zordan.jobs import DURATION
-from tools.robot import Robot
-from tools.stepping import find_stepping
+from windup.control.footprints.footprints import Footprint
+from windup.control.stepping.torque_stepper import TorqueStepper
+from windup.hal.controller import Controller
+from windup.hal.observation import Observation
+from windup.robots import load_robot
+from windup.tools.assembly.stepping import find_stepping
+from windup.tools.behaviours.directed import build_checks, build_directed, loop_rate, walk_prints
+from windup.tools.behaviours.push_trial import push_robot
+from windup.tools.commands.push import Push
+from windup.tools.reproduce.study.figure import Job, Result
+from windup.tools.reproduce.wu_zordan.jobs import DURATION
+from windup.tools.robot.robot import Robot
 
 HUMAN = "human"
 AT = 0.3

@@ -1,0 +1,1 @@
+"""Estimation of the base state from IMU, joints and foot contacts."""

@@ -1,0 +1,1 @@
+"""Prediction of falls, and protective falling."""

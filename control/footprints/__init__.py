@@ -1,0 +1,1 @@
+"""Walking given footprints: file format, checks, swing curves and controllers."""

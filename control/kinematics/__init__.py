@@ -1,0 +1,1 @@
+"""Forward and inverse kinematics: whole body, soles, support regions and momenta."""

@@ -1,0 +1,1 @@
+"""Limit-cycle balance: step models, the planner of the next step, and the balancer."""

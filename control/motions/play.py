@@ -1,0 +1,82 @@
+"""Controllers that play a pose graph or hold one pose, without balance or steps."""
+
+import numpy as np
+
+from windup.control.pose_graph.gait import Gait
+from windup.control.pose_graph.pose_tracker import PoseTracker
+from windup.hal.command import JointCommand
+from windup.hal.contacts import ContactSensors
+from windup.hal.controller import PolicyInput
+from windup.hal.joints import Array, Joints
+from windup.hal.observation import Observation
+
+
+class PoseHolder:
+    """Controller that moves to one pose along a smooth step, and holds it.
+
+    Args:
+        joints: The robot's joints.
+        pose: (n,) rad.
+        ramp: Time from the present pose to `pose`, s.
+    """
+
+    def __init__(self, joints: Joints, pose: Array, ramp: float = 0.5) -> None:
+        self.joints, self.pose, self.ramp = joints, pose, ramp
+
+    @property
+    def first_pose(self) -> Array:
+        """First pose (n,), rad; see `Begins`."""
+        return self.pose
+
+    def reset(self, observation: Observation) -> None:
+        """Start the motion at the present pose."""
+        self._from, self._began = observation.joints.position, observation.time
+
+    def step(self, observation: Observation, dt: float) -> JointCommand:
+        """Return the command of this tick: an intermediate pose, or the pose itself."""
+        s = min((observation.time - self._began) / self.ramp, 1.0) if self.ramp > 0.0 else 1.0
+        smooth = s * s * (3.0 - 2.0 * s)
+        return JointCommand.hold(self.joints, self._from + smooth * (self.pose - self._from))
+
+
+class GraphPlayer:
+    """Controller that plays a pose graph from its first state.
+
+    Args:
+        gait: The graph; its perturbations stay at zero.
+        joints: The robot's joints.
+        contacts: The robot's contact sensors.
+
+    Attributes:
+        failed: Always None, because no state has a condition that could fail.
+        retries: Always 0, for the same reason.
+    """
+
+    failed: str | None = None
+    retries = 0
+
+    def __init__(self, gait: Gait, joints: Joints, contacts: ContactSensors) -> None:
+        self.joints = joints
+        self._tracker = PoseTracker(gait, contacts, np.zeros((1, len(gait.perturbations))))
+
+    def reset(self, observation: Observation) -> None:
+        """Start at the first state."""
+        self._tracker.restart()
+        self._hold = JointCommand.hold(self.joints, observation.joints.position)
+        self._begun = False
+
+    def step(self, observation: Observation, dt: float) -> JointCommand:
+        """Return the command for the pose of the present state."""
+        if self._begun:
+            self._tracker.advance(observation.contacts[None])
+        self._begun = True
+        nothing = np.zeros((1, 0))
+        state = PolicyInput(nothing, nothing, nothing, nothing, observation.contacts[None])
+        block = self._hold.block.copy()
+        block[0] = self._tracker.step(state, dt)[0]
+        return JointCommand(block)
+
+    @property
+    def finished(self) -> bool:
+        """True if an aperiodic graph has held its last state for the hold time."""
+        return bool(self._tracker.finished()[0])

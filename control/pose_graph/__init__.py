@@ -1,0 +1,1 @@
+"""Pose control graphs and gaits: file format, checks, tracking, styles and blends."""

@@ -1,0 +1,1 @@
+"""Steering of a walk: speed, sideways speed, turns, courses, slopes and slipping feet."""

@@ -1,0 +1,1 @@
+"""Steps against pushes: decision, placement, comfort steps, and takeover from a walk."""

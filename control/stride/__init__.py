@@ -1,0 +1,1 @@
+"""Walking planned with a linear inverted pendulum."""

@@ -1,0 +1,1 @@
+"""Whole-body control: inverse dynamics as a quadratic programme."""

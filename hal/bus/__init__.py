@@ -1,0 +1,1 @@
+"""Servo bus: register access, sync reads and writes, and the settings of servos."""

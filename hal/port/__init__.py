@@ -1,0 +1,1 @@
+"""Serial ports (device, network, or simulated): opening, locking, measuring and reopening them."""

@@ -1,0 +1,1 @@
+"""Joints on servo buses: readings, torque, settings and errors of their servos."""

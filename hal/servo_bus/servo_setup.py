@@ -1,0 +1,126 @@
+"""Setup of the servo buses: opening ports, measuring adapters, checking and writing settings."""
+
+import logging
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from windup.hal.backend import Clock
+from windup.hal.bus.bus import Bus
+from windup.hal.bus.servo_settings import assert_settings
+from windup.hal.bus.setting_words import in_words
+from windup.hal.clock import WallClock
+from windup.hal.errors import UsageError
+from windup.hal.families import family_of
+from windup.hal.imu.imu_link import ImuLink
+from windup.hal.imu.opencr import POWER, POWER_UP_TIME, OpenCr
+from windup.hal.imu.source import ImuSource
+from windup.hal.joints import Joints, Mask
+from windup.hal.port.lock import EMULATED, wait_while_guarded
+from windup.hal.port.port import Port
+from windup.hal.port.replug import Opener
+from windup.hal.servo_bus.bus_connection import BusConnection, BusPort
+from windup.hal.servo_bus.bus_readout import BusReadout
+from windup.hal.servo_bus.plausibility import Plausibility
+from windup.hal.servo_bus.units import Units
+from windup.hal.servo_bus.wiring import check_servos, row_groups
+from windup.hal.servos.servo_model import ServoMount
+
+BuildLine = Callable[[Port], BusReadout]
+
+
+def one_clock(clocks: Sequence[Clock]) -> Clock:
+    """Return the clock that all ports of a robot share.
+
+    Raises:
+        UsageError: Some use the wall clock and some a virtual clock, or two virtual clocks.
+    """
+    first = clocks[0]
+    wall = isinstance(first, WallClock)
+    for clock in clocks[1:]:
+        if clock is not first and not (wall and isinstance(clock, WallClock)):
+            raise UsageError("the buses of one robot have to live in one world, on one clock")
+    return first
+
+
+def lines_of(
+    joints: Joints, mounts: Sequence[ServoMount], units: Units, board: OpenCr | None
+) -> dict[str, BuildLine]:
+    """Return, by bus name, a function that builds the readout of the bus from its port."""
+
+    def build(name: str, rows: list[int]) -> BuildLine:
+        here = [mounts[row] for row in rows]
+        family = family_of(here[0].model.name)
+        bounds = units.last[rows], units.speed[rows], units.speed_unit[rows]
+        check = Plausibility(*bounds, weak=family.dialect.weak, first=units.first[rows])
+        ours = board if board is not None and board.bus == name else None
+        names = [joints.names[row] for row in rows]
+        return lambda port: BusReadout(Bus(port, family), here, rows, ours, check, names)
+
+    return {name: build(name, rows) for name, rows in row_groups(mounts).items()}
+
+
+def open_links(
+    lines: Mapping[str, BuildLine],
+    ports: Mapping[str, BusPort],
+    imu: ImuSource | None,
+    watchdog: float,
+    opener: Opener,
+) -> tuple[list[BusConnection], ImuLink | None, Clock]:
+    """Open all ports; return the buses, the link of the IMU if it has a port, and their clock.
+
+    Raises:
+        PortError: A port cannot be opened; the others are closed again.
+        UsageError: The ports do not share one clock.
+    """
+    links: list[BusConnection] = []
+    beside: ImuLink | None = None
+    try:
+        for name, build in lines.items():
+            wait_while_guarded(ports[name].url)
+            links.append(BusConnection(ports[name], opener, build, watchdog))
+        if imu is not None:
+            beside = ImuLink(imu, opener)
+        clocks = [link.clock for link in (*links, beside) if link is not None]
+        return links, beside, one_clock(clocks)
+    except BaseException:
+        for link in (*links, beside):
+            if link is not None:
+                link.close()
+        raise
+
+
+def set_up(
+    joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, Bus], board: OpenCr | None
+) -> None:
+    """Measure the adapters, switch servo power on, check all servos, log and write what differs.
+
+    Changes of emulated servos are not logged: they are lost when the program ends.
+
+    Raises:
+        HardwareError: The wiring differs from robot.toml; nothing has been written except the
+            status return level of servos that did not answer.
+    """
+    for name, bus in buses.items():
+        ours = [board.id] if board is not None and board.bus == name else []
+        bus.get_to_know_adapter([*ours, *(mount.id for mount in mounts if mount.bus == name)])
+    if board is not None:
+        power_up(buses[board.bus], board)
+    found = check_servos(joints, mounts, buses, board)
+    real = [differs for differs in found if not differs.bus.port.url.startswith(EMULATED)]
+    for line in in_words(real):
+        logging.getLogger(__name__).warning("%s", line)
+    for differs in found:
+        assert_settings(differs.bus, differs.id, differs.settings)
+
+
+def power_up(bus: Bus, board: OpenCr) -> None:
+    """Switch on the servo power of an OpenCR, and wait until the servos have started."""
+    if bus.read(board.id, POWER) != 1:
+        bus.write(board.id, POWER, 1)
+        bus.wait(POWER_UP_TIME)
+
+
+def names_of(joints: Joints, which: Mask) -> str:
+    """Return the names of the joints `which` (n,) bool, separated by commas."""
+    return ", ".join(np.array(joints.names)[which])

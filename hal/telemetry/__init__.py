@@ -1,0 +1,1 @@
+"""Telemetry: a ring buffer in shared memory that a run writes, and other processes read."""

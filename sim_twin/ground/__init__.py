@@ -1,0 +1,1 @@
+"""The ground of a twin, and the robot's contact with it."""

@@ -1,0 +1,1 @@
+"""Emulated controller boards and sensors on a bus."""

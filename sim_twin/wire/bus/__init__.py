@@ -1,0 +1,1 @@
+"""An emulated half-duplex bus: byte timing, collisions, the host's adapter."""

@@ -1,0 +1,290 @@
+"""A half-duplex bus that carries bytes in time, at a baud rate, from one sender at a time.
+
+Bytes that two senders send at the same time arrive as noise. A device receives the host only at its
+own baud rate, and the host receives a device only at the host's.
+"""
+
+import math
+import random
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Protocol
+
+from windup.sim_twin.wire.bus.air import Air
+from windup.sim_twin.wire.bus.heard import Heard
+from windup.sim_twin.wire.bus.inbox import Burst, Inbox
+from windup.sim_twin.wire.bus.timing import Timing
+from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.imu.imu_faults import FaultyImu
+from windup.sim_twin.wire.schedule import Schedule
+
+BITS = 10  # per byte: one start, eight data, one stop
+FORGET = 0.1  # pause after which an incomplete frame is discarded, s
+BAUD_TOLERANCE = 0.03
+PIECE = 4096  # largest number of host bytes that are parsed at once
+
+
+class Language(Protocol):
+    """A protocol: how bytes become frames, and what devices do with a frame.
+
+    Attributes:
+        id_at: Index of the id in a frame.
+        length_at: Index of the length (its low byte) in a frame.
+        data_at: Index of the data in a status packet.
+        tail: Number of bytes of the checksum.
+    """
+
+    id_at: int
+    length_at: int
+    data_at: int
+    tail: int
+
+    def seal(self, frame: bytes, /) -> bytes:
+        """Return `frame` with the correct checksum."""
+        ...
+
+    def meet(self, devices: Sequence[Device], /) -> None:
+        """Register the devices; called whenever registers below 64 may have changed."""
+        ...
+
+    def feed(self, chunk: bytes) -> list[Heard]:
+        """Return the frames that `chunk` completes."""
+        ...
+
+    def reset(self) -> None:
+        """Discard an incomplete frame."""
+        ...
+
+    def execute(self, frame: Heard, bus: "Bus") -> bool:
+        """Execute a frame; return False if it was dropped."""
+        ...
+
+
+class Disturbance(Protocol):
+    """The faults of a bus, applied to what is sent on it.
+
+    Attributes:
+        active: Whether any fault is configured.
+    """
+
+    active: bool
+
+    def answer(self, bus: "Bus", data: bytes, baud: int, identifier: int) -> float:
+        """Send a status packet with the faults that hit it now; return when it ends, s."""
+        ...
+
+    def asked(self, bus: "Bus") -> bool:
+        """Return whether the adapter echoes the host's present bytes back to it."""
+        ...
+
+    def noise(self, count: int) -> bytes:
+        """Return random bytes, as received in a collision or at a wrong baud rate."""
+        ...
+
+
+class Bus:
+    """One bus, with its devices and its host adapter.
+
+    Attributes:
+        name: Name of the bus.
+        devices: The devices on it. Call `refresh` after changing ids from outside.
+        baud: Baud rate of the host.
+        schedule: The schedule of the world.
+        timing: Latencies.
+        faults: The faults; set by the world.
+        heard: Time at which the last valid instruction ended, s.
+        began: Time at which the host's last bytes began, s.
+        counts: Numbers of "frames" executed, frames "dropped", and "collisions".
+        plugged: Whether the host's adapter is plugged in.
+        plugs: Number of times that the adapter was pulled out or plugged in.
+        spoken: Protocol version of the frame being executed; devices with another version do not
+            receive it. None: all devices have the same version.
+        imu: IMU that a board on the bus reports, or that sends on the bus by itself.
+        tap: Called with the direction (">" from the host), the baud rate and each burst.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        devices: list[Device],
+        language: Language,
+        schedule: Schedule,
+        baud: int = 1_000_000,
+        timing: Timing | None = None,
+    ) -> None:
+        self.name, self.devices, self.language, self.schedule = name, devices, language, schedule
+        self.timing = timing or Timing()
+        self.faults: Disturbance | None = None
+        self.heard = self.began = 0.0
+        self.counts = {"frames": 0, "dropped": 0, "collisions": 0}
+        self.plugged, self.plugs = True, 0
+        self.spoken: int | None = None
+        self.imu: FaultyImu | None = None
+        self.tap: Callable[[str, int, Burst], None] | None = None
+        self._dice = random.Random(0)
+        self._baud = baud
+        self._sent = -math.inf  # end of the host's last byte, s
+        self._out = -math.inf  # time until which the adapter stays pulled out, s
+        self._air = Air()
+        self.inbox = Inbox(self.timing.latency)
+        self._by_id: dict[int, list[Device]] = {}
+        self.refresh()
+
+    @property
+    def disturbance(self) -> Disturbance | None:
+        """The faults, or None while none is active."""
+        return self.faults if self.faults is not None and self.faults.active else None
+
+    @property
+    def baud(self) -> int:
+        """Baud rate of the host."""
+        return self._baud
+
+    @baud.setter
+    def baud(self, baud: int) -> None:
+        if baud != self._baud:
+            self._baud = baud
+            self.language.reset()
+
+    def refresh(self) -> None:
+        """Update the tables of ids and protocols from the devices."""
+        self.language.meet(self.devices)
+        self._by_id.clear()
+        for device in self.devices:
+            self._by_id.setdefault(device.identifier, []).append(device)
+            if device.shadow < 253 and device.shadow != device.identifier:
+                self._by_id.setdefault(device.shadow, []).append(device)
+
+    # The host's side
+
+    def write(self, data: bytes) -> None:
+        """Send bytes from the host, now or after those that are still in transit."""
+        start = max(self.schedule.now, self._sent)
+        if start - self._sent > FORGET:
+            self.language.reset()
+        burst = Burst(start, BITS / self._baud, bytearray(data))
+        self._sent, self.began = burst.end, start
+        self.counts["collisions"] += self._air.add(burst, self.schedule.now, self._noise)
+        if self.tap is not None:
+            self.tap(">", self._baud, burst)
+        wrong = self.disturbance
+        if wrong is not None and wrong.asked(self) and self.plugged:
+            self.inbox.append(Burst(burst.start, burst.byte, bytearray(burst.data)))
+        for at in range(0, len(burst.data), PIECE):
+            for item in self.language.feed(bytes(burst.data[at : at + PIECE])):
+                if item.noise:
+                    self.language.execute(item, self)
+                    self.counts["dropped"] += 1
+                    continue
+                end = start + (at + item.end) * burst.byte
+                self.schedule.at(end, partial(self._hear, item, burst, end))
+
+    @property
+    def backlog(self) -> float:
+        """Time for which the host's bytes still occupy the wire, s."""
+        return max(self._sent - self.schedule.now, 0.0)
+
+    def available(self) -> int:
+        """Return the number of bytes that the host has received and not read."""
+        return self.inbox.available(self.schedule.now)
+
+    def arrival(self, count: int) -> float:
+        """Return when the host has `count` bytes, s; infinity if fewer are in transit."""
+        return self.inbox.arrival(count)
+
+    def read(self, count: int) -> bytes:
+        """Return up to `count` bytes that have arrived."""
+        return self.inbox.read(count, self.schedule.now)
+
+    @property
+    def queued(self) -> int:
+        """Number of bytes that the host has not read, received or in transit."""
+        return self.inbox.queued
+
+    def discard(self) -> None:
+        """Discard the bytes that the host has received and not read."""
+        self.read(self.available())
+
+    def plug(self, there: bool) -> None:
+        """Pull the host's adapter out or plug it in; ports opened before stay dead in any case."""
+        if there != self.plugged:
+            self.plugged = there
+            self.plugs += 1
+            self.inbox.clear()
+            self.language.reset()
+
+    def unplug(self, seconds: float) -> None:
+        """Pull the adapter out, and plug it in after some seconds (infinity: never)."""
+        self.plug(False)
+        back = self.schedule.now + seconds
+        self._out = max(self._out, back)
+        if back < math.inf:
+            self.schedule.at(back, self._plug_in)
+
+    def _plug_in(self) -> None:
+        if self.schedule.now >= self._out:  # no later call of `unplug` lasts longer
+            self.plug(True)
+
+    # The devices' side
+
+    def listeners(self, identifier: int) -> list[Device]:
+        """Return the devices that hear the host and have this id or secondary id."""
+        found = self._by_id.get(identifier)
+        return [device for device in found if self.hears(device)] if found else []
+
+    def everybody(self) -> list[Device]:
+        """Return all devices that hear the host."""
+        return [device for device in self.devices if self.hears(device)]
+
+    def hears(self, device: Device) -> bool:
+        """Return whether a device receives the host at its present baud rate and protocol."""
+        mine, its = self._baud, device.baud
+        same = its == mine or abs(its - mine) <= BAUD_TOLERANCE * mine
+        if self.spoken is not None and device.protocol != self.spoken:
+            return False
+        return same and device.listens(self.schedule.now)
+
+    def answer(self, data: bytes, baud: int, identifier: int) -> float:
+        """Send a status packet now, with faults; return when it ends, s."""
+        wrong = self.disturbance
+        if wrong is None:
+            return self.put(data, baud)
+        return wrong.answer(self, data, baud, identifier)
+
+    def _noise(self, count: int) -> bytes:
+        """Return random bytes, as received in a collision or at a wrong baud rate."""
+        return self._dice.randbytes(count) if self.faults is None else self.faults.noise(count)
+
+    def answers(self, data: Sequence[bytes]) -> None:
+        """Send status packets without gaps and faults, at the host's baud rate."""
+        self.put(b"".join(data), self._baud)
+
+    def put(self, data: bytes, baud: int, got: bytes | None = None, held: float = 0.0) -> float:
+        """Send bytes of a device now; return when they end, s.
+
+        Args:
+            data: The bytes that the device sends.
+            baud: Baud rate of the device.
+            got: The bytes that the host receives instead, if a fault changed them.
+            held: Time before which the host's adapter does not deliver them, s.
+        """
+        burst = Burst(self.schedule.now, BITS / baud, bytearray(data), held=held)
+        end = burst.end
+        self.counts["collisions"] += self._air.add(burst, self.schedule.now, self._noise)
+        if got is not None:
+            burst.data[:] = got
+        if abs(baud - self._baud) > BAUD_TOLERANCE * self._baud:
+            burst.data[:] = self._noise(len(burst.data))
+        if burst.data and self.plugged:
+            self.inbox.append(burst)
+            if self.tap is not None:
+                self.tap("<", baud, burst)
+        return end
+
+    def _hear(self, item: Heard, burst: Burst, end: float) -> None:
+        """Execute a frame of the host, unless a collision has corrupted it since."""
+        if end > burst.ruined or not self.language.execute(item, self):
+            self.counts["dropped"] += 1
+            return
+        self.counts["frames"] += 1
+        self.heard = end

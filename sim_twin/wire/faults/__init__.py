@@ -1,0 +1,1 @@
+"""Faults of emulated buses: their text form, their methods and their effects."""

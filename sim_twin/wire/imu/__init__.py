@@ -1,0 +1,1 @@
+"""The motion that an emulated IMU measures, and its faults."""

@@ -1,8 +1,0 @@
-"""pyserial finds the handler of ``twin://`` in a module of this name."""
-
-from sim_twin.wire.port import TwinSerial
-
-
-def serial_class_for_url(url: str) -> tuple[str, type[TwinSerial]]:
-    """Return the URL and the class that opens it."""
-    return url, TwinSerial

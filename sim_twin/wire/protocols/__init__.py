@@ -1,0 +1,1 @@
+"""The servo protocols, on the device's side."""

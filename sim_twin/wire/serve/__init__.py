@@ -1,0 +1,1 @@
+"""Emulated buses for other programs: pseudo-terminals, TCP ports, traces."""

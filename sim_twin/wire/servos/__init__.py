@@ -1,0 +1,1 @@
+"""Emulated servos: registers, control loops, protection functions."""

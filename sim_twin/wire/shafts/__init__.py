@@ -1,0 +1,1 @@
+"""The shafts that emulated servos drive: plain inertias, or joints of a twin."""

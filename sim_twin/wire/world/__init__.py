@@ -1,0 +1,1 @@
+"""Worlds: emulated buses with their devices, physics and clock."""

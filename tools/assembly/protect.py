@@ -1,0 +1,74 @@
+"""Putting together how a robot falls: what foresees it, and the poses of its `[fall]` table."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import mujoco
+import numpy as np
+
+from windup.control.falling.fall import FallPredictor
+from windup.control.falling.protection import FallWay, Protected
+from windup.control.kinematics.soles import Soles
+from windup.hal.controller import Controller
+from windup.hal.joints import Array, Mask
+from windup.robots import RobotDescription
+from windup.robots.records import Shares
+from windup.tools.assembly.build import body_of
+
+
+@dataclass
+class Protection:
+    """How the falls of one robot are softened.
+
+    Attributes:
+        robot: The robot.
+    """
+
+    robot: RobotDescription
+
+    @property
+    def possible(self) -> bool:
+        """Does the robot's file say how it falls?"""
+        return bool(self.robot.fall.way)
+
+    def around(self, controller: Controller) -> Protected:
+        """Return `controller`, protected; one at a time, for they share what foresees a fall."""
+        return Protected(controller, self._predictor, self._ways, self.robot.joints)
+
+    @cached_property
+    def _predictor(self) -> FallPredictor:
+        robot, body = self.robot, body_of(self.robot)
+        assert robot.fall.reach is not None, "the robot's file was checked"
+        soles = Soles(body.model, [foot.body for foot in robot.feet], robot.contacts)
+        return FallPredictor(body, soles, robot.fall.reach)
+
+    @cached_property
+    def _ways(self) -> tuple[FallWay, ...]:
+        robot = self.robot
+        legs = leg_joints(robot, robot.spec().compile())
+        return tuple(
+            FallWay(
+                way.toward,
+                robot.poses[way.pose],
+                spread(way.falling, legs),
+                spread(way.impact, legs),
+                way.soften,
+            )
+            for way in robot.fall.way
+        )
+
+
+def leg_joints(robot: RobotDescription, model: mujoco.MjModel) -> Mask:
+    """Return (n,) bool: the joints between the base and a foot."""
+    bodies = set()
+    for foot in robot.feet:
+        body = model.body(foot.body).id
+        while body and body != model.body(robot.base).id:
+            bodies.add(body)
+            body = int(model.body_parentid[body])
+    return np.array([int(model.joint(name).bodyid[0]) in bodies for name in robot.joints.names])
+
+
+def spread(shares: Shares, legs: Mask) -> Array:
+    """Return (n,) the share of each joint; `legs` (n,) bool are those between base and feet."""
+    return np.where(legs, shares.legs, shares.others)

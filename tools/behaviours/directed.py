@@ -1,0 +1,254 @@
+"""Putting together what walks footprints, walking them, and how well each foot came down."""
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import mujoco
+import numpy as np
+
+from windup.control.footprints.directed_file import Directed, ServoDirected
+from windup.control.footprints.footprint_checks import FootprintChecks, outline
+from windup.control.footprints.footprint_walker import FootprintWalker
+from windup.control.footprints.footprints import Footprint, between, ground_places, seen_from
+from windup.control.footprints.torque_directed import TorqueDirected
+from windup.control.kinematics.body import Body
+from windup.control.kinematics.limb_ik import LimbIk
+from windup.control.kinematics.soles import Soles
+from windup.hal.controller import Controller
+from windup.hal.errors import UnknownNameError
+from windup.hal.joints import Array
+from windup.hal.observation import Observation
+from windup.robots import RobotDescription
+from windup.tools.assembly.build import body_of
+from windup.tools.assembly.robot_file import load_beside
+from windup.tools.assembly.shape import check_walks
+from windup.tools.assembly.stepping import FOOTPRINTS, find_stepping, whole_body_of
+from windup.tools.robot.robot import Robot
+
+
+class DirectedController(Controller, Protocol):
+    """A controller that walks footprints.
+
+    Attributes:
+        finished: All steps are done and the weight is between the feet.
+        landed: How many feet have come down.
+        stood: How many of these have borne the weight since, as they were told.
+    """
+
+    finished: bool
+    landed: int
+    stood: int
+
+    @property
+    def prints(self) -> Sequence[Footprint]:
+        """What to do."""
+        ...
+
+    @property
+    def how(self) -> Directed:
+        """Times, and how close a foot has to come."""
+        ...
+
+    @property
+    def places(self) -> Array:
+        """Where (2, 3) the feet are now, as the controller sees it."""
+        ...
+
+
+def find_directed(robot: RobotDescription) -> Directed:
+    """Return how `robot` walks footprints.
+
+    Raises:
+        UsageError: It has no footprints.toml.
+        ConfigError: That file says something that cannot be.
+    """
+    kind = Directed if robot.drive.kind == "torque" else ServoDirected
+    how = load_beside(robot, FOOTPRINTS, kind)
+    if how.stance not in robot.poses:
+        raise UnknownNameError(f"pose of {robot.name}", how.stance, robot.poses)
+    return how
+
+
+def feet_of(robot: RobotDescription) -> tuple[str, ...]:
+    """Return the names of the feet of a robot that has two.
+
+    Raises:
+        UsageError: It has not.
+    """
+    check_walks(robot, "walk footprints")
+    return tuple(foot.name for foot in robot.feet)
+
+
+def limbs_of(robot: RobotDescription, body: Body) -> list[LimbIk]:
+    """Return the inverse kinematics of its legs."""
+    return [LimbIk(body.model, robot.base, foot.site) for foot in robot.feet]
+
+
+def loop_rate(robot: RobotDescription) -> float | None:
+    """Return the rate, Hz, of the loop that walks footprints; None is the robot's own."""
+    return find_stepping(robot).rate if robot.drive.kind == "torque" else None
+
+
+def build_checks(robot: RobotDescription) -> FootprintChecks:
+    """Return what `robot` can step to.
+
+    Raises:
+        UsageError: It has not two feet, or no footprints.toml.
+    """
+    names, how, body = feet_of(robot), find_directed(robot), body_of(robot)
+    stance, limbs = robot.poses[how.stance], limbs_of(robot, body)
+    soles = Soles(body.model, [foot.body for foot in robot.feet], robot.contacts)
+    soles.update(stance, np.zeros_like(stance), np.array([0.0, 0.0, 1.0]))
+    poses = [limb.forward(stance) for limb in limbs]
+    seen = [
+        (soles.position[soles.foot == k] - pose.position) @ pose.rotation
+        for k, pose in enumerate(poses)
+    ]
+    middle = np.mean([pose.position for pose in poses], axis=0)
+    homes = [np.array([*(pose.position - middle)[:2], 0.0]) for pose in poses]
+    body.data.qpos[:7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
+    body.data.qpos[7:] = stance
+    mujoco.mj_kinematics(body.model, body.data)
+    mujoco.mj_comPos(body.model, body.data)
+    com = body.data.subtree_com[body.model.body(robot.base).id, :2].copy()
+    outlines = [outline(points[:, :2]) for points in seen]
+    return FootprintChecks(names, limbs, outlines, homes, stance, -com, how.height)
+
+
+def build_directed(robot: RobotDescription, prints: Sequence[Footprint]) -> DirectedController:
+    """Return the controller that walks footprints.
+
+    Raises:
+        UsageError: They cannot be walked by this robot.
+    """
+    build_checks(robot).check(prints)
+    how = find_directed(robot)
+    stance = robot.poses[how.stance]
+    if not isinstance(how, ServoDirected):
+        body = whole_body_of(robot)
+        return TorqueDirected(robot.joints, body, stance, prints, how, robot.contacts)
+    kinematics = body_of(robot)
+    limbs = limbs_of(robot, kinematics)
+    return FootprintWalker(robot.joints, kinematics, robot.base, limbs, stance, prints, how)
+
+
+@dataclass
+class Footfall:
+    """Where a foot came down, once the weight had gone on.
+
+    Attributes:
+        wanted: Its footprint.
+        place: (3,) where it stands, seen from what its footprint is seen from.
+    """
+
+    wanted: Footprint
+    place: Array
+
+    @property
+    def away(self) -> float:
+        """How far from its place, m."""
+        return float(np.hypot(*(self.place - self.wanted.place)[:2]))
+
+    @property
+    def turned(self) -> float:
+        """How far turned, degrees."""
+        return float(np.degrees(seen_from(self.wanted.place, self.place)[2]))
+
+    def good(self, how: Directed) -> bool:
+        """Return whether it is where it should be."""
+        return self.away <= how.close and abs(self.turned) <= how.turned
+
+    def record(self, names: tuple[str, ...]) -> dict[str, Any]:
+        """Return it as programs read it."""
+        return {
+            "foot": names[self.wanted.foot],
+            "wanted": _named(self.wanted.place),
+            "place": _named(self.place),
+            "away_m": self.away,
+            "turned_deg": self.turned,
+        }
+
+
+@dataclass
+class DirectedWalk:
+    """How footprints were walked.
+
+    Attributes:
+        names: Names of the feet.
+        prints: What should be walked.
+        how: How close the feet have to come.
+        falls: Where the feet came down: the twin's truth, or what a robot believes.
+        reason: Why it ended.
+        seconds: How long it took, s.
+    """
+
+    names: tuple[str, ...]
+    prints: Sequence[Footprint]
+    how: Directed
+    falls: list[Footfall] = field(default_factory=list)
+    reason: str = "interrupted"
+    seconds: float = 0.0
+
+    @property
+    def good(self) -> bool:
+        """Every foot came down where it should."""
+        return len(self.falls) == len(self.prints) and all(
+            fall.good(self.how) for fall in self.falls
+        )
+
+    def record(self) -> dict[str, Any]:
+        """Return it as programs read it."""
+        return {
+            "steps": len(self.prints),
+            "stepped": len(self.falls),
+            "good": self.good,
+            "largest_away_m": max((fall.away for fall in self.falls), default=None),
+            "largest_turned_deg": max((abs(fall.turned) for fall in self.falls), default=None),
+            "reason": self.reason,
+            "seconds": self.seconds,
+            "falls": [fall.record(self.names) for fall in self.falls],
+        }
+
+
+def walk_prints(robot: Robot, controller: DirectedController) -> DirectedWalk:
+    """Walk footprints, and look where the feet come down.
+
+    A foot is looked at once it bears the weight, so that its slip counts; and seen from where the
+    other one stood when it came down, for that one moves as soon as it bears nothing.
+    """
+    walk = DirectedWalk(feet_of(robot.description), controller.prints, controller.how)
+    origin: list[Array] = []
+    stances: list[Array] = []
+
+    def until(observation: Observation) -> str | None:
+        places = _places(robot, controller)
+        if not origin:
+            origin.append(between(*places))
+        while controller.landed > len(stances):
+            stances.append(places[1 - controller.prints[len(stances)].foot])
+        while controller.stood > len(walk.falls):
+            wanted = controller.prints[len(walk.falls)]
+            seen = origin[0] if wanted.frame == "start" else stances[len(walk.falls)]
+            walk.falls.append(Footfall(wanted, seen_from(seen, places[wanted.foot])))
+        return "done" if controller.finished else None
+
+    with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far it came
+        walk.reason = robot.run(controller, until=until, needs_imu=True).reason
+    walk.seconds = robot.loop.sim_time
+    return walk
+
+
+def _places(robot: Robot, controller: DirectedController) -> Array:
+    """Return the (2, 3) places of the feet: the truth of a twin, or what a robot believes."""
+    twin, feet = robot.stack.twin, robot.description.feet
+    if twin is None:
+        return controller.places
+    sites = [twin.model.site(foot.site).id for foot in feet]
+    return ground_places(twin.data.site_xpos[sites], twin.data.site_xmat[sites])
+
+
+def _named(place: Array) -> dict[str, float]:
+    x, y, yaw = place.tolist()
+    return {"x": x, "y": y, "yaw_deg": float(np.degrees(yaw))}

@@ -1,0 +1,1 @@
+"""`windup bench`: measurements of the stack that anyone can repeat."""

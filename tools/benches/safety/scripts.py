@@ -1,0 +1,104 @@
+"""Behaviour of the program: it stands, walks, crouches, or is written carelessly."""
+
+import os
+import threading
+import time
+from collections.abc import Callable
+
+from windup.hal.errors import WindupError
+from windup.hal.observation import Observation
+from windup.tools.benches.safety.begin import Begin
+from windup.tools.benches.safety.moment import Activity
+from windup.tools.robot.robot import Robot
+from windup.tools.robot.session import Watch
+
+BY_ITSELF = "its walk ended by itself"
+FOR_EVER = 3600.0
+"""Longer than any trial, s."""
+WARM_UP = 0.4
+"""Time from the end of the first motion until the robot stands still, s."""
+
+Body = Callable[[Robot, Activity, Begin], None]
+
+
+def move(robot: Robot, activity: Activity, begin: Begin) -> None:
+    """Stand, walk, or perform the closing crouch."""
+    if activity == "walking":
+        robot.walk(steps=1000, on_step=lambda number, _: begin.now("walking"))
+        raise WindupError(f"{BY_ITSELF}: {robot.loop.reason}")
+    robot.stand(WARM_UP)
+    robot.watch = _beginning(activity, begin, robot.watch)
+    if activity == "closing crouch":
+        robot.rest()
+    else:
+        robot.stand(FOR_EVER)
+
+
+def _beginning(activity: Activity, begin: Begin, watch: Watch | None) -> Watch:
+    """Return a watch that reports the beginning at the first tick, and then calls `watch`."""
+
+    def look(observation: Observation) -> None:
+        begin.now(activity)
+        if watch is not None:
+            watch(observation)
+
+    return look
+
+
+def _goes_on(robot: Robot, activity: Activity, begin: Begin) -> None:
+    """Catch Ctrl-C, and try to continue."""
+    try:
+        move(robot, activity, begin)
+    except KeyboardInterrupt:
+        robot.stand(FOR_EVER)
+
+
+def _in_a_thread(robot: Robot, activity: Activity, begin: Begin) -> None:
+    """Run in another thread, while the main thread only waits."""
+    thread = threading.Thread(target=move, args=(robot, activity, begin))
+    thread.start()
+    thread.join()
+
+
+def _leaves(robot: Robot, activity: Activity, begin: Begin) -> None:
+    """Exit between two calls, without closing the robot."""
+    robot.stand(WARM_UP)
+    begin.now("standing")
+    _sleep(begin)
+
+
+def _leaves_at_once(robot: Robot, activity: Activity, begin: Begin) -> None:
+    """Exit between two calls by `os._exit`, without any clean-up of Python."""
+    robot.stand(WARM_UP)
+    begin.now("standing")
+    _sleep(begin)
+    os._exit(7)
+
+
+def _sleep(begin: Begin) -> None:
+    while not begin.due():
+        time.sleep(0.01)
+
+
+def _nobody_reads(robot: Robot, activity: Activity, begin: Begin) -> None:
+    """Print to a pipe whose reader has closed it."""
+    reading, writing = os.pipe()
+    os.close(reading)
+
+    def watch(observation: Observation) -> None:
+        if begin.due():
+            os.write(writing, b"step\n")
+
+    robot.watch = watch
+    move(robot, activity, begin)
+
+
+SCRIPTS: dict[str, Body] = {
+    "goes on after Ctrl-C": _goes_on,
+    "runs in a thread": _in_a_thread,
+    "exits between two calls": _leaves,
+    "os._exit": _leaves_at_once,
+    "nobody reads its output": _nobody_reads,
+}
+LEFT_OPEN = ("exits between two calls", "os._exit")
+"""Scripts that never close their robot."""

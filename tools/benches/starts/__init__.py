@@ -1,0 +1,1 @@
+"""Random starts of a robot: its initial postures and faults."""

@@ -1,0 +1,151 @@
+"""Initial postures of a robot: joint positions, and orientation of the base."""
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import mujoco
+import numpy as np
+from scipy.optimize import brentq, least_squares
+
+from windup.control.estimation.posture import PostureSense
+from windup.control.kinematics.legs import legs_of
+from windup.hal.joints import Array
+from windup.robots import RobotDescription
+from windup.tools.assembly.gaits import find_gait
+
+Kind = Literal["standing", "squatting", "sitting", "lying", "hanging"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+
+
+def kinds_of(robot: RobotDescription) -> tuple[Kind, ...]:
+    """Return the postures of a robot; one without a graph for sitting cannot sit."""
+    return tuple(kind for kind in KINDS if kind != "sitting" or "sit" in robot.gaits())
+
+
+JITTER = np.radians(4.0)
+"""Standard deviation of a joint placed by hand, rad; that of a limp joint is twice as large."""
+LEAN = 0.25
+"""Largest tilt of a hanging robot, rad."""
+SIDES = (("front", 0.35), ("back", 0.35), ("left", 0.15), ("right", 0.15))
+QUARTER = np.pi / 2.0
+TURNS: dict[str, tuple[Array, float]] = {
+    "front": (np.array([0.0, 1.0, 0.0]), QUARTER),
+    "back": (np.array([0.0, 1.0, 0.0]), -QUARTER),
+    "left": (np.array([1.0, 0.0, 0.0]), -QUARTER),
+    "right": (np.array([1.0, 0.0, 0.0]), QUARTER),
+}
+
+
+@dataclass(frozen=True)
+class Placed:
+    """The initial state of a robot.
+
+    Attributes:
+        pose: (n,) joint positions, rad.
+        turn: (4,) orientation of the base, wxyz.
+        lift: Height of its lowest point above the floor, m.
+        held: Whether it is held until its servos are driven; else it lies, limp.
+        hangs: Whether its base is held for ever.
+    """
+
+    pose: Array
+    turn: Array
+    lift: float = 0.0
+    held: bool = True
+    hangs: bool = False
+
+
+def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator) -> Placed:
+    """Return a random posture of a robot, with a random heading."""
+    joints = robot.joints
+    jitter = JITTER * rng.normal(size=len(joints))
+    around = turned([0.0, 0.0, 1.0], float(rng.uniform(-np.pi, np.pi)))
+
+    def inside(pose: Array) -> Array:
+        return np.clip(pose, joints.lower, joints.upper)
+
+    if kind in ("standing", "squatting"):
+        low = robot.stance if robot.crouch is None else robot.crouch
+        depth = float(rng.uniform(0.3, 1.0)) if kind == "squatting" else 0.0
+        pose, level = on_feet(robot, robot.stance + depth * (low - robot.stance) + jitter)
+        return Placed(inside(pose), after(around, level))
+    if kind == "hanging":
+        towards = float(rng.uniform(-np.pi, np.pi))
+        tilt = turned([np.cos(towards), np.sin(towards), 0.0], float(rng.uniform(0.0, LEAN)))
+        pose = float(rng.uniform(0.0, 1.0)) * robot.stance + 2.0 * jitter
+        return Placed(inside(pose), after(around, tilt), lift=0.2, hangs=True)
+    if kind == "sitting":
+        pose = inside(np.asarray(find_gait(robot, "sit").graph.pose[-1]) + jitter)
+        return Placed(pose, after(around, _leaning_back(robot, pose)))
+    side = str(rng.choice([name for name, _ in SIDES], p=[share for _, share in SIDES]))
+    return Placed(inside(2.0 * jitter), after(around, turned(*TURNS[side])), held=False)
+
+
+def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Array]:
+    """Return a pose (n,) near `pose`, and a base orientation (4,) with flat soles under the CoM.
+
+    The ankles are adjusted, as when a limp robot is put down by hand.
+    """
+    model = robot.spec().compile()
+    data = mujoco.MjData(model)
+    base, sites = model.body(robot.base).id, [model.site(foot.site).id for foot in robot.feet]
+    feet = [foot.body for foot in robot.feet]
+    legs = legs_of(model, robot.base, feet, robot.joints, robot.stance)
+    assert legs is not None, "soles of the robots that are tried are flat"
+    ankles = _ankles(robot)
+
+    def put(x: Array) -> Array:
+        data.qpos[3:7] = after(turned([0.0, 1.0, 0.0], x[0]), turned([1.0, 0.0, 0.0], x[1]))
+        data.qpos[7:] = pose
+        data.qpos[7 + ankles] += x[2:]
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        moved: Array = data.qpos[7:].copy()
+        return moved
+
+    def off(x: Array) -> Array:
+        moved, frame = put(x), data.xmat[base].reshape(3, 3)
+        tilts = (legs.soles(moved[None])[0][0] @ frame.T)[:, :2].ravel()
+        soles = data.site_xpos[sites]
+        weight = data.subtree_com[base] - soles.mean(axis=0)
+        step = soles[:, 2] - soles[0, 2]
+        return np.concatenate([tilts, 10.0 * step, 3.0 * weight[:2], 0.02 * x])
+
+    best = least_squares(off, np.zeros(2 + len(ankles))).x
+    return put(best), data.qpos[3:7].copy()
+
+
+def _ankles(robot: RobotDescription) -> Array:
+    """Return the indices of the joints that level the soles: ankles, and hip rolls if necessary."""
+    names = robot.joints.names
+    rolls = [row for row, name in enumerate(names) if name.endswith(("ank_roll", "ankle_roll"))]
+    hips = [row for row, name in enumerate(names) if name.endswith("hip_roll")]
+    pitches = [row for row, name in enumerate(names) if "_ank" in name and row not in rolls]
+    return np.array(pitches + (rolls or hips))
+
+
+def _leaning_back(robot: RobotDescription, pose: Array) -> Array:
+    """Return the base orientation (4,) in which a robot sits on its seat and heels."""
+    model = robot.spec().compile()
+    sense = PostureSense(model, [foot.body for foot in robot.feet])
+
+    def seat(lean: float) -> float:
+        """Return the height of the seat above the heels, m."""
+        feet, others = sense.lowest(pose, np.array([np.sin(lean), 0.0, np.cos(lean)]))
+        return others - feet
+
+    return turned([0.0, 1.0, 0.0], -float(brentq(seat, 0.0, 1.2)))
+
+
+def turned(axis: Array | list[float], angle: float) -> Array:
+    """Return a quaternion (4,) wxyz, a rotation by `angle` rad about `axis` (3,)."""
+    turn = np.empty(4)
+    mujoco.mju_axisAngle2Quat(turn, np.asarray(axis, dtype=np.float64), angle)
+    return turn
+
+
+def after(first: Array, then: Array) -> Array:
+    """Return the product of two quaternions (4,) wxyz."""
+    turn = np.empty(4)
+    mujoco.mju_mulQuat(turn, first, then)
+    return turn

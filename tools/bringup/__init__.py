@@ -1,0 +1,1 @@
+"""Finding servos on a port, and checking the health of a robot."""

@@ -1,0 +1,283 @@
+"""Diagnoses a run: compares its telemetry with limits, and advises on every complaint.
+
+Supply, temperature, load, stall and IMU are checked by the same watches as during the run.
+"""
+
+import os
+from dataclasses import dataclass, field, fields
+from shlex import quote
+from typing import Any
+
+import numpy as np
+
+from windup.hal.errors import TelemetryError
+from windup.hal.guard import HealthLevels, Kind
+from windup.hal.guard.finding import SAYINGS, named
+from windup.hal.joints import Joints
+from windup.hal.telemetry.layout import Header
+from windup.hal.telemetry.ring import TelemetryReader, Ticks
+from windup.robots import RobotDescription
+from windup.tools.bringup.replay import findings
+from windup.tools.terminal.slowness import PLANS, TICKS, Slowness
+
+COUNTERS = ("missed", "plans", "late_plans")
+STANDSTILL = 1.0
+"""Time without a tick after which a loop that has not ended counts as standing still, s."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of a healthy run.
+
+    Attributes:
+        joints: The robot's joints.
+        health: Warning and stop levels of the joints.
+        age: Age of a joint's or the IMU's state, s; at twice that the guard stops the robot.
+        missed: Share of the ticks that are late.
+        late_plans: Share of the plans that are late.
+        errors: Number of bus errors of one kind per tick.
+        clamped: Share of the ticks in which one joint is clamped.
+    """
+
+    joints: Joints
+    health: HealthLevels
+    age: float = 0.125
+    missed: float = TICKS
+    late_plans: float = PLANS
+    errors: float = 0.01
+    clamped: float = 0.1
+
+    @classmethod
+    def of(cls, robot: RobotDescription) -> "Limits":
+        """Return the limits of a robot."""
+        return cls(robot.joints, robot.health)
+
+    def record(self) -> dict[str, Any]:
+        """Return the limits as plain data; levels are by kind and joint."""
+        plain = {item.name: getattr(self, item.name) for item in fields(self)[2:]}
+        levels = {
+            SAYINGS[kind].name: {"warn": self.health.warn[kind], "stop": self.health.stop[kind]}
+            for kind in Kind
+        }
+        return plain | {"levels": levels}
+
+
+@dataclass(frozen=True)
+class Complaint:
+    """One complaint: the subject, what is wrong, and what to do."""
+
+    who: str
+    what: str
+    do: str
+
+    def __str__(self) -> str:
+        return f"{self.who}: {self.what}; {self.do}"
+
+
+@dataclass
+class Diagnosis:
+    """The health of a run, over as much of it as the telemetry ring holds.
+
+    Attributes:
+        header: Header of its telemetry.
+        ticks: (m,) the ticks, at least one.
+        ended: Reason why the run ended, or None.
+        limits: Limits of a healthy run.
+        now: Present time, s since 1970.
+        complaints: What is not healthy.
+    """
+
+    header: Header
+    ticks: Ticks
+    ended: str | None
+    limits: Limits
+    now: float
+    complaints: list[Complaint] = field(default_factory=list, init=False)
+
+    @classmethod
+    def of(cls, reader: TelemetryReader, limits: Limits, now: float) -> "Diagnosis":
+        """Return the health of the last run in a ring.
+
+        Raises:
+            TelemetryError: No tick has been written yet.
+        """
+        ticks = _last_run(reader.since())
+        if not len(ticks):
+            raise TelemetryError(f"{reader.path}: no tick was written yet")
+        return cls(reader.header, ticks, reader.ended, limits, now)
+
+    def __post_init__(self) -> None:
+        self.newest = self.ticks[-1]
+        limits = self.limits
+        self.silence = max(self.now - float(self.newest["wall"]), 0.0)
+        self._judge_loop()
+        self._judge_bus()
+        self.findings = list(findings(self.header, self.ticks, limits.joints, limits.health))
+        self._judge_joints()
+
+    @property
+    def healthy(self) -> bool:
+        """True when there are no complaints."""
+        return not self.complaints
+
+    @property
+    def state(self) -> str:
+        """State of the run: "running", "ended", "standing still" or "dead"."""
+        if self.ended is not None:
+            return "ended"
+        if not _alive(self.header.pid):
+            return "dead"
+        return "running" if self.silence < STANDSTILL else "standing still"
+
+    @property
+    def rate(self) -> float | None:
+        """Ticks per second of the backend's time over the ring, Hz; None if unknown."""
+        seconds = float(self.newest["time"] - self.ticks[0]["time"])
+        return (len(self.ticks) - 1) / seconds if seconds > 0.0 else None
+
+    @property
+    def slowness(self) -> Slowness:
+        """Late ticks and plans over the ring."""
+        missed, plans, late = (int(self.change(name)) for name in COUNTERS)
+        return Slowness(
+            self.header.rate_hz,
+            ticks=len(self.ticks),
+            missed=missed,
+            plans=plans,
+            late=late,
+        )
+
+    @property
+    def missed(self) -> float:
+        """Share of the ticks that were late."""
+        return self.slowness.missed_share
+
+    def change(self, name: str) -> Any:
+        """Return the growth of a counter over the ring."""
+        return self.newest[name] - self.ticks[0][name]
+
+    def bus_errors(self) -> dict[str, int]:
+        """Return the number of bus errors by kind, over the ring."""
+        return {k: int(n) for k, n in zip(self.header.errors, self.change("errors"), strict=True)}
+
+    def clamps(self) -> dict[str, int]:
+        """Return the number of commands changed by each clamp, over the ring."""
+        return {k: int(n) for k, n in zip(self.header.clamps, self.change("clamps"), strict=True)}
+
+    def driver_clamps(self) -> dict[str, int]:
+        """Return the number of commands changed by each clamp of the driver, over the ring."""
+        counts = self.change("driver_clamps")
+        return {k: int(n) for k, n in zip(self.header.driver_clamps, counts, strict=True)}
+
+    def joints(self) -> list[dict[str, Any]]:
+        """Return one row per joint: present values, largest age and share of clamped ticks."""
+        ages, clamped = self.ticks["age"].max(axis=0), self.change("clamped") / len(self.ticks)
+        columns = zip(
+            self.header.joints,
+            ages,
+            clamped,
+            self.newest["temperature"],
+            self.newest["voltage"],
+            self.newest["alert"],
+            strict=True,
+        )
+        return [
+            {
+                "name": name,
+                "age_max_s": float(age),
+                "clamped_share": float(share),
+                "temperature_c": float(temperature),
+                "voltage_v": float(voltage),
+                "alerts": self._alerts(alert),
+            }
+            for name, age, share, temperature, voltage, alert in columns
+        ]
+
+    def result(self) -> dict[str, Any]:
+        """Return the whole diagnosis as plain data."""
+        tick = np.percentile(self.ticks["tick_time"], [50, 99]) * 1e3
+        return {
+            "robot": self.header.robot,
+            "port": self.header.port,
+            "healthy": self.healthy,
+            "state": self.state,
+            "reason": self.ended,
+            "silence_s": self.silence,
+            "rate_hz": self.rate,
+            "rate_nominal_hz": self.header.rate_hz,
+            "ticks": int(self.newest["tick"]),
+            "missed": int(self.newest["missed"]),
+            "missed_share": self.missed,
+            "tick_ms": {"p50": float(tick[0]), "p99": float(tick[1])},
+            "imu_age_s": float(self.newest["imu_age"]),
+            "bus_errors": self.bus_errors(),
+            "clamps": {name: count for name, count in self.clamps().items() if count},
+            "driver_clamps": {name: n for name, n in self.driver_clamps().items() if n},
+            "joints": self.joints(),
+            "warnings": [finding.record() for finding in self.findings] + self.slowness.records(),
+            "limits": self.limits.record(),
+            "complaints": [vars(complaint) for complaint in self.complaints],
+        }
+
+    def _judge_loop(self) -> None:
+        if self.state == "dead":
+            what = f"process {self.header.pid} died without ending its run"
+            self._complain("loop", what, "torque may be on: switch it off with `windup stop`")
+        elif self.state == "standing still":
+            what = f"no tick for {self.silence:.1f} s"
+            self._complain("loop", what, f"is process {self.header.pid} stopped or swapped out?")
+        if slow := self.slowness:
+            self._complain("loop", slow.what, slow.do)
+        age = float(self.ticks["imu_age"].max())
+        if age > self.limits.age:
+            what = f"silent for {age:.2f} s (limit {self.limits.age:g} s)"
+            self._complain("imu", what, "check its cable")
+
+    def _judge_bus(self) -> None:
+        port = self.header.port or "URL"
+        for kind, count in self.bus_errors().items():
+            if count > self.limits.errors * len(self.ticks):
+                what = f"{kind!r} {count} times in {len(self.ticks)} ticks"
+                self._complain(
+                    "bus", what, f"check cables and power, then `windup scan {quote(port)}`"
+                )
+
+    def _judge_joints(self) -> None:
+        limits = self.limits
+        for row in self.joints():
+            name = row["name"]
+            if row["alerts"]:
+                what = f"its servo signals: {', '.join(row['alerts'])}"
+                self._complain(name, what, "remove the cause before it shuts down")
+            if row["age_max_s"] > limits.age:
+                what = f"silent for {row['age_max_s']:.2f} s (limit {limits.age:g} s)"
+                self._complain(name, what, "check its cable and power")
+            if row["clamped_share"] > limits.clamped:
+                what = f"clamped in {row['clamped_share']:.0%} of the ticks"
+                self._complain(name, what, "ask for less, or widen its limits in robot.toml")
+
+        for finding in self.findings:
+            who = named(finding.joints) or finding.saying.who
+            self._complain(who, finding.what, finding.saying.do)
+
+    def _complain(self, who: str, what: str, do: str) -> None:
+        self.complaints.append(Complaint(who, what, do))
+
+    def _alerts(self, bits: float) -> list[str]:
+        return [kind for bit, kind in enumerate(self.header.alerts) if int(bits) >> bit & 1]
+
+
+def _last_run(ticks: Ticks) -> Ticks:
+    """Return the ticks of the last run in the ring."""
+    again = np.flatnonzero(np.diff(ticks["tick"]) <= 0)
+    return ticks[int(again[-1]) + 1 :] if len(again) else ticks
+
+
+def _alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True

@@ -1,0 +1,149 @@
+"""`windup rise`: get a robot up from its front or its back."""
+
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+import windup.sim_twin.wire as wire
+from windup.control.motions.play import PoseHolder
+from windup.control.motions.reach import lean
+from windup.hal.errors import UsageError
+from windup.hal.observation import Observation
+from windup.robots import load_robot
+from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics
+from windup.tools.assembly.gaits import find_gait
+from windup.tools.options.common import Common
+from windup.tools.options.twin_options import TwinOptions
+from windup.tools.robot.robot import Robot
+from windup.tools.terminal.output import console, write_json
+from windup.tools.terminal.quantities import Some
+
+Side = Literal["front", "back"]
+LOOK = 0.5  # s that it takes to know on which side one lies
+SETTLE = 1.0  # s until a twin that was put down lies still
+STAND = 1.5  # s to stand in the end
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rise(TwinOptions, Common):
+    """Get up from where it lies: look on which side, play get_up_front or get_up_back, stand."""
+
+    lying: Side | None = None
+    """Lay the twin on this side first; a robot lies as it does."""
+    tries: Some = 3
+    """How often, before it is given up."""
+
+    def check(self) -> None:
+        """Raise what cannot be; see `Command.check`."""
+        super().check()
+        robot = load_robot(self.robot)
+        if robot.fixed:
+            raise UsageError(f"{self.robot} cannot get up: its base is fixed")
+        motions = [f"get_up_{side}" for side in get_args(Side)]
+        if missing := set(motions) - set(robot.gaits()):
+            raise UsageError(
+                f"{self.robot} cannot get up by itself, for it has no gait "
+                f"{' and '.join(sorted(missing))}: put it on its feet"
+            )
+        for motion in motions:
+            find_gait(robot, motion)
+
+    def run(self) -> int:
+        """Get up; returns the exit status."""
+        rows = []
+        for seed in self.all_seeds:
+            rows.append(self._one(seed))
+            console.print(_said(self.robot, rows[-1]), markup=False, soft_wrap=True)
+            if rows[-1]["reason"] == "interrupted":
+                break
+        if self.seeds is not None:
+            console.print(f"{sum(row['up'] for row in rows)} of {len(rows)} seeds stand")
+        result = rows[0] if self.seeds is None else {"robot": self.robot, "rows": rows}
+        write_json(self.json, "rise", result)
+        if rows[-1]["reason"] == "interrupted":
+            return 130
+        return 0 if all(row["up"] for row in rows) else 1
+
+    def _one(self, seed: int) -> dict[str, Any]:
+        with self.open_robot(
+            seed,
+            world=self.world(load_robot(self.robot), seed),
+        ) as robot:
+            if self.lying is not None:
+                lay(robot, self.lying)
+            if (disturb := self.disturb()) is not None:
+                disturb(robot)
+            began = robot.backend.clock.now()
+            report: dict[str, Any] = {"robot": robot.description.name, "seed": seed}
+            report |= {"up": False, "sides": [], "reason": "interrupted", "peak_load": 0.0}
+            with suppress(KeyboardInterrupt):  # the robot has stopped
+                rise(robot, self.tries, report)
+            return report | {"seconds": robot.backend.clock.now() - began}
+
+
+def rise(robot: Robot, tries: int, report: dict[str, Any]) -> None:
+    """Get up in at most so many tries, and stand; keep `report` true.
+
+    Args:
+        robot: The robot; it may stand already.
+        tries: How many.
+        report: "up" whether it stands, "sides" it lay on, "reason", "peak_load".
+    """
+    for _ in range(tries):
+        side = side_of(robot)
+        if side is None:
+            break
+        report["sides"].append(side)
+        report["reason"] = robot.play(f"get_up_{side}").reason
+        if robot.load is not None:
+            report["peak_load"] = max(report["peak_load"], robot.load.peak)
+        if report["reason"] == "done":
+            break
+    else:
+        return
+    report["reason"] = robot.stand(STAND).reason
+    report["up"] = report["reason"] == "done" and not robot.fallen
+
+
+def side_of(robot: Robot) -> Side | None:
+    """Return on which side the robot lies, or None where it stands.
+
+    It holds the pose that it has, for as long as the estimate of its attitude takes.
+    """
+    seen: list[Observation] = []
+    watch, robot.watch = robot.watch, lambda observation: seen.append(observation)
+    pose = robot.backend.read().joints.position
+    robot.run(PoseHolder(robot.description.joints, pose, ramp=0.0), LOOK, down=True, needs_imu=True)
+    robot.watch = watch
+    if not robot.fallen:
+        return None
+    forward, _ = lean(seen[-1])
+    return "front" if forward > 0.0 else "back"
+
+
+def lay(robot: Robot, side: Side) -> None:
+    """Put a twin on the floor, with its joints about as a limp robot has them.
+
+    Raises:
+        UsageError: This is a robot, not a twin.
+    """
+    twin = robot.twin
+    if robot.stack.wired:
+        physics = wire.find_world(robot.stack.world).physics
+        assert isinstance(physics, TwinPhysics)
+        physics.held = False  # nobody holds it: it lies
+    joints = robot.description.joints
+    pose = np.clip(np.zeros(len(joints)), joints.lower, joints.upper)
+    twin.lay(side == "front", pose, noise=robot.noise, seed=robot.seed)
+    robot.backend.clock.wait_until(robot.backend.clock.now() + SETTLE)
+
+
+def _said(name: str, row: dict[str, Any]) -> str:
+    how = "stood already" if row["up"] else row["reason"]
+    if row["sides"]:
+        sides = ", then ".join(row["sides"])
+        verb = "is up from its" if row["up"] else "did not get up from its"
+        how = f"{verb} {sides} after {row['seconds']:.1f} s: {row['reason']}"
+    return f"{name} {how}"

@@ -1,0 +1,1 @@
+"""`Robot`: a stack of backend, guard, estimator and loop, and its runs."""

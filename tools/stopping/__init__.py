@@ -1,0 +1,1 @@
+"""Stop requests to a run, and supervision of the torque between runs."""

@@ -1,0 +1,1 @@
+"""Runs any command over a grid of its options."""

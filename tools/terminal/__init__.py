@@ -1,0 +1,1 @@
+"""Input and output of commands: messages, JSON, pictures, progress, ranges of numbers."""

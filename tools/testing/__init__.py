@@ -1,0 +1,1 @@
+"""Emulated servo buses for tests of other programs."""

@@ -1,0 +1,92 @@
+"""Windup: one interface to the servo buses and the MuJoCo twin of small humanoids.
+
+    from windup import Robot
+
+    with Robot.open("op3") as robot:
+        print(robot.walk(speed=0.2, steps=40))
+
+Nothing is imported before its name is used, so `import windup.hal` loads neither MuJoCo nor SciPy.
+"""
+
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from windup.control.loop import LoopReport
+    from windup.hal import (
+        BaseState,
+        Controller,
+        ImuState,
+        JointCommand,
+        Joints,
+        JointState,
+        Observation,
+        WindupError,
+    )
+    from windup.robots import RobotDescription, load_robot, robot_names
+    from windup.tools.assembly.walk_options import WalkOptions
+    from windup.tools.robot.robot import Robot
+    from windup.tools.robot.walk_report import WalkReport
+
+PLACES = {
+    "BaseState": "windup.hal",
+    "Controller": "windup.hal",
+    "ImuState": "windup.hal",
+    "JointCommand": "windup.hal",
+    "JointState": "windup.hal",
+    "Joints": "windup.hal",
+    "LoopReport": "windup.control.loop",
+    "Observation": "windup.hal",
+    "Robot": "windup.tools.robot.robot",
+    "RobotDescription": "windup.robots",
+    "WalkOptions": "windup.tools.assembly.walk_options",
+    "WalkReport": "windup.tools.robot.walk_report",
+    "WindupError": "windup.hal",
+    "load_robot": "windup.robots",
+    "robot_names": "windup.robots",
+}
+"""Public name to the module that has it."""
+
+__all__ = [
+    "BaseState",
+    "Controller",
+    "ImuState",
+    "JointCommand",
+    "JointState",
+    "Joints",
+    "LoopReport",
+    "Observation",
+    "Robot",
+    "RobotDescription",
+    "WalkOptions",
+    "WalkReport",
+    "WindupError",
+    "load_robot",
+    "robot_names",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first asked for.
+
+    Raises:
+        AttributeError: There is no such name.
+    """
+    if name == "__version__":
+        return _version()
+    if name not in PLACES:
+        raise AttributeError(f"module 'windup' has no attribute {name!r}")
+    return getattr(import_module(PLACES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]
+
+
+def _version() -> str:
+    """Return the version that is installed; "unknown" where only the files lie there."""
+    try:
+        return version("windup-robotics")
+    except PackageNotFoundError:
+        return "unknown"
