@@ -42,6 +42,20 @@ def load_toml(path: Path, record: type[T]) -> T:
     Raises:
         ConfigError: The file is missing, is not TOML, or does not fit the record.
     """
+    data = read_toml(path)
+    check_finite(path, data)
+    try:
+        return msgspec.convert(data, record)
+    except msgspec.ValidationError as error:
+        raise ConfigError(f"{path}: {_explain(str(error), record, data)}") from None
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Return what the file at `path` says, whatever that is.
+
+    Raises:
+        ConfigError: The file is missing, or is not TOML.
+    """
     try:
         text = read_small(path).decode("utf-8-sig")  # editors of Windows write a mark before it
     except OSError as error:
@@ -49,14 +63,9 @@ def load_toml(path: Path, record: type[T]) -> T:
     except UnicodeDecodeError:
         raise ConfigError(f"{path}: not TOML: this is no UTF-8 text") from None
     try:
-        data = tomllib.loads(text)
+        return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # numbers of 5000 digits, brackets 500 deep
         raise ConfigError(f"{path}: not TOML: {error}") from None
-    check_finite(path, data)
-    try:
-        return msgspec.convert(data, record)
-    except msgspec.ValidationError as error:
-        raise ConfigError(f"{path}: {_explain(str(error), record, data)}") from None
 
 
 def check_finite(path: Path, data: Any) -> None:
@@ -65,11 +74,19 @@ def check_finite(path: Path, data: Any) -> None:
     Raises:
         ConfigError: One is not; the message names the file and the key.
     """
+    for key, why in not_finite(data):
+        raise ConfigError(f"{path}: {key}: {why}")
+
+
+def not_finite(data: Any) -> Iterator[tuple[str, str]]:
+    """Yield key and mistake of every number in the `data` of a file that is not finite, or huge."""
     for key, number in _numbers(data, ""):
         if not -LARGEST <= number <= LARGEST:
             infinite = isinstance(number, float) and not isfinite(number)
-            why = f"{number:g} is not finite" if infinite else f"no number is beyond {LARGEST:g}"
-            raise ConfigError(f"{path}: {key}: {why}")
+            yield (
+                key,
+                (f"{number:g} is not finite" if infinite else f"no number is beyond {LARGEST:g}"),
+            )
 
 
 def _numbers(data: Any, key: str) -> Iterator[tuple[str, float]]:

@@ -1,32 +1,40 @@
-"""What an MJCF may say, and is seldom meant: a robot with it runs, but not as its owner thinks."""
+"""What a robot's files may say, and is seldom meant: it runs, but not as its owner thinks."""
 
 from collections.abc import Iterator
 
 import mujoco
 import numpy as np
 
-from windup.robots.couplings import bring_in_step
 from windup.robots.description import RobotDescription
+from windup.robots.inspection.posture_doubts import posture_doubts
+from windup.robots.inspection.servo_doubts import servo_doubts
+from windup.robots.inspection.stance import in_stance
 
 POINTS = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 DEEP = 1e-3
 """Bodies that are no deeper than this in each other only touch, m."""
+GRAVITY = (0.0, 0.0, -9.81)
 
 
 def doubts(robot: RobotDescription) -> list[str]:
-    """Return what is doubtful about a robot's MJCF, a line each, with what would be better."""
-    model = robot.spec().compile()
-    data = mujoco.MjData(model)
-    for name, angle in zip(robot.joints.names, robot.stance, strict=True):
-        data.joint(name).qpos[0] = angle
-    bring_in_step(model, data.qpos, robot.joints.names)
-    mujoco.mj_kinematics(model, data)
+    """Return what is doubtful about a robot, a line each, with what would be better."""
+    model, data = in_stance(robot)
     return [
         *_floor(robot, model),
+        *_gravity(model),
         *_points(robot, model, data),
         *_armature(robot, model),
         *_neighbours(model, data),
+        *servo_doubts(robot),
+        *posture_doubts(robot, model, data),
     ]
+
+
+def _gravity(model: mujoco.MjModel) -> Iterator[str]:
+    """Yield that the MJCF's gravity is not the earth's."""
+    if np.abs(model.opt.gravity - GRAVITY).max() > 0.05:
+        given = " ".join(f"{value:g}" for value in model.opt.gravity)
+        yield f"gravity is {given} m/s2 in the MJCF's <option>; leave it away for 0 0 -9.81"
 
 
 def _floor(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:

@@ -1,0 +1,111 @@
+"""Everything that is wrong with the keys of a file, at once: unknown, missing, wrong values."""
+
+from collections.abc import Iterator
+from copy import deepcopy
+from types import UnionType
+from typing import Any, NamedTuple, Union, get_args, get_origin
+
+import msgspec
+
+from windup.hal.errors import suggest
+
+Path = tuple[str | int, ...]
+"""Where a value stands: keys of tables and indices of arrays."""
+CONTAINERS = {dict: dict, list: list, tuple: list}
+"""Type of a field to what the reader of a file makes of it."""
+
+
+class KeyMistake(NamedTuple):
+    """One mistake.
+
+    Attributes:
+        path: The key.
+        message: What is wrong with it, and what would be right.
+        unknown: No record has this key: without it the rest of the file can be understood.
+    """
+
+    path: Path
+    message: str
+    unknown: bool = False
+
+    @property
+    def key(self) -> str:
+        """The key as people write it.
+
+        >>> KeyMistake(("joint", 3, "lower"), "is missing").key
+        'joint[3].lower'
+        """
+        words = (f"[{part}]" if isinstance(part, int) else f".{part}" for part in self.path)
+        return "".join(words).removeprefix(".")
+
+
+def key_mistakes(data: Any, kind: Any, path: Path = ()) -> Iterator[KeyMistake]:
+    """Yield what is wrong with `data` as a value of a type.
+
+    Args:
+        data: What a file says: dicts, lists and values.
+        kind: The type: a record, a container or a union of some, or the type of one value.
+        path: Where it stands.
+    """
+    fitting = _fitting(kind, data)
+    origin, inner = get_origin(fitting), get_args(fitting)
+    if _is_record(fitting) and isinstance(data, dict):
+        yield from _of_record(data, fitting, path)
+    elif origin in (list, tuple) and isinstance(data, list) and _any_length(fitting):
+        for index, item in enumerate(data):
+            yield from key_mistakes(item, inner[0], (*path, index))
+    elif origin is dict and isinstance(data, dict):
+        for name, item in data.items():
+            yield from key_mistakes(item, inner[1], (*path, name))
+    else:
+        try:
+            msgspec.convert(data, kind)
+        except msgspec.ValidationError as error:
+            yield KeyMistake(path, str(error).partition(" - at `")[0])
+
+
+def without_unknown(data: Any, mistakes: list[KeyMistake]) -> Any:
+    """Return a copy of `data` without the keys of `mistakes` that are unknown."""
+    data = deepcopy(data)
+    for mistake in mistakes:
+        if mistake.unknown:
+            table = data
+            for part in mistake.path[:-1]:
+                table = table[part]
+            del table[mistake.path[-1]]
+    return data
+
+
+def _of_record(
+    data: dict[str, Any], kind: type[msgspec.Struct], path: Path
+) -> Iterator[KeyMistake]:
+    fields = {item.encode_name: item for item in msgspec.structs.fields(kind)}
+    for name in (name for name in data if name not in fields):
+        yield KeyMistake((*path, name), f"unknown key{suggest(name, fields)}", unknown=True)
+    for name, item in fields.items():
+        if name in data:
+            yield from key_mistakes(data[name], item.type, (*path, name))
+        elif item.required:
+            yield KeyMistake((*path, name), "is missing")
+
+
+def _fitting(kind: Any, data: Any) -> Any:
+    """Return the member of a union that `data` is meant to be; any other type as it is."""
+    for member in get_args(kind) if _is_union(kind) else ():
+        origin = dict if _is_record(member) else CONTAINERS.get(get_origin(member) or member)
+        if origin is not None and isinstance(data, origin):
+            return member
+    return kind
+
+
+def _is_union(kind: Any) -> bool:
+    return get_origin(kind) in (UnionType, Union)
+
+
+def _is_record(kind: Any) -> bool:
+    return isinstance(kind, type) and issubclass(kind, msgspec.Struct)
+
+
+def _any_length(kind: Any) -> bool:
+    """Return whether a list or tuple may have any number of items."""
+    return get_origin(kind) is list or get_args(kind)[1:] == (Ellipsis,)
