@@ -46,6 +46,8 @@ COMMANDS: Final[dict[str, Entry]] = {
     ),
     "health": Entry("bringup.health", "Health", "Say whether a running robot is well"),
     "robots": Entry("commands.robots_list", "Robots", "List the robots and what they can do"),
+    "check": Entry("commands.check", "Check", "Say all that is wrong with a robot's folder"),
+    "new": Entry("commands.new", "New", "Begin a robot, a gait or a controller of your own"),
     "estimate": Entry(
         "commands.estimate", "Estimate", "Measure the estimated state against the twin's truth"
     ),

@@ -1,0 +1,1 @@
+"""What `windup check` looks at: a robot's folder, file by file."""

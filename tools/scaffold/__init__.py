@@ -1,0 +1,1 @@
+"""Small working examples that `windup new` writes: a robot, a gait, a controller."""
