@@ -25,7 +25,8 @@ def gait_mistakes(
             found += map(str, reader.limit_errors(state))
     if not found:
         found += _said(lambda: reader.perturbations(reader.graph()))
-    return list(dict.fromkeys(found))
+    named = (line if line.startswith(f"{path}: ") else f"{path}: {line}" for line in found)
+    return list(dict.fromkeys(named))
 
 
 def _parts(reader: GaitReader) -> Iterator[Callable[[], object]]:

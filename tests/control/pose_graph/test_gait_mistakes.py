@@ -6,6 +6,8 @@ from tests.small_world import CONTACTS, JOINTS, MIRROR
 from windup.control.pose_graph.gait_file import GaitFile
 from windup.control.pose_graph.gait_mistakes import gait_mistakes
 from windup.hal.config import load_toml
+from windup.hal.errors import ConfigError
+from windup.hal.joints import Array
 
 BROKEN = """
 title = "Broken"
@@ -78,6 +80,16 @@ def test_what_only_the_whole_graph_shows_is_found(tmp_path: Path) -> None:
     path.write_text(RIGHT.replace('"one"', '"one"\nnext = "one"'))
     (line,) = gait_mistakes(path, load_toml(path, GaitFile), JOINTS, CONTACTS, MIRROR)
     assert "no state leads to one'" in line
+
+
+def test_a_robot_without_a_mirror_image_is_a_mistake_of_the_gait(tmp_path: Path) -> None:
+    def crooked(values: Array) -> Array:
+        raise ConfigError("joint 'l_hip' has no partner")
+
+    path = tmp_path / "gait.toml"
+    path.write_text(RIGHT)
+    found = gait_mistakes(path, load_toml(path, GaitFile), JOINTS, CONTACTS, crooked)
+    assert found == [f"{path}: joint 'l_hip' has no partner"]
 
 
 def test_a_graph_without_states_is_one_mistake(tmp_path: Path) -> None:
