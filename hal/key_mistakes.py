@@ -1,4 +1,4 @@
-"""Everything that is wrong with the keys of a file, at once: unknown, missing, wrong values."""
+"""All mistakes in the keys of a TOML file: unknown keys, missing keys, invalid values."""
 
 from collections.abc import Iterator
 from copy import deepcopy
@@ -10,18 +10,18 @@ import msgspec
 from windup.hal.errors import suggest
 
 Path = tuple[str | int, ...]
-"""Where a value stands: keys of tables and indices of arrays."""
+"""Keys of tables and indices of arrays that lead to a value."""
 CONTAINERS = {dict: dict, list: list, tuple: list}
-"""Type of a field to what the reader of a file makes of it."""
+"""Type of a field, and the type that the TOML parser returns for it."""
 
 
 class KeyMistake(NamedTuple):
     """One mistake.
 
     Attributes:
-        path: The key.
-        message: What is wrong with it, and what would be right.
-        unknown: No record has this key: without it the rest of the file can be understood.
+        path: Path of the key.
+        message: The mistake, and the expected value.
+        unknown: The record has no such key; the rest of the file can be decoded without it.
     """
 
     path: Path
@@ -30,7 +30,7 @@ class KeyMistake(NamedTuple):
 
     @property
     def key(self) -> str:
-        """The key as people write it.
+        """The path in the notation of messages.
 
         >>> KeyMistake(("joint", 3, "lower"), "is missing").key
         'joint[3].lower'
@@ -40,12 +40,12 @@ class KeyMistake(NamedTuple):
 
 
 def key_mistakes(data: Any, kind: Any, path: Path = ()) -> Iterator[KeyMistake]:
-    """Yield what is wrong with `data` as a value of a type.
+    """Yield each mistake in `data` as a value of a type.
 
     Args:
-        data: What a file says: dicts, lists and values.
-        kind: The type: a record, a container or a union of some, or the type of one value.
-        path: Where it stands.
+        data: The parsed TOML: dicts, lists and values.
+        kind: The type: a record, a container, a union, or the type of one value.
+        path: Path of `data` in the file.
     """
     fitting = _fitting(kind, data)
     origin, inner = get_origin(fitting), get_args(fitting)
@@ -65,7 +65,7 @@ def key_mistakes(data: Any, kind: Any, path: Path = ()) -> Iterator[KeyMistake]:
 
 
 def without_unknown(data: Any, mistakes: list[KeyMistake]) -> Any:
-    """Return a copy of `data` without the keys of `mistakes` that are unknown."""
+    """Return a copy of `data` without its unknown keys."""
     data = deepcopy(data)
     for mistake in mistakes:
         if mistake.unknown:
@@ -90,7 +90,7 @@ def _of_record(
 
 
 def _fitting(kind: Any, data: Any) -> Any:
-    """Return the member of a union that `data` is meant to be; any other type as it is."""
+    """Return the member of a union that fits the container type of `data`, else `kind` itself."""
     for member in get_args(kind) if _is_union(kind) else ():
         origin = dict if _is_record(member) else CONTAINERS.get(get_origin(member) or member)
         if origin is not None and isinstance(data, origin):

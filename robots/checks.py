@@ -1,6 +1,6 @@
-"""Cross-checks of a robot.toml: within itself, and against its MJCF.
+"""Consistency checks of a robot.toml: within itself, and against its MJCF.
 
-Every mistake is one line with the file, the key and, where a name is wrong, the likely word.
+Every error is one line with the file, the key and, for an unknown name, the most similar one.
 """
 
 import shlex
@@ -38,9 +38,9 @@ class Checks:
     """The checks of one robot.
 
     Attributes:
-        path: Its robot.toml, for messages.
-        robot: What the file says, with defaults and limits filled in.
-        model: Its MJCF, compiled.
+        path: Path of its robot.toml, for messages.
+        robot: The decoded robot.toml, with defaults and limits filled in.
+        model: The compiled MJCF.
     """
 
     path: Path
@@ -48,10 +48,10 @@ class Checks:
     model: mujoco.MjModel
 
     def run(self) -> None:
-        """Check everything.
+        """Run all checks.
 
         Raises:
-            ConfigError: The first thing that cannot be, and how many more there are.
+            ConfigError: A check failed; the message has the first mistake and counts the others.
         """
         found = list(dict.fromkeys(self.mistakes()))
         if found:
@@ -61,7 +61,7 @@ class Checks:
             raise ConfigError(f"{self.path}: {key}: {message}{more}")
 
     def mistakes(self) -> Iterator[Mistake]:
-        """Yield everything that cannot be."""
+        """Yield key and message of every mistake."""
         robot, model = self.robot, self.model
         rate = robot.rate_hz
         if whole_steps(rate, model.opt.timestep) is None:

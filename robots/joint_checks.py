@@ -1,4 +1,4 @@
-"""What is wrong with the joints of a robot.toml: names, limits, servos, and the buses of these."""
+"""Checks of the joints of a robot.toml: names, limits, servos, buses and ids."""
 
 from collections.abc import Iterator
 from math import isnan
@@ -14,7 +14,7 @@ from windup.robots.records import JointEntry, RobotFile
 
 
 def name_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
-    """Yield the names of joints that stand there twice, are missing, or are none of the MJCF."""
+    """Yield repeated names of joints, and names that do not exist in the MJCF."""
     entries = [joint.name for joint in robot.joint]
     yield from unique("joint", "joint", entries)
     for index, body in enumerate(model.jnt_bodyid.tolist()):
@@ -33,7 +33,7 @@ def name_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
 
 
 def joint_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
-    """Yield what is wrong with limits, gains and servos, once defaults are filled in."""
+    """Yield mistakes in limits, gains and servos; defaults must be filled in."""
     hinges = mjcf.hinge_names(model)
     yield from _without_limits(robot, hinges)
     for joint in robot.joint:
@@ -43,7 +43,7 @@ def joint_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]
 
 
 def _without_limits(robot: RobotFile, hinges: tuple[str, ...]) -> Iterator[Mistake]:
-    """Yield all the joints of which nothing says how far they go, as one mistake."""
+    """Yield one mistake that names all joints without limits."""
     lost = [joint.name for joint in robot.joint if joint.name in hinges and _unlimited(joint)]
     if lost:
         names = ", ".join(repr(name) for name in lost)
@@ -60,7 +60,7 @@ def _unlimited(joint: JointEntry) -> bool:
 
 
 def _limit_mistakes(joint: JointEntry, model: mujoco.MjModel, known: bool) -> Iterator[Mistake]:
-    """Yield missing gains, and limits that cannot be or are wider than the MJCF's."""
+    """Yield missing gains, and limits that are reversed or wider than the MJCF's."""
     key = f"joint {joint.name!r}"
     for gain in ("stiffness", "damping"):
         if getattr(joint, gain) is None:
@@ -68,7 +68,7 @@ def _limit_mistakes(joint: JointEntry, model: mujoco.MjModel, known: bool) -> It
     if joint.lower >= joint.upper:
         yield key, f"lower {joint.lower:g} is not below upper {joint.upper:g}"
     if not known or not model.jnt_limited[model.joint(joint.name).id]:
-        return  # it could turn for ever; the file's limits are the only ones
+        return  # the MJCF has no limits; those of robot.toml apply
     low, high = model.joint(joint.name).range
     if joint.lower < low - SLACK or joint.upper > high + SLACK:
         given = f"{joint.lower:g} to {joint.upper:g} rad"
@@ -76,7 +76,7 @@ def _limit_mistakes(joint: JointEntry, model: mujoco.MjModel, known: bool) -> It
 
 
 def _servo_mistakes(robot: RobotFile, joint: JointEntry) -> Iterator[Mistake]:
-    """Yield a servo that is missing, unknown, on the wrong bus, or has too little travel."""
+    """Yield mistakes in servo, bus, id, mode and travel of a joint."""
     key, drive = f"joint {joint.name!r}", robot.drive.kind
     if drive == "torque":
         if joint.servo or joint.bus or joint.id is not None or joint.mode == "extended":
@@ -95,7 +95,7 @@ def _servo_mistakes(robot: RobotFile, joint: JointEntry) -> Iterator[Mistake]:
 
 
 def _bus_mistakes(robot: RobotFile, joint: JointEntry, key: str) -> Iterator[Mistake]:
-    """Yield that a servo does not speak as its bus does."""
+    """Yield a mistake if a servo's protocol or baud rate does not match its bus."""
     family = family_of(str(joint.servo))
     for bus in [bus for bus in robot.bus if bus.name == joint.bus][:1]:
         if family.protocol != bus.protocol:
@@ -107,7 +107,7 @@ def _bus_mistakes(robot: RobotFile, joint: JointEntry, key: str) -> Iterator[Mis
 
 
 def _id_mistakes(robot: RobotFile) -> Iterator[Mistake]:
-    """Yield buses of one name, and servos of one id on one bus."""
+    """Yield repeated names of buses, and ids that two servos of a bus share."""
     yield from unique("bus", "bus", [bus.name for bus in robot.bus])
     taken: dict[tuple[str | None, int], str] = {}
     for joint in robot.joint:

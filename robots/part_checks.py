@@ -1,4 +1,4 @@
-"""What is wrong with the feet and the IMU of a robot.toml: bodies, sites and sensors."""
+"""Checks of the feet and the IMU of a robot.toml: bodies, sites and sensors of the MJCF."""
 
 from collections.abc import Iterator
 
@@ -17,7 +17,7 @@ IMU_SENSORS = {
 
 
 def foot_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
-    """Yield feet whose body, site or sensors are none of the MJCF, and two of one side."""
+    """Yield unknown bodies, sites and sensors of feet, and two feet of the same side."""
     feet = [entry.foot() for entry in robot.foot]
     yield from unique("foot", "foot", [foot.name for foot in feet])
     yield from unique("foot", "sensor", [name for foot in feet for name in foot.sensors])
@@ -32,13 +32,13 @@ def foot_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
         placed = foot.body in bodies and foot.site in sites
         if placed:
             yield from _sole(key, foot, model)
-        if placed or entry.sensors is not None:  # else none could be added
+        if placed or entry.sensors is not None:  # otherwise a sensor could not be added
             for sensor in foot.sensors:
                 yield from _sensor(f"{key}: sensors", sensor, TOUCH, model)
 
 
 def imu_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
-    """Yield a site or sensors of the IMU that are none of the MJCF."""
+    """Yield an unknown site and unknown sensors of the IMU."""
     imu, sites = robot.imu, mjcf.names(model, "site")
     if imu is None:
         return
@@ -49,7 +49,7 @@ def imu_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
 
 
 def _sole(key: str, foot: Foot, model: mujoco.MjModel) -> Iterator[Mistake]:
-    """Yield that a foot's site is not on its body."""
+    """Yield a mistake if a foot's site is not on its body."""
     site = model.site(foot.site)
     if site.bodyid[0] != model.body(foot.body).id:
         there = model.body(site.bodyid[0]).name
@@ -59,6 +59,6 @@ def _sole(key: str, foot: Foot, model: mujoco.MjModel) -> Iterator[Mistake]:
 def _sensor(
     key: str, name: str, kind: mujoco.mjtSensor, model: mujoco.MjModel
 ) -> Iterator[Mistake]:
-    """Yield that the MJCF has no sensor `name` of the right kind."""
+    """Yield a mistake unless the MJCF has a sensor `name` of the given kind."""
     wanted = [other for other in mjcf.names(model, "sensor") if model.sensor(other).type[0] == kind]
     yield from known(key, f"{kind.name.removeprefix('mjSENS_').lower()} sensor", name, wanted)

@@ -1,4 +1,4 @@
-"""What is wrong with the poses of a robot.toml, and with what names them."""
+"""Checks of the poses of a robot.toml, and of the keys that refer to poses."""
 
 from collections.abc import Iterator, Mapping
 from math import isnan
@@ -8,7 +8,7 @@ from windup.robots.records import JointEntry, RobotFile
 
 
 def pose_mistakes(robot: RobotFile) -> Iterator[Mistake]:
-    """Yield joints of poses that do not exist, and angles outside of their limits."""
+    """Yield unknown joints in poses, and angles outside the joint limits."""
     joints = {joint.name: joint for joint in robot.joint}
     for pose, angles in robot.poses.items():
         for name, angle in angles.items():
@@ -19,7 +19,7 @@ def pose_mistakes(robot: RobotFile) -> Iterator[Mistake]:
 
 
 def stop_mistakes(robot: RobotFile) -> Iterator[Mistake]:
-    """Yield what is wrong with stance, stop and fall."""
+    """Yield mistakes in stance, crouch, stop and fall."""
     yield from known("stance", "pose", robot.stance, robot.poses)
     if robot.crouch is not None:
         yield from known("crouch", "pose", robot.crouch, robot.poses)
@@ -44,7 +44,7 @@ def _outside(key: str, angle: float, joint: JointEntry) -> Iterator[Mistake]:
 def _unnamed(
     key: str, angles: Mapping[str, float], joints: Mapping[str, JointEntry]
 ) -> Iterator[Mistake]:
-    """Yield the joints that a pose does not name and that cannot be at 0."""
+    """Yield the joints that a pose omits although 0 is outside their limits."""
     for name, joint in joints.items():
         around_zero = joint.lower <= 0.0 <= joint.upper or isnan(joint.lower + joint.upper)
         if name not in angles and not around_zero:

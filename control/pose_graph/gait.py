@@ -19,11 +19,11 @@ class Gait:
 
     Attributes:
         name: Name of the file, without suffix.
-        file: What the file says.
+        file: The decoded gait file.
         graph: The base graph B.
         perturbations: Names of the p perturbations.
-        pose_change: (p, s, n) change of the poses for a scaling of one, rad.
-        hold_change: (p, s) change of the hold times for a scaling of one, s.
+        pose_change: (p, s, n) change of the poses for a scaling of 1, rad.
+        hold_change: (p, s) change of the hold times for a scaling of 1, s.
     """
 
     name: str
@@ -56,7 +56,7 @@ def load_gait(path: Path, joints: Joints, contacts: ContactSensors, mirror: Mirr
         path: The file.
         joints: The joints.
         contacts: The contact sensors.
-        mirror: Its left and right; called only where the file asks for them.
+        mirror: Mirrors a pose left to right; called only if the file needs it.
 
     Raises:
         ConfigError: The file does not fit its format, the robot, or the joint limits.

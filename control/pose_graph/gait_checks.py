@@ -1,4 +1,4 @@
-"""What the tables of a gait file say of each other; every mistake is one line with its key."""
+"""Checks of references between a gait file's tables; every message is one line."""
 
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
@@ -9,11 +9,11 @@ from windup.hal.errors import UnknownNameError
 from windup.hal.joints import Joints
 
 Mistake = tuple[str, str]
-"""A key, and what is wrong there."""
+"""Key and message."""
 
 
 def table_mistakes(file: GaitFile, joints: Joints) -> Iterator[Mistake]:
-    """Yield what is wrong with the names that tables of a gait file have of each other."""
+    """Yield each mistake in the names by which tables refer to each other and to the joints."""
     names = [item.name for item in file.perturbation]
     parts = [(item.name, item.states and sorted(item.states)) for item in file.perturbation]
     for number, (name, states) in enumerate(parts):
@@ -75,7 +75,7 @@ def _styles(file: GaitFile, names: list[str]) -> Iterator[Mistake]:
 
 
 def _stages(file: GaitFile, joints: Joints) -> Iterator[Mistake]:
-    """Yield what is wrong with what only a graph that is played can have."""
+    """Yield mistakes in `move`, `reach`, `upright`, which only a graph that is played can have."""
     if file.balance is not None or file.mirror:
         yield (
             "state",

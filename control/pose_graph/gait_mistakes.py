@@ -1,4 +1,4 @@
-"""Everything that is wrong with a gait file whose keys are right, not only the first thing."""
+"""All mistakes of a gait file that fits its format, not only the first one."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -15,7 +15,7 @@ from windup.hal.joints import Joints
 def gait_mistakes(
     path: Path, file: GaitFile, joints: Joints, contacts: ContactSensors, mirror: Mirroring
 ) -> list[str]:
-    """Return what is wrong with a gait for a robot, a line each; see `load_gait`."""
+    """Return the mistakes of a gait for a robot, one line each; see `load_gait`."""
     found = [f"{path}: {key}: {mistake}" for key, mistake in table_mistakes(file, joints)]
     reader = GaitReader(path, file, joints, contacts, mirror)
     for part in _parts(reader):
@@ -30,7 +30,7 @@ def gait_mistakes(
 
 
 def _parts(reader: GaitReader) -> Iterator[Callable[[], object]]:
-    """Yield what turns each part of the file into numbers."""
+    """Yield a conversion for each part of the file; it raises ConfigError for a mistake."""
     yield reader.check_names
     for index, state in enumerate(reader.file.state):
         yield partial(reader.limit_errors, state)
@@ -43,7 +43,7 @@ def _parts(reader: GaitReader) -> Iterator[Callable[[], object]]:
 
 
 def _said(part: Callable[[], object]) -> list[str]:
-    """Return what is wrong with a part."""
+    """Return the message of the error that a conversion raises, if any."""
     try:
         part()
     except ConfigError as error:

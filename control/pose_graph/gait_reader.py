@@ -1,4 +1,4 @@
-"""From the words of a gait file to arrays: its graph and perturbations over a robot's joints."""
+"""Conversion of a gait file to arrays: its graph and perturbations over a robot's joints."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,14 +19,14 @@ Mirroring = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class GaitReader:
-    """Turns one gait file into arrays; every error names the file and the key.
+    """Converts one gait file into arrays; every error names the file and the key.
 
     Attributes:
         path: The file.
-        file: What it says.
+        file: The decoded gait file.
         joints: The robot's joints.
         contacts: Its contact sensors.
-        mirror: Its left and right; called only where the file asks for them.
+        mirror: Mirrors a pose left to right; called only if the file needs it.
     """
 
     path: Path
@@ -37,20 +37,20 @@ class GaitReader:
 
     @property
     def state_names(self) -> tuple[str, ...]:
-        """The names of all states, those of the other side too."""
+        """Names of all states, including the mirrored ones."""
         names = [state.name for state in self.file.state]
         return (*names, *map(_mirrored_name, names)) if self.file.mirror else tuple(names)
 
     @property
     def perturbation_names(self) -> tuple[str, ...]:
-        """The names of the perturbations, each once."""
+        """Names of the perturbations without repetitions."""
         return tuple(dict.fromkeys(item.name for item in self.file.perturbation))
 
     def graph(self) -> PoseGraph:
-        """Return the graph.
+        """Return the pose graph.
 
         Raises:
-            ConfigError: A state says something that cannot be.
+            ConfigError: A state is invalid.
         """
         states, names = list(self.file.state), self.check_names()
         poses = [self.pose_of(state) for state in states]
@@ -73,7 +73,7 @@ class GaitReader:
         """Return the changes (p, s, n) rad of poses and (p, s) s of hold times, for a scaling of 1.
 
         Raises:
-            ConfigError: A perturbation says something that cannot be.
+            ConfigError: A perturbation is invalid.
         """
         names = self.perturbation_names
         pose = np.zeros((len(names), *graph.pose.shape))
@@ -92,7 +92,7 @@ class GaitReader:
         """Return change (n,) rad, foot and chosen states (s,) of a perturbation.
 
         Raises:
-            ConfigError: It names a joint, foot or state that is not there.
+            ConfigError: It names an unknown joint, foot or state.
         """
         where = f"perturbation.{item.name}"
         change = np.radians(self._pose(item.pose, where))
@@ -124,7 +124,7 @@ class GaitReader:
         return np.radians(self._degrees(state))
 
     def limit_errors(self, state: State) -> list[ConfigError]:
-        """Return an error for each joint that the pose of a state has outside of its limits.
+        """Return an error for each joint outside its limits in the pose of a state.
 
         Raises:
             ConfigError: It names an unknown joint.
@@ -147,7 +147,7 @@ class GaitReader:
         return self._pose(self.file.pose, "pose") + own
 
     def _chosen(self, item: Perturbation) -> Mask:
-        """Return (s,) bool: the states that a perturbation touches."""
+        """Return (s,) bool: the states that a perturbation applies to."""
         names = self.state_names
         if item.states is None:
             return np.ones(len(names), dtype=bool)
@@ -161,7 +161,7 @@ class GaitReader:
         return chosen
 
     def _pose(self, pose: Pose, where: str) -> Array:
-        """Return an (n,) array in degrees from a table by name or a row of `columns`."""
+        """Return (n,) degrees from a table by joint name, or from a row in `columns` order."""
         if isinstance(pose, list):
             columns = self.file.columns
             if len(pose) != len(columns):
@@ -243,7 +243,7 @@ def _mirrored_name(name: str) -> str:
 
 
 def _mirrored(state: State) -> State:
-    """Return the state of the other side, without its pose."""
+    """Return the mirrored state, without its pose."""
     until = state.until
     if until.contact is not None:
         until = type(until)(contact=other_side(until.contact), timeout=until.timeout)

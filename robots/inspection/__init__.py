@@ -1,1 +1,1 @@
-"""A robot's folder looked at as a whole: all mistakes at once, and what is doubtful."""
+"""Inspection of a whole robot folder: all mistakes at once, and warnings."""

@@ -1,4 +1,4 @@
-"""What a robot's files may say, and is seldom meant: it runs, but not as its owner thinks."""
+"""Warnings about valid but probably unintended contents of a robot's files."""
 
 from collections.abc import Iterator
 
@@ -12,12 +12,12 @@ from windup.robots.inspection.stance import in_stance
 
 POINTS = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 DEEP = 1e-3
-"""Bodies that are no deeper than this in each other only touch, m."""
+"""Maximum penetration of bodies that only touch, m."""
 GRAVITY = (0.0, 0.0, -9.81)
 
 
 def doubts(robot: RobotDescription) -> list[str]:
-    """Return what is doubtful about a robot, a line each, with what would be better."""
+    """Return warnings about a robot's MJCF and robot.toml, one line each, with a remedy."""
     model, data = in_stance(robot)
     return [
         *_floor(robot, model),
@@ -31,14 +31,14 @@ def doubts(robot: RobotDescription) -> list[str]:
 
 
 def _gravity(model: mujoco.MjModel) -> Iterator[str]:
-    """Yield that the MJCF's gravity is not the earth's."""
+    """Yield a warning if the gravity of the MJCF is not that of the earth."""
     if np.abs(model.opt.gravity - GRAVITY).max() > 0.05:
         given = " ".join(f"{value:g}" for value in model.opt.gravity)
-        yield f"gravity is {given} m/s2 in the MJCF's <option>; leave it away for 0 0 -9.81"
+        yield f"gravity is {given} m/s2 in the MJCF's <option>; omit it for 0 0 -9.81"
 
 
 def _floor(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
-    """Yield that there is nothing to stand on."""
+    """Yield a warning if there is no floor."""
     solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
     if not robot.fixed and not (solid & (model.body_weldid[model.geom_bodyid] == 0)).any():
         plane = '<geom type="plane" size="0 0 0.05"/>'
@@ -46,7 +46,7 @@ def _floor(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
 
 
 def _points(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[str]:
-    """Yield the feet whose lowest geoms are round, and too few to bear a moment."""
+    """Yield a warning for each foot without colliding geoms, or on fewer than 3 round ones."""
     solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
     for foot in robot.feet:
         geoms = np.flatnonzero(solid & (model.geom_bodyid == model.body(foot.body).id))
@@ -61,6 +61,7 @@ def _points(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData)
 
 
 def _armature(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
+    """Yield a warning if joints with servos have no armature."""
     bare = [
         (name, servo)
         for name, servo in zip(robot.joints.names, robot.servos, strict=True)
@@ -76,7 +77,7 @@ def _armature(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
 
 
 def _neighbours(model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[str]:
-    """Yield the pairs of bodies that are in each other where the robot stands."""
+    """Yield a warning for each pair of bodies that penetrate each other in the stance."""
     mujoco.mj_collision(model, data)
     pairs = set()
     for contact in data.contact:

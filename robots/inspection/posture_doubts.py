@@ -1,4 +1,4 @@
-"""What is doubtful about how a robot stands in its stance: sides, soles, balance, and its fall."""
+"""Warnings about the stance of a robot: sides of feet, soles, balance and fall criterion."""
 
 from collections.abc import Iterator
 from itertools import pairwise
@@ -12,7 +12,7 @@ from windup.robots.description import RobotDescription
 from windup.robots.records import Foot
 
 LEVEL = 0.01
-"""So far soles may be off each other's height, and sites off their soles, m."""
+"""Tolerance of the heights of soles and of the sites on them, m."""
 DIRECTIONS = np.radians(np.arange(0.0, 360.0, 2.0))
 AROUND = np.column_stack((np.cos(DIRECTIONS), np.sin(DIRECTIONS)))
 
@@ -20,12 +20,12 @@ AROUND = np.column_stack((np.cos(DIRECTIONS), np.sin(DIRECTIONS)))
 def posture_doubts(
     robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData
 ) -> Iterator[str]:
-    """Yield what is doubtful in a state in which the robot is in its stance.
+    """Yield warnings about a robot in its stance.
 
     Args:
         robot: The robot.
         model: Its model.
-        data: The state, with kinematics and centres of mass up to date.
+        data: Its state in the stance, with kinematics and centres of mass computed.
     """
     if robot.fixed or not robot.feet:
         return
@@ -36,7 +36,7 @@ def posture_doubts(
 
 
 def sole_points(model: mujoco.MjModel, data: mujoco.MjData, foot: Foot) -> Array:
-    """Return the corners (k, 3) of the boxes around the geoms of a foot that collide, m."""
+    """Return the corners (k, 3) of the bounding boxes of a foot's colliding geoms, m."""
     solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
     geoms = np.flatnonzero(solid & (model.geom_bodyid == model.body(foot.body).id))
     corners = [corners_of(model, data, int(geom)) for geom in geoms]
@@ -44,14 +44,16 @@ def sole_points(model: mujoco.MjModel, data: mujoco.MjData, foot: Foot) -> Array
 
 
 def corners_of(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Array:
-    """Return the corners (8, 3) of the box around a geom, along its own axes, in the world, m."""
+    """Return the corners (8, 3) of a geom's own bounding box in the world frame, m."""
     signs = np.array(np.meshgrid(*[[-1.0, 1.0]] * 3, indexing="ij")).reshape(3, -1).T
     local = model.geom_aabb[geom, :3] + signs * model.geom_aabb[geom, 3:]
     return data.geom_xpos[geom] + local @ data.geom_xmat[geom].reshape(3, 3).T
 
 
 def balance_margin(points: Array, com: Array) -> float:
-    """Return how far `com` (2,) is inside the hull of `points` (k, 2), m; negative is outside.
+    """Return the distance of `com` (2,) from the edge of the hull of `points` (k, 2), m.
+
+    It is negative outside the hull.
 
     >>> round(balance_margin(np.array([[1.0, 1], [1, -1], [-1, 1], [-1, -1]]), np.zeros(2)), 3)
     1.0
@@ -60,7 +62,7 @@ def balance_margin(points: Array, com: Array) -> float:
 
 
 def _sides(robot: RobotDescription, data: mujoco.MjData) -> Iterator[str]:
-    """Yield that two feet have no side or the wrong one, or that left does not mirror right."""
+    """Yield warnings about missing or wrong sides of two feet, and a robot without symmetry."""
     if len(robot.feet) != 2:
         return
     unsaid = [repr(foot.name) for foot in robot.feet if not foot.side]
@@ -81,7 +83,7 @@ def _sides(robot: RobotDescription, data: mujoco.MjData) -> Iterator[str]:
 
 
 def _soles(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[str]:
-    """Yield sites that are not on the soles, and soles of different height."""
+    """Yield warnings about sites that are not on the soles, and soles of different heights."""
     for foot in robot.feet:
         points = sole_points(model, data, foot)
         above = float(data.site(foot.site).xpos[2] - points[:, 2].min()) if len(points) else 0.0
@@ -99,7 +101,7 @@ def _soles(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData) 
 
 
 def _balance(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[str]:
-    """Yield that the centre of mass is not above the soles."""
+    """Yield a warning if the centre of mass is not above the support polygon."""
     points = np.concatenate([sole_points(model, data, foot) for foot in robot.feet])
     if not len(points):
         return
@@ -115,7 +117,7 @@ def _balance(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData
 
 
 def _fall(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[str]:
-    """Yield that the robot counts as fallen where it stands."""
+    """Yield warnings if the stance itself meets the fall criterion."""
     ground = min(float(data.site(foot.site).xpos[2]) for foot in robot.feet)
     height = float(data.body(robot.base).xpos[2]) - ground
     if height <= robot.fall.height:

@@ -1,4 +1,4 @@
-"""A robot's folder, read as far as it can be: all its mistakes at once, and what is left of it."""
+"""Reading of a robot folder with mistakes: all of them at once, and the parts that are valid."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -25,14 +25,14 @@ MODEL = "model.xml"
 
 @dataclass(frozen=True)
 class Reading:
-    """What could be read of a robot's folder.
+    """The valid parts of a robot folder, and its mistakes.
 
     Attributes:
-        mistakes: What cannot be: one line each, which begins with the file.
-        file: What robot.toml says, unknown keys left out; None where it cannot be understood.
-        model: The MJCF, compiled; None where it cannot be.
-        robot: The robot; None where anything but an unknown key is wrong.
-        unlimited: Joints whose limits robot.toml leaves to the MJCF, or to their servo.
+        mistakes: One line each, which begins with the file name.
+        file: The decoded robot.toml without its unknown keys; None if it cannot be decoded.
+        model: The compiled MJCF; None if it is invalid.
+        robot: The robot; None if there are mistakes other than unknown keys.
+        unlimited: Joints for which robot.toml omits a limit.
     """
 
     mistakes: tuple[str, ...]
@@ -43,13 +43,13 @@ class Reading:
 
 
 def read_folder(folder: Path) -> Reading:
-    """Return what can be read of the robot in `folder`, and everything that cannot be."""
+    """Return the valid parts and all mistakes of the robot in `folder`."""
     try:
         data = read_toml(folder / FILE)
     except ConfigError as error:
         mistakes, model = _model(folder, MODEL, None)
         return Reading((relative(folder, error), *mistakes), model=model)
-    wrong, file = understood(FILE, data, RobotFile)
+    wrong, file = decode(FILE, data, RobotFile)
     if file is None:
         named = data.get("model", MODEL)
         mistakes, model = _model(folder, named, None) if isinstance(named, str) else ((), None)
@@ -67,13 +67,16 @@ def read_folder(folder: Path) -> Reading:
     return Reading((*wrong, *mistakes, *crossed), file, model, robot, unlimited)
 
 
-def understood(name: str, data: Any, record: type[T]) -> tuple[tuple[str, ...], T | None]:
-    """Return all mistakes of the keys of a file, and what it says without the unknown ones.
+def decode(name: str, data: Any, record: type[T]) -> tuple[tuple[str, ...], T | None]:
+    """Return the mistakes in the keys of a file, and the record without its unknown keys.
 
     Args:
-        name: The file's name, for the messages.
-        data: What it says.
-        record: What it should say.
+        name: Name of the file, for the messages.
+        data: The parsed TOML.
+        record: Type of the record.
+
+    Returns:
+        One line for each mistake; and the record, or None if it cannot be decoded.
     """
     infinite = dict(not_finite(data))
     found = list(key_mistakes(data, record))
@@ -86,14 +89,14 @@ def understood(name: str, data: Any, record: type[T]) -> tuple[tuple[str, ...], 
 
 
 def relative(folder: Path, error: Exception) -> str:
-    """Return an error's message without the folder that it begins with."""
+    """Return an error's message without the path of the folder at its beginning."""
     return str(error).removeprefix(f"{folder}/")
 
 
 def _model(
     folder: Path, name: str, file: RobotFile | None
 ) -> tuple[tuple[str, ...], mujoco.MjModel | None]:
-    """Return the mistakes of an MJCF, and the model with what `file` adds to it."""
+    """Return the mistakes of an MJCF, and its model completed with what `file` asks for."""
     path = folder / name
     complete = None if file is None else partial(complete_for, file)
     try:

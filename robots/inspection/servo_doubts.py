@@ -1,15 +1,15 @@
-"""What is doubtful about the torques and speeds that a robot.toml gives joints with servos."""
+"""Warnings about joint torques and velocities that exceed those of the servos."""
 
 from collections.abc import Iterator
 
 from windup.robots.description import RobotDescription
 
 SLACK = 1.02
-"""Data sheets are rounded."""
+"""Factor by which a joint may exceed its rounded data sheet."""
 
 
 def servo_doubts(robot: RobotDescription) -> Iterator[str]:
-    """Yield the joints that robot.toml calls stronger or faster than their servos are."""
+    """Yield a warning for each joint whose torque or velocity exceeds that of its servo."""
     supply = robot.drive.supply
     for joint, servo in zip(robot.joints.joints, robot.servos, strict=True):
         if servo is None:
@@ -20,10 +20,10 @@ def servo_doubts(robot: RobotDescription) -> Iterator[str]:
         if joint.torque > strong * SLACK:
             yield (
                 f"joint {joint.name!r}: torque {joint.torque:g} N m is more than the "
-                f"{strong:.3g} N m at stall that its {able}: leave it away"
+                f"{strong:.3g} N m at stall that its {able}: omit it"
             )
         if joint.velocity > fast * SLACK:
             yield (
                 f"joint {joint.name!r}: velocity {joint.velocity:g} rad/s is more than the "
-                f"{fast:.3g} rad/s without load that its {able}: leave it away"
+                f"{fast:.3g} rad/s without load that its {able}: omit it"
             )

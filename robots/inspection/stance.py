@@ -1,4 +1,4 @@
-"""A robot as it stands in its stance, its base where the MJCF has it."""
+"""A robot in its stance pose, with the base pose of the MJCF."""
 
 import mujoco
 
@@ -7,7 +7,7 @@ from windup.robots.description import RobotDescription
 
 
 def in_stance(robot: RobotDescription) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """Return the model and a state in which poses of bodies and centres of mass are known."""
+    """Return the model, and data in the stance with kinematics and centres of mass computed."""
     model = robot.spec().compile()
     data = mujoco.MjData(model)
     for name, angle in zip(robot.joints.names, robot.stance, strict=True):

@@ -1,4 +1,4 @@
-"""Emulated servos on a bus. Importing this makes ``twin://`` a port that pyserial can open."""
+"""Emulated servos on a bus; importing this lets pyserial open ports named ``twin://...``."""
 
 import serial
 

@@ -1,4 +1,4 @@
-"""All mistakes of a file's keys at once; what is left without the unknown ones is understood."""
+"""All mistakes in the keys of a file at once; without the unknown ones the rest is decoded."""
 
 from typing import Annotated, Any
 

@@ -1,1 +1,1 @@
-"""What `windup check` looks at: a robot's folder, file by file."""
+"""Inspection of a robot folder, file by file, for `windup check`."""

@@ -1,4 +1,4 @@
-"""What Windup adds to a robot or takes for granted, where its files leave something out."""
+"""Notes about what Windup adds to a robot or assumes for keys that its files omit."""
 
 from collections.abc import Iterator
 
@@ -11,7 +11,7 @@ from windup.tools.assembly.shape import check_walks
 
 
 def assumed(reading: Reading) -> Iterator[str]:
-    """Yield what is added and assumed, a line each, for a robot whose files are right."""
+    """Yield the notes about a robot whose files are valid, one line each."""
     robot = reading.robot
     if robot is None:
         return
@@ -23,7 +23,7 @@ def assumed(reading: Reading) -> Iterator[str]:
 
 
 def _sensors(robot: RobotDescription) -> Iterator[str]:
-    """Yield the sensors that the MJCF lacks, and what lacks sensors."""
+    """Yield notes about added sensors, and about a missing IMU or missing feet."""
     there = {sensor.name for sensor in mjcf.parse_mjcf(robot.model_path).sensors}
     whole = {sensor.name for sensor in robot.spec().sensors}
     if added := sorted(whole - there - {COM_VELOCITY}):
@@ -35,7 +35,7 @@ def _sensors(robot: RobotDescription) -> Iterator[str]:
 
 
 def _able(robot: RobotDescription) -> Iterator[str]:
-    """Yield what keeps the robot from walking."""
+    """Yield why the robot cannot walk, or that it has no default gait."""
     try:
         check_walks(robot)
     except UsageError as error:

@@ -1,16 +1,16 @@
-"""What is found in a robot's folder: one line each, which begins with the file where it has one."""
+"""Findings of an inspection: errors, warnings and notes, one line each."""
 
 from dataclasses import dataclass, field
 
 
 @dataclass
 class Findings:
-    """Everything that `windup check` has to say about a folder.
+    """The findings about one robot folder; a line begins with the file name if it is about a file.
 
     Attributes:
-        errors: What cannot be: a command that needs it is refused.
-        doubts: What can be and is seldom meant.
-        notes: What is added or assumed, and what could not be looked at.
+        errors: Mistakes; commands that need the file refuse it.
+        doubts: Warnings: valid, but probably unintended.
+        notes: Additions, defaults, and checks that were left out.
     """
 
     errors: list[str] = field(default_factory=list)
@@ -18,7 +18,7 @@ class Findings:
     notes: list[str] = field(default_factory=list)
 
     def lines(self) -> list[str]:
-        """Return all of it as people read it, the worst last."""
+        """Return all lines with their kind, the errors last."""
         return [
             *(f"note: {line}" for line in self.notes),
             *(f"warning: {line}" for line in self.doubts),
@@ -26,7 +26,7 @@ class Findings:
         ]
 
     def verdict(self, name: str) -> str:
-        """Return in a few words how bad it is.
+        """Return a line that counts errors and warnings.
 
         >>> Findings(doubts=["no floor"]).verdict("rex")
         'rex: 0 errors, 1 warning'

@@ -1,4 +1,4 @@
-"""A robot's folder, looked at from robot.toml to the last gait."""
+"""Inspection of a whole robot folder: robot.toml, MJCF, gaits and the other files."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,12 +14,12 @@ from windup.tools.checking.other_files import check_names, check_tables
 
 @dataclass(frozen=True)
 class Inspection:
-    """What has been seen in a robot's folder.
+    """The result of an inspection.
 
     Attributes:
         folder: The folder.
-        reading: What robot.toml and the MJCF say, as far as they could be read.
-        findings: What there is to say.
+        reading: The valid parts of robot.toml and MJCF.
+        findings: Errors, warnings and notes.
     """
 
     folder: Path
@@ -28,13 +28,13 @@ class Inspection:
 
     @property
     def name(self) -> str:
-        """The robot's name, or the folder's where the robot's cannot be read."""
+        """Name of the robot, or of the folder if robot.toml is invalid."""
         file = self.reading.file
         return self.folder.resolve().name if file is None else file.name
 
 
 def inspect_folder(folder: Path) -> Inspection:
-    """Return everything that is wrong or doubtful with the robot in `folder`."""
+    """Return the inspection of the robot in `folder`."""
     reading, findings = read_folder(folder), Findings()
     robot = reading.robot
     findings.errors += reading.mistakes

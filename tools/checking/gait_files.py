@@ -1,4 +1,4 @@
-"""The gaits of a robot's folder, and the step models beside them."""
+"""Checks of the gaits in a robot folder, and of the step models beside them."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from windup.hal.config import read_toml
 from windup.hal.errors import ConfigError, suggest
 from windup.hal.joints import Array
 from windup.robots import RobotDescription
-from windup.robots.inspection.reading import relative, understood
+from windup.robots.inspection.reading import decode, relative
 from windup.tools.assembly.step_models import SUFFIX
 from windup.tools.checking.findings import Findings
 
@@ -19,12 +19,12 @@ GAITS = "gaits"
 
 
 def check_gaits(folder: Path, robot: RobotDescription | None, findings: Findings) -> None:
-    """Add what is wrong with the gaits in a folder and with their step models.
+    """Add the mistakes in the gaits of a folder and in their step models.
 
     Args:
         folder: The robot's folder.
-        robot: The robot; None where it cannot be read, and gaits only have their keys checked.
-        findings: Where to add it.
+        robot: The robot; None if its files are invalid: then only the keys are checked.
+        findings: The findings to add to.
     """
     for path in sorted((folder / GAITS).glob("*.toml")):
         try:
@@ -32,7 +32,7 @@ def check_gaits(folder: Path, robot: RobotDescription | None, findings: Findings
         except ConfigError as error:
             findings.errors.append(relative(folder, error))
             continue
-        wrong, file = understood(f"{GAITS}/{path.name}", data, GaitFile)
+        wrong, file = decode(f"{GAITS}/{path.name}", data, GaitFile)
         findings.errors += wrong
         if robot is None or file is None:
             continue
@@ -49,7 +49,7 @@ def check_gaits(folder: Path, robot: RobotDescription | None, findings: Findings
 
 
 def _of_the_gait(path: Path, file: GaitFile, robot: RobotDescription) -> list[str]:
-    """Return what is wrong between a gait and the robot."""
+    """Return the mistakes of a gait for a robot."""
 
     def mirrored(values: Array) -> Array:
         return robot.mirror(values)  # which not every robot has
@@ -62,7 +62,7 @@ def _of_the_gait(path: Path, file: GaitFile, robot: RobotDescription) -> list[st
 
 
 def _of_the_walk(path: Path, file: GaitFile) -> list[str]:
-    """Return what keeps a gait with a [balance] from being walked."""
+    """Return the mistakes for which `windup walk` would refuse a gait with a `[balance]`."""
     if file.balance is None or not file.balance.regulation:
         return []
     regulated = len(regulation_variables(file.balance.regulation))
@@ -75,7 +75,7 @@ def _of_the_walk(path: Path, file: GaitFile) -> list[str]:
 
 
 def _of_the_models(path: Path, file: GaitFile) -> list[str]:
-    """Return what is wrong with the step models of a gait; none where it has no such file."""
+    """Return the mistakes in the step models of a gait, if it has any."""
     models, balance = path.with_suffix(SUFFIX), file.balance
     if balance is None or not models.is_file():
         return []

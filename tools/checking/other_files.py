@@ -1,4 +1,4 @@
-"""The other files of a robot's folder: how it steps, strides and walks footprints; likely slips."""
+"""Checks of stepping.toml, stride.toml and footprints.toml, and of misspelt file names."""
 
 from pathlib import Path
 from typing import Any, Final
@@ -11,7 +11,7 @@ from windup.hal.config import read_toml
 from windup.hal.errors import ConfigError, suggest
 from windup.robots import RobotDescription
 from windup.robots.description import FILE
-from windup.robots.inspection.reading import relative, understood
+from windup.robots.inspection.reading import decode, relative
 from windup.tools.assembly.stepping import FOOTPRINTS, STEPPING, WAYS
 from windup.tools.behaviours.striding import FILE as STRIDE
 from windup.tools.checking.findings import Findings
@@ -22,12 +22,12 @@ TABLES: Final = (STEPPING, STRIDE, FOOTPRINTS)
 
 
 def check_tables(folder: Path, robot: RobotDescription | None, findings: Findings) -> None:
-    """Add what is wrong with the files that a robot may have beside its robot.toml.
+    """Add the mistakes in the optional files beside robot.toml.
 
     Args:
         folder: The robot's folder.
-        robot: The robot, or None where it cannot be read.
-        findings: Where to add it.
+        robot: The robot; None if its files are invalid: then only the keys are checked.
+        findings: The findings to add to.
     """
     for name in TABLES:
         path = folder / name
@@ -38,14 +38,14 @@ def check_tables(folder: Path, robot: RobotDescription | None, findings: Finding
         except ConfigError as error:
             findings.errors.append(relative(folder, error))
             continue
-        wrong, file = understood(name, data, record)
+        wrong, file = decode(name, data, record)
         findings.errors += wrong
         if file is not None and robot is not None:
             findings.errors += _names(name, file, robot)
 
 
 def check_names(folder: Path, findings: Findings) -> None:
-    """Add a doubt for each file or folder whose name is nearly one that Windup reads."""
+    """Add a warning for each file or folder whose name is similar to one that Windup reads."""
     read = {FILE, *TABLES, GAITS}
     for path in sorted(folder.glob("*")):
         if path.name in read or not (path.is_dir() or path.suffix in (".toml", ".tml")):
@@ -55,7 +55,7 @@ def check_names(folder: Path, findings: Findings) -> None:
 
 
 def _record(name: str, robot: RobotDescription | None) -> type[Any] | None:
-    """Return what a file should say; None where only the robot would tell."""
+    """Return the record of a file; None if it depends on the robot, which is invalid."""
     if name == FOOTPRINTS:
         if robot is None:
             return None
@@ -64,7 +64,7 @@ def _record(name: str, robot: RobotDescription | None) -> type[Any] | None:
 
 
 def _names(name: str, file: Any, robot: RobotDescription) -> list[str]:
-    """Return the names in a file that stand for nothing."""
+    """Return the mistakes in the names that a file refers to."""
     found = []
     if file.stance not in robot.poses:
         near = suggest(file.stance, robot.poses)

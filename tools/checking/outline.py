@@ -1,4 +1,4 @@
-"""What a picture of a robot shows: links, joint axes, soles and centre of mass, as points."""
+"""Geometry of a robot for its picture: links, joint axes, soles and centre of mass."""
 
 from dataclasses import dataclass
 from itertools import combinations
@@ -13,23 +13,23 @@ from windup.robots.inspection.posture_doubts import corners_of, sole_points
 from windup.robots.inspection.stance import in_stance
 
 FLAT = 0.02
-"""So far above its lowest point a corner of a foot still belongs to its sole, m."""
+"""Maximum height of a sole's corners above the lowest one, m."""
 EDGES = [(a, b) for a, b in combinations(range(8), 2) if (a ^ b) in (1, 2, 4)]
-"""Corners of a box whose numbers differ in one bit have an edge between them."""
+"""Edges of a box, as pairs of corners; their numbers differ in one bit."""
 FLOORS = (int(mujoco.mjtGeom.mjGEOM_PLANE), int(mujoco.mjtGeom.mjGEOM_HFIELD))
 
 
 @dataclass(frozen=True)
 class Outline:
-    """A robot in one posture; all points in the world, m.
+    """Geometry of a robot in one pose; all points in the world frame, m.
 
     Attributes:
-        edges: (e, 2, 3) edges of the boxes around the geoms.
-        links: (l, 2, 3) lines from each body to the bodies that hang on it.
+        edges: (e, 2, 3) edges of the geoms' bounding boxes.
+        links: (l, 2, 3) lines from each body to its child bodies.
         joints: Names of the n hinges.
-        anchors: (n, 3) where they are.
-        axes: (n, 3) unit vectors about which they turn positively.
-        soles: The sole of each foot, by name: (k, 3) corners in their order.
+        anchors: (n, 3) positions of the hinges.
+        axes: (n, 3) unit vectors along the hinge axes.
+        soles: Foot name to (k, 3) corners of its sole, in order.
         com: (3,) centre of mass.
         floor: Height of the lowest sole, or of the lowest corner.
     """
@@ -45,7 +45,7 @@ class Outline:
 
     @property
     def points(self) -> Array:
-        """All points (p, 3), to know how large it is."""
+        """All points (p, 3), for the extent of the robot."""
         every = [self.edges.reshape(-1, 3), self.links.reshape(-1, 3), self.anchors, self.com[None]]
         return np.concatenate(every)
 
@@ -58,7 +58,7 @@ def outline_of(robot: RobotDescription) -> Outline:
 
 
 def outline_of_model(model: mujoco.MjModel) -> Outline:
-    """Return the outline of an MJCF in its zero pose, where the robot itself cannot be read."""
+    """Return the outline of an MJCF in its zero pose, for a robot with an invalid robot.toml."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
@@ -66,10 +66,10 @@ def outline_of_model(model: mujoco.MjModel) -> Outline:
 
 
 def sole_outline(points: Array) -> Array:
-    """Return the corners (k, 3) of a sole in their order, seen from above.
+    """Return the corners (k, 3) of the horizontal hull of a sole, in order.
 
     Args:
-        points: (8 g, 3) corners of the boxes around the g geoms of a foot, box by box, m.
+        points: (8 g, 3) corners of the bounding boxes of a foot's g geoms, box by box, m.
     """
     if not len(points):
         return points
@@ -82,7 +82,7 @@ def sole_outline(points: Array) -> Array:
 
 
 def _lower_face(box: Array) -> Array:
-    """Return the corners (4, 3) of the face of a box (8, 3) that looks down most."""
+    """Return the corners (4, 3) of the lower face of a box (8, 3)."""
     bit = max((1, 2, 4), key=lambda bit: _steepness(box[bit] - box[0]))
     up = box[bit, 2] > box[0, 2]
     return box[[corner for corner in range(8) if bool(corner & bit) != up]]
@@ -110,13 +110,13 @@ def _outline(model: mujoco.MjModel, data: mujoco.MjData, soles: dict[str, Array]
 
 
 def _edges(model: mujoco.MjModel, data: mujoco.MjData) -> Array:
-    """Return the edges (e, 2, 3) of boxes around geoms, floors apart."""
+    """Return the edges (e, 2, 3) of the bounding boxes of all geoms except floors."""
     geoms = np.flatnonzero(~np.isin(model.geom_type, FLOORS))
     boxes = [corners_of(model, data, int(geom))[EDGES] for geom in geoms]
     return np.concatenate(boxes) if boxes else np.zeros((0, 2, 3))
 
 
 def _links(model: mujoco.MjModel, data: mujoco.MjData) -> Array:
-    """Return the lines (l, 2, 3) from bodies to their parents, the world apart."""
+    """Return the lines (l, 2, 3) from bodies to their parents, except the world."""
     hung = np.flatnonzero(model.body_parentid > 0)
     return np.stack((data.xpos[model.body_parentid[hung]], data.xpos[hung]), axis=1)

@@ -1,6 +1,6 @@
-"""The picture of a robot: a view in space, one from behind and one from its right, and names.
+"""The picture of a robot: a 3D view, a rear view, a side view, and the names of its joints.
 
-Drawn with matplotlib alone: no OpenGL is needed.
+It is drawn with matplotlib and needs no OpenGL.
 """
 
 from pathlib import Path
@@ -12,11 +12,11 @@ from windup.tools.checking.outline import Outline
 from windup.tools.terminal.picture import load_pyplot, save_picture
 
 SIDES: Final = (("left", "tab:blue"), ("right", "tab:orange"), ("middle", "0.35"))
-"""Colours of joint axes, by the side that they are on; left of the middle is y > 0."""
+"""Colours of joint axes by their side; left is y > 0."""
 MIDDLE = 1e-3
-"""So far from the middle a joint still counts as in it, m."""
+"""Maximum distance from the middle of a joint that belongs to neither side, m."""
 ARROW = 0.11
-"""Length of a joint's arrow, as a part of the robot's size."""
+"""Length of an axis, as a share of the largest extent of the robot."""
 
 
 def draw_robot(path: Path, title: str, outline: Outline) -> None:
@@ -41,7 +41,7 @@ def draw_robot(path: Path, title: str, outline: Outline) -> None:
 
 
 def _arrows(outline: Outline) -> Any:
-    """Return the tips (n, 3) of the joints' arrows."""
+    """Return the ends (n, 3) of the drawn joint axes."""
     size = float(np.ptp(outline.points, axis=0).max())
     return outline.anchors + ARROW * size * outline.axes
 
@@ -54,7 +54,7 @@ def _colours(outline: Outline) -> list[str]:
 
 
 def _draw_space(axes: Any, outline: Outline) -> None:
-    """Draw everything, seen from the front and the left."""
+    """Draw the 3D view, from the front left."""
     from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
     axes.add_collection3d(Line3DCollection(outline.edges, colors="0.8", linewidths=0.5))
@@ -77,7 +77,7 @@ def _draw_space(axes: Any, outline: Outline) -> None:
 
 
 def _draw_flat(axes: Any, outline: Outline, across: int, label: str) -> None:
-    """Draw it from behind (`across` is 1) or from its right (0), true to scale."""
+    """Draw the rear view (`across` is 1) or the view from the right (0), to scale."""
     from matplotlib.collections import LineCollection
 
     plane = [across, 2]
@@ -100,11 +100,11 @@ def _draw_flat(axes: Any, outline: Outline, across: int, label: str) -> None:
     axes.locator_params(axis="x", nbins=2)
     axes.tick_params(labelsize=8)
     if across == 1:
-        axes.invert_xaxis()  # as one sees it from behind: its left is on the left
+        axes.invert_xaxis()  # its left side is on the left
 
 
 def _list_joints(axes: Any, outline: Outline) -> None:
-    """Write the names of the joints, and what the colours are."""
+    """Write the names of the joints and a legend."""
     lines = [*enumerate(outline.joints, 1)]
     colours = _colours(outline)
     axes.axis("off")
@@ -115,8 +115,8 @@ def _list_joints(axes: Any, outline: Outline) -> None:
         *((f"axis of a joint: {side}", colour) for side, colour in SIDES),
         ("centre of mass", "tab:red"),
         ("sole", "tab:green"),
-        ("it turns about its arrow as", "0.0"),
-        ("the fingers of a right hand", "0.0"),
+        ("positive rotation: right-hand rule", "0.0"),
+        ("about the drawn axis", "0.0"),
     ]
     for row, (word, colour) in enumerate(words, len(lines) + 1):
         axes.text(0.0, 1.0 - row * step, word, color=colour, fontsize=8, style="italic")

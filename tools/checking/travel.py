@@ -1,4 +1,4 @@
-"""How far each joint goes, and how much of its servo's travel that is."""
+"""Joint limits in degrees and in counts of the servos, as rows and as a table."""
 
 from typing import Any, Final
 
@@ -23,8 +23,7 @@ KEYS: Final = (
 def travel_rows(robot: RobotDescription) -> list[dict[str, Any]]:
     """Return a row for each joint; servo, bus, id, counts and travel are None without a servo.
 
-    `counts` is where the joint's limits are on its servo, `travel` the first and the last count
-    that the servo goes to.
+    `counts` are the joint's limits in counts of its servo, `travel` the servo's own limits.
     """
     rows = []
     for joint, mount in zip(robot.joints.joints, robot.servos, strict=True):
@@ -42,7 +41,7 @@ def travel_rows(robot: RobotDescription) -> list[dict[str, Any]]:
 
 
 def travel_table(rows: list[dict[str, Any]]) -> Table:
-    """Return the rows as people read them."""
+    """Return the rows as a table for the terminal."""
     table = Table(box=None, padding=(0, 2, 0, 0))
     for title in ("joint", "degrees", "N m", "servo", "bus", "id", "counts", "of"):
         table.add_column(title, no_wrap=True)

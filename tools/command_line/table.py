@@ -1,4 +1,4 @@
-"""Every subcommand: where it is, and what it does in a few words. None is imported here."""
+"""Table of all subcommands, with module and summary; their modules are imported on use only."""
 
 from importlib import import_module
 from typing import Any, Final, NamedTuple
@@ -8,9 +8,9 @@ class Entry(NamedTuple):
     """A subcommand.
 
     Attributes:
-        module: The module that has it, in `windup.tools`.
-        kind: Name of its class there, a `windup.tools.terminal.command.Command`.
-        gist: What it does.
+        module: Its module, relative to `windup.tools`.
+        kind: Name of its class, a `windup.tools.terminal.command.Command`.
+        gist: Summary of what it does.
     """
 
     module: str
@@ -18,7 +18,7 @@ class Entry(NamedTuple):
     gist: str
 
     def load(self) -> Any:
-        """Import and return its class."""
+        """Import and return the class."""
         return getattr(import_module(f"windup.tools.{self.module}"), self.kind)
 
 
@@ -46,8 +46,8 @@ COMMANDS: Final[dict[str, Entry]] = {
     ),
     "health": Entry("bringup.health", "Health", "Say whether a running robot is well"),
     "robots": Entry("commands.robots_list", "Robots", "List the robots and what they can do"),
-    "check": Entry("commands.check", "Check", "Say all that is wrong with a robot's folder"),
-    "new": Entry("commands.new", "New", "Begin a robot, a gait or a controller of your own"),
+    "check": Entry("commands.check", "Check", "Show all errors and warnings of a robot folder"),
+    "new": Entry("commands.new", "New", "Write an example robot, gait or controller"),
     "estimate": Entry(
         "commands.estimate", "Estimate", "Measure the estimated state against the twin's truth"
     ),

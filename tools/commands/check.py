@@ -1,4 +1,4 @@
-"""`windup check`: everything that is wrong or doubtful with a robot's folder, and a picture."""
+"""`windup check`: all errors and warnings about a robot folder, and a picture of the robot."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,9 +19,9 @@ from windup.tools.terminal.picture import check_picture
 
 @dataclass(frozen=True)
 class Check(Command):
-    """Say everything that is wrong or doubtful with a robot's folder.
+    """Show all errors and warnings about a robot folder at once.
 
-    The exit status is 2 if anything is wrong, and 0 where something is only doubtful.
+    The exit status is 2 if there are errors, and 0 if there are only warnings.
     """
 
     folder: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="FOLDER")]
@@ -38,7 +38,7 @@ class Check(Command):
         check_picture(self.plot)
 
     def run(self) -> int:
-        """Look; returns the exit status."""
+        """Inspect the folder; returns the exit status."""
         seen = inspect_folder(folder_of(self.folder))
         _tell(seen)
         if self.plot is not None:
@@ -60,7 +60,7 @@ class Check(Command):
 
 
 def _tell(seen: Inspection) -> None:
-    """Print what there is to say, the worst last."""
+    """Print the joints, the findings with the errors last, and their count."""
     if (robot := seen.reading.robot) is not None:
         console.print(travel_table(travel_rows(robot)))
     for line in seen.findings.lines():
@@ -69,7 +69,7 @@ def _tell(seen: Inspection) -> None:
 
 
 def _record(seen: Inspection) -> dict[str, Any]:
-    """Return what there is to say as programs read it."""
+    """Return the result for `--json`."""
     robot, model = seen.reading.robot, seen.reading.model
     return {
         "robot": seen.name,
@@ -84,5 +84,5 @@ def _record(seen: Inspection) -> dict[str, Any]:
 
 
 def mass_of(model: mujoco.MjModel) -> float:
-    """Return the mass of everything in an MJCF, kg."""
+    """Return the total mass of a model, kg."""
     return float(model.body_mass.sum())

@@ -1,4 +1,4 @@
-"""`windup new`: a small working robot, gait or controller to begin with."""
+"""`windup new`: writes an example robot, gait or controller."""
 
 import shlex
 from dataclasses import dataclass
@@ -29,18 +29,18 @@ from windup.tools.terminal.output import console, write_json
 
 @dataclass(frozen=True)
 class New(Command):
-    """Write a small working example to begin with: a robot, a gait or a controller.
+    """Write a small working example: a robot, a gait or a controller.
 
-    A robot is a folder with two legs that stands and squats. A gait and a controller move one joint
-    of a robot that stands. No file is ever overwritten.
+    The robot is a folder; it has two legs, stands and squats. Gait and controller move one joint of
+    a robot that stands. No file is ever overwritten.
     """
 
     kind: Annotated[Literal["robot", "gait", "controller"], tyro.conf.Positional]
-    """What to begin."""
+    """What to write."""
     name: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="NAME")]
-    """Its name, or where it shall be: FOLDER/NAME."""
+    """Its name, or its path FOLDER/NAME."""
     robot: str = "op3"
-    """The robot of a gait or a controller, by name or folder; a gait goes into one's own folder."""
+    """The robot of a gait or a controller, by name or folder; a gait goes into that folder."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
@@ -50,7 +50,7 @@ class New(Command):
         check_new(self._files)
 
     def run(self) -> int:
-        """Write; returns the exit status."""
+        """Write the files; returns the exit status."""
         write_new(self._files)
         steps = self._steps()
         for path in self._files:
@@ -62,7 +62,7 @@ class New(Command):
 
     @cached_property
     def _files(self) -> Files:
-        """The files, and what stands in them."""
+        """The files and their texts."""
         if self.kind == "robot":
             return robot_files(robot_place(self.name))
         robot = load_robot(self.robot)

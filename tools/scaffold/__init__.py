@@ -1,1 +1,1 @@
-"""Small working examples that `windup new` writes: a robot, a gait, a controller."""
+"""The example robot, gait and controller that `windup new` writes."""

@@ -1,4 +1,4 @@
-"""The texts of the examples, by file: nothing is written here."""
+"""Texts of the examples, by file."""
 
 import json
 from math import degrees, radians
@@ -16,11 +16,11 @@ CONTROLLER: Final = "my_controller.py"
 GAIT: Final = "squat"
 
 Files = dict[Path, str]
-"""File to what stands in it."""
+"""Path of a file, and its text."""
 
 
 def robot_files(folder: Path) -> Files:
-    """Return the files of a robot of two legs, of the folder's name."""
+    """Return the files of a robot with two legs, named as its folder."""
     read = {path.name: path.read_text(encoding="utf-8") for path in (HERE / "robot").iterdir()}
     named = {name: text.replace("NAME", folder.name) for name, text in read.items()}
     return {
@@ -31,7 +31,7 @@ def robot_files(folder: Path) -> Files:
 
 
 def gait_files(path: Path, robot: RobotDescription) -> Files:
-    """Return a pose graph that moves one joint of a robot there and back."""
+    """Return the file of a pose graph that moves one joint of a robot there and back."""
     swing = harmless_swing(robot)
     stance = next(name for name, pose in robot.poses.items() if pose is robot.stance)
     pose = "".join(
@@ -67,11 +67,11 @@ until = {{ time = 1.0 }}
 
 
 def controller_files(path: Path, name: str, robot: RobotDescription) -> Files:
-    """Return a controller that moves one joint of a robot to and fro.
+    """Return the file of a controller that moves one joint of a robot to and fro.
 
     Args:
         path: Its file.
-        name: How the user calls the robot: its name, or the path of its folder.
+        name: Name of the robot, or path of its folder, as given by the user.
         robot: The robot.
     """
     swing = harmless_swing(robot)
@@ -91,7 +91,7 @@ def controller_files(path: Path, name: str, robot: RobotDescription) -> Files:
 
 
 def _degrees(joint: Joint, angle: float) -> str:
-    """Return an angle in degrees: rounded, unless that is outside of the joint's limits."""
+    """Return an angle in degrees, rounded unless that is outside the joint limits."""
     exact = degrees(angle)
     rounded = round(exact, 2)
     inside = joint.lower <= radians(rounded) <= joint.upper

@@ -1,4 +1,4 @@
-"""A joint that an example may move without the robot losing its balance, and how far."""
+"""Choice of a joint that an example can move while the robot stands."""
 
 from typing import NamedTuple
 
@@ -10,23 +10,23 @@ from windup.hal.joints import Array
 from windup.robots import RobotDescription
 
 FAR, NEAR = 15.0, 3.0
-"""How far a joint moves that bears nothing, and one that bears the robot, degrees."""
+"""Maximum motion of a joint that carries no load, and of one between base and feet, degrees."""
 
 
 class Swing(NamedTuple):
-    """A joint, and how far it may go from the stance and back, degrees (to its freer side)."""
+    """A joint, and its motion from the stance toward the farther limit, degrees."""
 
     joint: str
     degrees: float
 
 
 def harmless_swing(robot: RobotDescription) -> Swing:
-    """Return the joint that moves least of the robot's mass and is not between base and feet.
+    """Return the joint with the least mass behind it that is not between base and feet.
 
-    Where all are, one that turns about the vertical moves a little.
+    If all joints are, it is one about the vertical, with a small motion.
 
     Raises:
-        UsageError: No joint has room for a degree.
+        UsageError: No joint can move by a degree.
     """
     model = robot.spec().compile()
     feet = [model.body(foot.body).id for foot in robot.feet]
@@ -45,14 +45,14 @@ def harmless_swing(robot: RobotDescription) -> Swing:
 
 
 def _room(robot: RobotDescription) -> Array:
-    """Return how far (n,) each joint can go to its freer side, degrees; negative is down."""
+    """Return the signed distance (n,) from the stance to the farther joint limit, degrees."""
     up = np.degrees(robot.joints.upper - robot.stance)
     down = np.degrees(robot.joints.lower - robot.stance)
     return np.where(up >= -down, up, down)
 
 
 def _up_to_the_world(model: mujoco.MjModel, body: int) -> list[int]:
-    """Return a body and all that it hangs on."""
+    """Return a body and its parents up to the world."""
     chain = []
     while body:
         chain.append(body)

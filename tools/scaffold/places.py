@@ -1,4 +1,4 @@
-"""Where an example goes, by the name that the user gives it; and writing it, never over a file."""
+"""Paths of the examples by the names that users give, and writing without overwriting."""
 
 import keyword
 import re
@@ -13,14 +13,14 @@ from windup.tools.checking.gait_files import GAITS
 from windup.tools.terminal.writing import check_folder, writing
 
 WORD: Final = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
-"""Names that robots and gaits may have."""
+"""Valid names of robots and gaits."""
 
 
 def robot_place(name: str) -> Path:
     """Return the folder of a new robot.
 
     Raises:
-        UsageError: It is no name for one, or that of a robot of the package.
+        UsageError: The name is invalid, or that of a robot of the package.
     """
     folder = Path(name)
     _check_word("robot", folder.name)
@@ -30,10 +30,10 @@ def robot_place(name: str) -> Path:
 
 
 def gait_place(name: str, robot: str) -> Path:
-    """Return the file of a new gait: in the folder of one's own robot, else where one is.
+    """Return the path of a new gait: in the folder of a user's robot, else in the present one.
 
     Raises:
-        UsageError: It is no name for one.
+        UsageError: The name is invalid.
     """
     path = Path(name.removesuffix(".toml") + ".toml")
     _check_word("gait", path.stem)
@@ -42,10 +42,10 @@ def gait_place(name: str, robot: str) -> Path:
 
 
 def controller_place(name: str) -> Path:
-    """Return the file of a new controller.
+    """Return the path of a new controller.
 
     Raises:
-        UsageError: It is no name for a module of Python, or that of one that exists.
+        UsageError: The name is no module name, or would hide another module.
     """
     path = Path(name.removesuffix(".py") + ".py")
     if not path.stem.isidentifier() or keyword.iskeyword(path.stem):
@@ -59,7 +59,7 @@ def check_new(files: Mapping[Path, str]) -> None:
     """Raise unless all files are new and can be written.
 
     Raises:
-        UsageError: One is there already, or its folder is not.
+        UsageError: A file exists already, or its folder cannot be written.
     """
     for path in files:
         if path.exists() or path.is_symlink():
@@ -69,10 +69,10 @@ def check_new(files: Mapping[Path, str]) -> None:
 
 
 def write_new(files: Mapping[Path, str]) -> None:
-    """Write files that are not there yet, and their folders.
+    """Write new files, and make their folders.
 
     Raises:
-        OutputError: One cannot be written, or has come into being meanwhile.
+        OutputError: A file cannot be written, or exists by now.
     """
     for path, text in files.items():
         with writing(path):

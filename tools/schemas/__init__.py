@@ -1,1 +1,1 @@
-"""JSON Schemas of the TOML files, for editors: generated from the records that read the files."""
+"""JSON Schemas of the TOML files, for editors, generated from the records of the files."""

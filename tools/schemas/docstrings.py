@@ -1,4 +1,4 @@
-"""What a record's docstring says of the record, and of each of its keys."""
+"""Descriptions of a record and of its keys, from the record's docstring."""
 
 import inspect
 import re
@@ -9,13 +9,13 @@ ENTRY = re.compile(r"^    (\w+): (.*)$")
 
 
 def record_text(record: type[Any]) -> str:
-    """Return the docstring of a record without its attributes, a line a paragraph."""
+    """Return the docstring of a record without its attributes, one line for each paragraph."""
     head = (inspect.getdoc(record) or "").split("\nAttributes:\n")[0]
     return "\n".join(" ".join(part.split()) for part in head.split("\n\n")).strip()
 
 
 def key_texts(record: type[Any]) -> dict[str, str]:
-    """Return what the docstrings of a record, and of what it derives from, say of its keys."""
+    """Return the descriptions of a record's keys, including those of its base classes."""
     texts: dict[str, str] = {}
     for kind in reversed(record.__mro__):
         texts |= _attributes(inspect.cleandoc(kind.__doc__ or ""))
@@ -23,7 +23,7 @@ def key_texts(record: type[Any]) -> dict[str, str]:
 
 
 def _attributes(doc: str) -> dict[str, str]:
-    """Return the attributes of one docstring, each in one line."""
+    """Return the attributes of one docstring, one line each."""
     texts: dict[str, str] = {}
     key = ""
     for line in doc.partition("\nAttributes:\n")[2].splitlines():

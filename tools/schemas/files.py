@@ -1,4 +1,4 @@
-"""Which files have a schema, and where the schemas are."""
+"""Names, records and paths of the schemas."""
 
 from pathlib import Path
 from typing import Any, Final
@@ -21,7 +21,7 @@ RECORDS: Final[dict[str, type[Any]]] = {
     "footprint_gains_torque": Directed,
     "footprint_list": FootprintFile,
 }
-"""Name of a schema to the record of its files.
+"""Name of a schema, and the record of its files.
 
 `robot` is robot.toml, `gait` a file of gaits/, `stepping` and `stride` are the files of these names
 beside robot.toml. `footprint_gains_servo` and `footprint_gains_torque` are footprints.toml beside
@@ -30,13 +30,13 @@ it, by the kind of its drive; `footprint_list` is what `windup footprints ROBOT 
 
 
 def schema_path(name: str) -> Path:
-    """Return the file of a schema of `RECORDS`."""
+    """Return the path of a schema by its name in `RECORDS`."""
     return FOLDER / f"{name}{SUFFIX}"
 
 
 def schema_line(name: str) -> str:
-    """Return the first line of a TOML file that tells editors its schema.
+    """Return the comment line that tells editors the schema of a TOML file.
 
-    Taplo, Even Better TOML and Tombi read it; for Windup it is a comment.
+    Taplo, Even Better TOML and Tombi read it in the first line.
     """
     return f"#:schema {schema_path(name).resolve().as_uri()}"

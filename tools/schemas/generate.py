@@ -1,6 +1,6 @@
-"""Write the JSON Schemas of all files: `python -m windup.tools.schemas.generate`, `make schemas`.
+"""Generates the JSON Schemas of all files: `make schemas`.
 
-Draft 7 of JSON Schema, which every editor's TOML plug-in reads.
+They are of draft 7, which the TOML plug-ins of editors support.
 """
 
 import json
@@ -46,7 +46,7 @@ def schema_of(record: type[Any]) -> dict[str, Any]:
 
 
 def _describe(part: dict[str, Any], record: type[Any]) -> None:
-    """Give the schema of a record and those of its keys what the docstring says."""
+    """Add descriptions from the docstring to the schema of a record and to those of its keys."""
     part["description"] = record_text(record)
     texts = key_texts(record)
     for name, schema in part.get("properties", {}).items():
@@ -55,25 +55,25 @@ def _describe(part: dict[str, Any], record: type[Any]) -> None:
 
 
 def _of_draft_7(schema: Any) -> Any:
-    """Return a schema as draft 7 has it, and without what no TOML file can say: null, nan, inf."""
+    """Return a schema converted to draft 7, without null, nan and inf, which no file may have."""
     if isinstance(schema, list):
         return [_of_draft_7(item) for item in schema]
     if not isinstance(schema, dict):
         return schema
-    schema = {key: value for key, value in schema.items() if not _unsayable(key, value)}
+    schema = {key: value for key, value in schema.items() if not _without_value(key, value)}
     choices = [item for item in schema.pop("anyOf", []) if item != NULL]
     if len(choices) == 1:
         schema = {**choices[0], **schema}
     elif choices:
         schema["anyOf"] = choices
-    if "prefixItems" in schema:  # a tuple of fixed length, in the words of later drafts
+    if "prefixItems" in schema:  # a tuple of fixed length, in later drafts
         schema["items"] = schema.pop("prefixItems")
         schema["additionalItems"] = False
     return {key: _of_draft_7(value) for key, value in schema.items()}
 
 
-def _unsayable(key: str, value: Any) -> bool:
-    """Return whether a default is a value that no file of ours can have."""
+def _without_value(key: str, value: Any) -> bool:
+    """Return whether `value` is a default that no file may have."""
     infinite = isinstance(value, float) and not isfinite(value)
     return key == "default" and (value is None or infinite)
 
