@@ -11,7 +11,7 @@ import msgspec
 from msgspec import Meta
 
 from windup.hal.errors import ConfigError, suggest
-from windup.hal.missing_keys import missing_keys
+from windup.hal.key_mistakes import key_mistakes
 from windup.hal.small_file import read_small
 
 T = TypeVar("T")
@@ -104,7 +104,7 @@ def _numbers(data: Any, key: str) -> Iterator[tuple[str, float]]:
 def _explain(message: str, record: type, data: Any) -> str:
     """Return the message for msgspec's `message`: the key first, then the likely spelling."""
     if "missing required field" in message:
-        missing = list(missing_keys(data, record))
+        missing = [lost.key for lost in key_mistakes(data, record) if lost.kind == "missing"]
         more = f" and {len(missing) - MOST_NAMED} more" if len(missing) > MOST_NAMED else ""
         return f"missing: {', '.join(missing[:MOST_NAMED])}{more}"
     message = message.replace("Object ", "")

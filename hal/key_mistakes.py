@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from copy import deepcopy
 from types import UnionType
-from typing import Any, NamedTuple, Union, get_args, get_origin
+from typing import Any, Literal, NamedTuple, Union, get_args, get_origin
 
 import msgspec
 
@@ -21,12 +21,13 @@ class KeyMistake(NamedTuple):
     Attributes:
         path: Path of the key.
         message: The mistake, and the expected value.
-        unknown: The record has no such key; the rest of the file can be decoded without it.
+        kind: "unknown": the record has no such key; "missing": it requires the key; "value": the
+            value is invalid.
     """
 
     path: Path
     message: str
-    unknown: bool = False
+    kind: Literal["unknown", "missing", "value"] = "value"
 
     @property
     def key(self) -> str:
@@ -68,7 +69,7 @@ def without_unknown(data: Any, mistakes: list[KeyMistake]) -> Any:
     """Return a copy of `data` without its unknown keys."""
     data = deepcopy(data)
     for mistake in mistakes:
-        if mistake.unknown:
+        if mistake.kind == "unknown":
             table = data
             for part in mistake.path[:-1]:
                 table = table[part]
@@ -81,12 +82,12 @@ def _of_record(
 ) -> Iterator[KeyMistake]:
     fields = {item.encode_name: item for item in msgspec.structs.fields(kind)}
     for name in (name for name in data if name not in fields):
-        yield KeyMistake((*path, name), f"unknown key{suggest(name, fields)}", unknown=True)
+        yield KeyMistake((*path, name), f"unknown key{suggest(name, fields)}", "unknown")
     for name, item in fields.items():
         if name in data:
             yield from key_mistakes(data[name], item.type, (*path, name))
         elif item.required:
-            yield KeyMistake((*path, name), "is missing")
+            yield KeyMistake((*path, name), "is missing", "missing")
 
 
 def _fitting(kind: Any, data: Any) -> Any:

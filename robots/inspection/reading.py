@@ -83,7 +83,7 @@ def decode(name: str, data: Any, record: type[T]) -> tuple[tuple[str, ...], T | 
     others = [mistake for mistake in found if mistake.key not in infinite]
     lines = [f"{name}: {key}: {why}" for key, why in infinite.items()]
     lines += [f"{name}: {mistake.key}: {mistake.message}" for mistake in others]
-    if infinite or not all(mistake.unknown for mistake in found):
+    if infinite or not all(mistake.kind == "unknown" for mistake in found):
         return tuple(lines), None
     return tuple(lines), msgspec.convert(without_unknown(data, found), record)
 

@@ -79,6 +79,7 @@ def test_a_robot_with_nothing_wrong_but_unknown_keys_can_be_looked_at(tmp_path: 
     assert len(reading.mistakes) == 1 and reading.robot is not None
 
 
+@pytest.mark.filterwarnings("ignore:Inertia matrix")
 def test_mistakes_of_the_mjcf_are_told_beside_those_of_the_keys(tmp_path: Path) -> None:
     changes = {
         "robot.toml": [("rate_hz = 125", 'rate_hz = "fast"'), ("tilt = 1.0", "tilt = nan")],

@@ -9,7 +9,9 @@ from typing import Any
 import jsonschema
 import pytest
 
+from windup.control.footprints.directed_file import Directed
 from windup.robots import load_robot, robot_names
+from windup.robots.records import JointEntry, RobotFile
 from windup.tools.schemas.docstrings import key_texts, record_text
 from windup.tools.schemas.files import RECORDS, schema_line, schema_path
 from windup.tools.schemas.generate import schema_text, write_schemas
@@ -80,11 +82,11 @@ def test_numbers_have_their_ranges_and_pairs_their_length() -> None:
 
 def test_keys_have_what_the_docstrings_say_of_them() -> None:
     schema = json.loads(schema_path("robot").read_text(encoding="utf-8"))
-    assert schema["properties"]["rate_hz"]["description"] == "Rate of the control loop, Hz."
+    assert schema["properties"]["rate_hz"]["description"] == key_texts(RobotFile)["rate_hz"]
     joint = schema["definitions"]["JointEntry"]["properties"]
-    assert joint["zero"]["description"].startswith("Counts of the servo at joint angle 0")
+    assert joint["zero"]["description"] == key_texts(JointEntry)["zero"]
     gains = json.loads(schema_path("footprint_gains_servo").read_text(encoding="utf-8"))
-    assert gains["properties"]["swing"]["description"].startswith("Time of the other one")
+    assert gains["properties"]["swing"]["description"] == key_texts(Directed)["swing"]
 
 
 def test_a_docstring_is_split_into_the_record_and_its_keys() -> None:
