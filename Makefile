@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: walk test docs clean
+.PHONY: walk test docs schemas clean
 
 walk: .venv/run.stamp
 	$(BIN)/windup walk op3 --plot walk.png
@@ -17,6 +17,10 @@ test: .venv/dev.stamp .venv/clients.stamp
 docs: .venv/docs.stamp
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 	@echo "documentation: .venv/site/index.html"
+
+# JSON Schemas of the TOML files; a test says when they are out of date.
+schemas: .venv/run.stamp
+	$(BIN)/python -m windup.tools.schemas.generate
 
 .venv/bin/python:
 	$(PYTHON) -m venv .venv

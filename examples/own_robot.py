@@ -7,7 +7,7 @@ through its files; replace them by yours.
 from pathlib import Path
 
 from windup import Robot, load_robot
-from windup.robots.doubts import doubts
+from windup.robots.inspection.doubts import doubts
 
 FOLDER = Path(__file__).parent / "biped"
 
