@@ -20,6 +20,7 @@ from windup.tools.benches.random_starts import measure_starts
 from windup.tools.benches.safety.bench import ROBOTS, measure_safety
 from windup.tools.benches.servo import measure_servos
 from windup.tools.benches.soak_table import fault_table
+from windup.tools.benches.startup import measure_startup
 from windup.tools.benches.unplug import measure_unplugs
 from windup.tools.benches.wire import Maker, measure_bus
 from windup.tools.terminal.command import Command
@@ -40,6 +41,7 @@ What = Literal[
     "leaks",
     "starts",
     "fuzz",
+    "startup",
 ]
 
 
@@ -58,6 +60,7 @@ class Bench(Command):
     unplug: what becomes of a robot whose adapter is pulled out and put in again (4 minutes).
     starts: does a robot start from wherever it is put, and notice what is wrong with it (5 min).
     fuzz: odd command lines on broken robots; none may end in a traceback (give --times 10000).
+    startup: what each way to start costs, as a ratio to importing NumPy (a minute).
     leaks: what opening and closing a robot leaves behind; 1000 times (10 minutes), status 1 if that
     is more than 5 MB, or any file, thread or process."""
     robot: str | None = None
@@ -71,7 +74,7 @@ class Bench(Command):
     reads: Annotated[int, Range(1, 10**9)] = 10_000_000
     """faults: how often servos are read, in all."""
     times: Count | None = None
-    """unplug, leaks, starts and fuzz: how often; 100, 1000, 100, and 1000."""
+    """unplug, leaks, starts, fuzz and startup: how often; 100, 1000, 100, 1000, and 20."""
     seed: Seed = 0
     """safety, faults, unplug, fuzz: what is drawn with; starts: of the first."""
     minutes: Annotated[float, Range(0.0, 10_000.0, "minutes", above=True)] = 10.0
@@ -93,6 +96,7 @@ class Bench(Command):
             "leaks": partial(measure_leaks, times=self.times or 1_000),
             "starts": partial(measure_starts, starts=self.times or 100, seed=self.seed),
             "fuzz": partial(measure_fuzz, times=self.times or 1_000, seed=self.seed),
+            "startup": partial(measure_startup, times=self.times or 20),
         }
         if self.what == "safety":
             return self._safety()

@@ -1,5 +1,6 @@
 """Faults as a URL, a command line or an injected text has them."""
 
+from collections.abc import Iterable
 from typing import Final
 
 from windup.hal.errors import UsageError, suggest
@@ -7,6 +8,7 @@ from windup.sim_twin.wire.faults.fault_rule import (
     EVENTS,
     EXTRA,
     LAST_ID,
+    SECONDS,
     Rule,
     check_kind,
     make_rule,
@@ -34,6 +36,30 @@ def parse_rules(text: str, live: bool = False) -> list[Rule]:
         UsageError: The text says something else.
     """
     return [_parse(part.strip(), live) for part in text.split(",") if part.strip()]
+
+
+def format_rule(rule: Rule) -> str:
+    """Return the text of which `parse_rules` makes the same fault again.
+
+    >>> format_rule(make_rule("unplug", at=2.5, seconds=1.0))
+    'unplug:at=2.5:seconds=1.0'
+    """
+    words = [rule.kind]
+    words.append(f"at={_joined(rule.at)}" if rule.at else f"rate={rule.rate}")
+    if rule.ids is not None:
+        words.append(f"ids={_joined(sorted(rule.ids))}")
+    if rule.bus is not None:
+        words.append(f"bus={rule.bus}")
+    if SECONDS[rule.kind]:
+        words.append(f"seconds={rule.seconds}")
+    words += [
+        f"{key}={getattr(rule, key)}" for key, (kind, _) in EXTRA.items() if kind == rule.kind
+    ]
+    return ":".join(words)
+
+
+def _joined(numbers: Iterable[float]) -> str:
+    return ";".join(map(str, numbers))
 
 
 def _parse(part: str, live: bool) -> Rule:

@@ -64,7 +64,7 @@ class Emulator:
         self._wake_read, self._wake_write = os.pipe()
         self._running = True
         self._watcher = Watcher(world, journal, events)
-        self._orders: SimpleQueue[list[Rule]] = SimpleQueue()
+        self._orders: SimpleQueue[Callable[[], object]] = SimpleQueue()
 
     def plug(self, bus: str, make: Callable[[], Link]) -> None:
         """Connect a bus to the link that `make` makes, now and whenever it is plugged in again."""
@@ -89,8 +89,11 @@ class Emulator:
             raise UsageError("the emulator has ended; nothing can be injected any more")
         rules = parse_rules(text, live=True)
         self.world.faults.check(rules)
-        self._orders.put(rules)
-        os.write(self._wake_write, b"i")
+        self._order(partial(self._begin, rules))
+
+    def clear_faults(self) -> None:
+        """Let nothing go wrong any more; what is broken stays broken. Any thread may call this."""
+        self._order(self.world.faults.clear)
 
     def run(self) -> None:
         """Serve until `stop`."""
@@ -174,11 +177,20 @@ class Emulator:
         for outlet in self.outlets:
             outlet.feed()
 
+    def _order(self, what: Callable[[], object]) -> None:
+        """Have the thread that serves do something soon."""
+        self._orders.put(what)
+        os.write(self._wake_write, b"i")
+
     def _take_orders(self) -> None:
-        """Let begin what was injected."""
+        """Do what other threads have ordered."""
         os.read(self._wake_read, CHUNK)
         while not self._orders.empty():
-            self.world.faults.inject(self._orders.get(), self.world.now)
+            self._orders.get()()
+
+    def _begin(self, rules: list[Rule]) -> None:
+        """Let begin what was injected; its times count from now."""
+        self.world.faults.inject(rules, self.world.now)
 
 
 def emulate(
