@@ -24,7 +24,6 @@ from windup.sim_twin.rollouts import RolloutPredictor
 from windup.sim_twin.wire.world.bus_world import RealClock
 from windup.tools.assembly.build import build_walk
 from windup.tools.assembly.gaits import find_gait
-from windup.tools.assembly.supervise import build_supervisor
 from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.measures.gauges import Gauges
 from windup.tools.measures.load_gauge import LoadGauge
@@ -211,6 +210,8 @@ class Robot(Session):
             walker = build_walk(self.description, options, self.predictor, latency=wait)
             supervisor = None
             if options.catch is not None:
+                from windup.tools.assembly.supervise import build_supervisor
+
                 supervisor = build_supervisor(self.description, walker, options.catch)
             end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
             report = WalkReport(
