@@ -26,7 +26,8 @@ from windup.sim_twin.wire.faults.faults import Faults
 from windup.sim_twin.wire.serve.tape import check_played, tape_world
 from windup.sim_twin.wire.serve.trace import Checker, Recorder, Tap
 from windup.sim_twin.wire.world.address import BENCH
-from windup.sim_twin.wire.world.bus_world import BusWorld, VirtualClock
+from windup.sim_twin.wire.world.bus_world import BusWorld
+from windup.sim_twin.wire.world.clocks import VirtualClock
 from windup.sim_twin.wire.world.hand import Swing
 from windup.tools.testing.bus_options import BusOptions, bus_url
 from windup.tools.testing.sdk_port import Sdk, port_handler_class
