@@ -1,4 +1,4 @@
-"""What a real IMU does to the twin's true motion: a low-pass filter, noise, bias, and counts."""
+"""Error model of an IMU: low-pass filter, noise, bias and quantisation to counts."""
 
 from dataclasses import dataclass
 from math import pi, radians
@@ -11,13 +11,13 @@ from windup.hal.joints import Array
 
 @dataclass(frozen=True)
 class ImuFigures:
-    """Figures of an IMU, gyro and accelerometer; the biases are standard deviations.
+    """Error parameters of an IMU, as (gyro, accelerometer) pairs.
 
     Attributes:
-        cutoff: Of its low-pass filter, taken as one of first order, Hz.
-        noise: Densities, rad/s and m/s2 in a root of hertz.
-        bias: rad/s and m/s2, on each axis.
-        unit: One count, rad/s and m/s2.
+        cutoff: Cutoff frequency of the low-pass filter, modelled as first order, Hz.
+        noise: Noise densities, rad/s/sqrt(Hz) and m/s2/sqrt(Hz).
+        bias: Standard deviations of the bias on each axis, rad/s and m/s2.
+        unit: Size of one count, rad/s and m/s2.
     """
 
     cutoff: float
@@ -27,23 +27,23 @@ class ImuFigures:
 
     @property
     def lag(self) -> float:
-        """Delay of the filter, s."""
+        """Time constant of the filter, s."""
         return 1.0 / (2.0 * pi * self.cutoff)
 
 
 OPENCR = ImuFigures(
     cutoff=CUTOFF,
-    noise=(radians(0.01), 300e-6 * 9.80665),  # its data sheet
-    bias=(radians(0.3), 0.05),  # our guess of what the calibration at rest leaves
+    noise=(radians(0.01), 300e-6 * 9.80665),  # from the data sheet
+    bias=(radians(0.3), 0.05),  # our guess of the residual after calibration at rest
     unit=(GYRO, ACCELERATION),
 )
 
 
 class LowPass:
-    """A low-pass filter of first order, for as many signals as come.
+    """A first-order low-pass filter for an array of signals.
 
     Args:
-        lag: Its time constant, s.
+        lag: Time constant, s.
         timestep: Time between two calls of `follow`, s.
     """
 
@@ -52,27 +52,27 @@ class LowPass:
         self._value: Array | None = None
 
     def follow(self, signal: Array) -> None:
-        """Let one time step pass with `signal`."""
+        """Advance the filter by one time step with input `signal`."""
         if self._value is None:
             self._value = np.array(signal)
         else:
             self._value += self._gain * (signal - self._value)
 
     def value(self, signal: Array) -> Array:
-        """Return the filtered signal; before the first step that is `signal`."""
+        """Return the filtered signal; before the first `follow`, return `signal` itself."""
         return np.array(signal if self._value is None else self._value)
 
 
 class ImuErrors:
-    """Turns true motion into samples.
+    """Turns true motion into IMU samples with errors.
 
     Args:
-        figures: The IMU.
+        figures: Error parameters of the IMU.
         timestep: Time between two calls of `feel`, s.
-        seed: Seed of its noise and biases.
+        seed: Seed of noise and biases.
 
     Attributes:
-        bias: (6,) rad/s and m/s2.
+        bias: (6,) biases of gyro and accelerometer, rad/s and m/s2.
     """
 
     def __init__(self, figures: ImuFigures, timestep: float, seed: int = 0) -> None:
@@ -84,10 +84,10 @@ class ImuErrors:
         self.bias = self._random.normal(size=6) * np.repeat(figures.bias, 3)
 
     def feel(self, motion: Array) -> None:
-        """Take the true rates and accelerations (6,) of one time step."""
+        """Filter the true angular rates and accelerations (6,) of one time step."""
         self._filter.follow(motion)
 
     def sample(self, motion: Array) -> Array:
-        """Return what the IMU says (6,); `motion` (6,) is the true one, before any `feel`."""
+        """Return a sample (6,) with errors; `motion` (6,) is its input until the first `feel`."""
         noise = self._noise * self._random.normal(size=6)
         return np.rint((self._filter.value(motion) + self.bias + noise) / self._unit) * self._unit

@@ -1,6 +1,6 @@
-"""Emulated servos on a bus. Importing this makes ``twin://`` a port that pyserial can open.
+"""Emulated servos on a bus; importing this lets pyserial open ports named ``twin://...``.
 
-Worlds are imported when the first of its names is used: most programs run a twin without a bus.
+The worlds are imported when one of the public names is first used.
 """
 
 from importlib import import_module

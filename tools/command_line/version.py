@@ -1,9 +1,9 @@
-"""Which version is installed."""
+"""The installed version."""
 
 
 def installed_version() -> str:
-    """Return the version that is installed; "unknown" where only the files lie there."""
-    from importlib.metadata import PackageNotFoundError, version  # takes a while, for its parsers
+    """Return the installed version; "unknown" if the package is not installed."""
+    from importlib.metadata import PackageNotFoundError, version  # its import is slow
 
     try:
         return version("windup-robotics")

@@ -1,4 +1,4 @@
-"""What programs read on standard output."""
+"""Writes results to standard output."""
 
 import sys
 
@@ -7,12 +7,12 @@ from windup.tools.terminal.writing import STANDARD_OUTPUT, check_writable, writi
 
 
 def print_result(text: str) -> None:
-    """Write to standard output, all of it, now.
+    """Write a text to standard output and flush it.
 
     Raises:
-        UsageError: It is closed.
-        OutputError: That is not possible.
-        BrokenPipeError: Whoever read it has gone.
+        UsageError: Standard output is closed.
+        OutputError: It cannot be written.
+        BrokenPipeError: Its reader has closed it.
     """
     check_writable(STANDARD_OUTPUT)
     with writing(STANDARD_OUTPUT):

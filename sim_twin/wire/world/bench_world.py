@@ -1,4 +1,4 @@
-"""Servos on a bench: each alone with its own inertia. Needs neither a robot nor MuJoCo."""
+"""Builds a world of servos on a bench, each with its own inertia; does not need MuJoCo."""
 
 from windup.hal.servos import servo_model
 from windup.sim_twin.wire.device import Device
@@ -11,15 +11,15 @@ from windup.sim_twin.wire.world.grips import bench_grips
 from windup.sim_twin.wire.world.workshop import NOMINAL, Workshop
 
 BAUD = 1_000_000
-"""Of the servos, unless the address says another, bits/s."""
+"""Default baud rate of the servos, bits/s."""
 
 
 def bench_world(address: Address) -> BusWorld:
     """Return a new world with the servos of an address on one bus.
 
     Raises:
-        UnknownNameError: There is no such servo.
-        UsageError: They speak different protocols, or one of them not at this baud rate.
+        UnknownNameError: There is no such servo model.
+        UsageError: The servos use different protocols, or one does not support the baud rate.
     """
     baud, shop = address.baud or BAUD, Workshop(address)
     servos = [(full_name(name), identifier) for name, identifier in parse_servos(address.servos)]
@@ -42,6 +42,6 @@ def bench_world(address: Address) -> BusWorld:
 
 
 def loose_shaft(name: str, supply: float) -> InertiaShaft:
-    """Return a shaft with the inertia and friction of a servo of this model, at `supply` V."""
+    """Return a free shaft with the inertia, friction and motor of a servo model at `supply` V."""
     sheet = servo_model(name)
     return InertiaShaft(sheet.motor(supply), sheet.armature, sheet.friction_loss)

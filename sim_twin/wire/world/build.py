@@ -1,4 +1,4 @@
-"""Builds the world that an address names. MuJoCo is imported where that is a robot."""
+"""Builds the world that an address names; imports MuJoCo only for a robot."""
 
 from typing import TYPE_CHECKING
 
@@ -16,12 +16,12 @@ def build_world(address: Address, around: "Environment | None" = None) -> BusWor
     """Return a new world.
 
     Args:
-        address: What is in it.
+        address: Address of the world.
         around: Ground and plant of a robot's twin.
 
     Raises:
         UnknownNameError: There is no such robot or servo.
-        UsageError: The robot has nothing on a wire, or there is no twin to put on a ground.
+        UsageError: The robot has no servos on a bus, or `around` is given without a twin.
     """
     if around is not None and (address.robot == BENCH or address.physics != "mujoco"):
         raise UsageError("only a robot with physics=mujoco has another ground or plant")
@@ -32,7 +32,7 @@ def build_world(address: Address, around: "Environment | None" = None) -> BusWor
 
 
 def _robot(address: Address, around: "Environment | None") -> BusWorld:
-    """Return the world of a robot; only this takes MuJoCo, whose import takes its time."""
+    """Return the world of a robot; the import here loads MuJoCo, which a bench does not need."""
     from windup.sim_twin.wire.world.robot_world import robot_world
 
     return robot_world(address, around)

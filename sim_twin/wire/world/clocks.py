@@ -1,4 +1,4 @@
-"""The clocks of a world: time that waits for somebody to wait, and the wall's."""
+"""The clocks of a world: virtual time, and the wall clock."""
 
 import time as wall
 from typing import TYPE_CHECKING
@@ -8,7 +8,7 @@ if TYPE_CHECKING:
 
 
 class VirtualClock:
-    """Time that passes only when somebody waits for it."""
+    """A clock that advances only in waits."""
 
     def __init__(self, world: "BusWorld") -> None:
         self.world = world
@@ -18,15 +18,15 @@ class VirtualClock:
         return self.world.schedule.now
 
     def wait_until(self, time: float) -> None:
-        """Bring the world to `time` s."""
+        """Advance the world to `time`, s."""
         self.world.advance(time)
 
     def settle(self) -> None:
-        """Nothing to catch up with: the world waits."""
+        """Do nothing: a virtual world never lags behind its clock."""
 
 
 class RealClock:
-    """Time of the wall, from 0 at the start; the world is brought along when somebody asks."""
+    """Wall-clock time, from 0 at the start; the world advances when the clock is used."""
 
     def __init__(self, world: "BusWorld") -> None:
         self.world = world
@@ -37,13 +37,13 @@ class RealClock:
         return wall.monotonic() - self._start
 
     def wait_until(self, time: float) -> None:
-        """Sleep until it is `time` s."""
+        """Sleep until `time`, s, and advance the world."""
         while (left := time - self.now()) > 0.0:
             wall.sleep(min(left, 0.002))
             self.world.advance(self.now())
 
     def settle(self) -> None:
-        """Bring the world to now."""
+        """Advance the world to the present time."""
         self.world.advance(self.now())
 
 

@@ -1,4 +1,4 @@
-"""Where hands take hold of servos on a bench."""
+"""Makes the grips with which hands turn servos on a bench."""
 
 from collections.abc import Sequence
 
@@ -16,7 +16,7 @@ def bench_grips(devices: Sequence[Device], shafts: Sequence[InertiaShaft]) -> di
 
 
 def grip_on_shaft(device: Device, shaft: InertiaShaft, ratio: float) -> Grip:
-    """Return a grip on a joint of which one rad is `ratio` rad of the shaft."""
+    """Return a grip on a joint whose angle is the shaft's divided by `ratio`."""
     return Grip(
         device,
         lambda: shaft.position / ratio,

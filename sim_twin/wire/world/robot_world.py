@@ -1,4 +1,4 @@
-"""A robot on its servo buses: its MuJoCo twin, or each of its servos alone with its inertia."""
+"""Builds the world of a robot: its servo buses with its twin, or with separate inertias."""
 
 import math
 from dataclasses import replace
@@ -28,12 +28,12 @@ def robot_world(address: Address, around: Environment | None = None) -> BusWorld
     """Return a new world with the buses of a robot.
 
     Args:
-        address: What is in it.
-        around: Ground and plant of its twin; flat and as its files say by default.
+        address: Address of the world.
+        around: Ground and plant of its twin; by default flat, and as in the robot's files.
 
     Raises:
         UnknownNameError: There is no such robot.
-        UsageError: It has nothing on a wire.
+        UsageError: The robot has no servos on a bus.
     """
     robot, around = load_robot(address.robot), around or Environment()
     if not any(robot.servos):
@@ -65,12 +65,12 @@ def robot_world(address: Address, around: Environment | None = None) -> BusWorld
 
 
 def _has_board(robot: RobotDescription) -> bool:
-    """Whether the robot's IMU is that of an OpenCR board on its first bus."""
+    """Return whether the robot's IMU is on an OpenCR board on its first bus."""
     return robot.imu is not None and robot.buses[0].protocol == "dynamixel2"
 
 
 def _motion(robot: RobotDescription, twin: Twin | None) -> ImuSource:
-    """Return what the robot's IMU feels: the motion of its twin, or rest."""
+    """Return the motion that the robot's IMU measures: its twin's, or rest without a twin."""
     if twin is None or robot.imu is None:
         return RestingImu()
     return TwinImu(twin, Board(robot.buses[0].name).lag if _has_board(robot) else Bno08xRvc.lag)
@@ -83,7 +83,7 @@ def _add_buses(
     source: ImuSource,
     supply: float,
 ) -> None:
-    """Add the robot's buses, its servos and board on them, and the port of its IMU."""
+    """Add the robot's buses with their servos and board, and the port of a separate IMU."""
     address, first, board = shop.address, robot.buses[0], _has_board(robot)
     felt = FaultyImu(source, shop.schedule)
     if board:
@@ -100,7 +100,7 @@ def _add_buses(
 def _hang_servos(
     address: Address, robot: RobotDescription, twin: Twin | None, supply: float
 ) -> tuple[dict[str, list[Device]], list[Shaft]]:
-    """Return the servos of each bus and all shafts: the twin's, or each with its own inertia."""
+    """Return the servos of each bus and all shafts: the twin's joints, or separate inertias."""
     buses = {bus.name: bus for bus in robot.buses}
     hung: dict[str, list[Device]] = {name: [] for name in buses}
     shafts: list[Shaft] = []
@@ -124,7 +124,7 @@ def _hang_servos(
 
 
 def _behind_a_wire(around: Environment, robot: RobotDescription, supply: float) -> Environment:
-    """Return `around` with what is left of its plant's delay when the wire has taken its own."""
+    """Return `around` with its plant's delay reduced by the delay that the bus adds itself."""
     plant = replace(around.plant, supply=supply)
     if plant.delay is not None:
         left = max(plant.delay - robot.drive.wire_delay, 0.0)
@@ -135,7 +135,7 @@ def _behind_a_wire(around: Environment, robot: RobotDescription, supply: float) 
 def _posed_shaft(
     robot: RobotDescription, joint: int, mount: ServoMount, supply: float
 ) -> InertiaShaft:
-    """Return a shaft that stands where the robot's stance has it."""
+    """Return a shaft at the angle of the joint in the robot's stance."""
     shaft = loose_shaft(mount.model.name, supply)
     turn = mount.sign * mount.ratio * float(robot.stance[joint])
     per_rad = mount.model.counts_per_rev / (2.0 * math.pi)

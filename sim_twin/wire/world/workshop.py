@@ -1,4 +1,4 @@
-"""What the buses of one world share while it is built."""
+"""Builds the buses of one world, with the objects that they share."""
 
 from windup.sim_twin.wire.boards.rvc import BAUD as RVC_BAUD
 from windup.sim_twin.wire.boards.rvc import Mute, start_rvc
@@ -12,15 +12,15 @@ from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.world.address import Address
 from windup.sim_twin.wire.world.bus_world import BusWorld, Physics
 
-NOMINAL = 12.0  # V, for servos that stand so much
-IMU = "imu"  # name of the port of an IMU
+NOMINAL = 12.0  # default supply on a bench, V, where the servos tolerate it
+IMU = "imu"  # name of the port of a separate IMU
 
 
 class Workshop:
-    """What the buses of one world share while it is built.
+    """Builds the buses of one world, with the objects that they share.
 
     Args:
-        address: What is to be built.
+        address: Address of the world.
     """
 
     def __init__(self, address: Address) -> None:
@@ -40,11 +40,11 @@ class Workshop:
         return bus
 
     def imu(self, source: ImuSource) -> None:
-        """Add the port of an IMU that talks by itself."""
+        """Add the port of an IMU that streams by itself."""
         bus = self.bus(IMU, [], Mute(), RVC_BAUD)
         bus.imu = FaultyImu(source, self.schedule)
         start_rvc(bus, bus.imu)
 
     def world(self, physics: Physics, supply: float, owned: tuple[object, ...] = ()) -> BusWorld:
-        """Return the world with its buses."""
+        """Return the world with the buses added so far."""
         return BusWorld(physics, self.schedule, self.buses, supply, owned, self.faults)

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.kenwright.jobs import stride
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 
 SPEED = 0.1  # m/s
 HEADINGS = (0.0, 45.0, 90.0, 135.0, 180.0, -90.0)

@@ -3,8 +3,8 @@
 import numpy as np
 
 from windup.hal.joints import Array
-from windup.tools.reproduce.figure import Result
 from windup.tools.reproduce.laszlo.recorder import column
+from windup.tools.reproduce.study.figure import Result
 
 CYCLES = 10  # the last ones; a cycle is two steps
 PHASES = 50

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, Figure, Job, Results
 from windup.tools.reproduce.laszlo.cycles import CLEAR, CYCLES, cycles, pitch_range, scatter
 from windup.tools.reproduce.laszlo.jobs import NAMES, walk
+from windup.tools.reproduce.study.figure import Claim, Figure, Job, Results
 
 UP = (
     walk(sampling="fl", forward=0.25),
