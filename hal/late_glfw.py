@@ -1,7 +1,7 @@
-"""Import this before MuJoCo, and glfw is loaded when somebody opens a window, not before.
+"""Delays the loading of glfw until a window is opened; has to be imported before MuJoCo.
 
-MuJoCo imports glfw, which starts a process to ask its library for its version: a tenth of the time
-that `from windup import Robot` takes, on computers that mostly have no window.
+MuJoCo imports glfw, which starts a process to query the version of its library. That is a tenth of
+the time of `from windup import Robot`.
 """
 
 import sys
@@ -11,14 +11,14 @@ from typing import Any
 
 
 class LateModule(ModuleType):
-    """A module whose code runs when something of it is first asked for.
+    """A module whose code runs when one of its attributes is first used.
 
-    Unlike that of `importlib.util.LazyLoader`, it is not loaded by a second `import`, which asks
-    for its `__spec__`.
+    Unlike a module of `importlib.util.LazyLoader`, it is not loaded by a second `import`, which
+    reads `__spec__`.
     """
 
     def __getattr__(self, name: str) -> Any:
-        """Load the module, and return what was asked for."""
+        """Load the module, and return the attribute."""
         object.__setattr__(self, "__class__", ModuleType)
         assert self.__spec__ is not None and self.__spec__.loader is not None
         self.__spec__.loader.exec_module(self)
@@ -26,9 +26,9 @@ class LateModule(ModuleType):
 
 
 def import_late(name: str) -> None:
-    """Put a module into place whose code runs when it is first used.
+    """Register a module whose code runs when it is first used.
 
-    Nothing happens where it is imported already, or is not installed.
+    Does nothing if the module is imported already or is not installed.
     """
     if name in sys.modules or (spec := find_spec(name)) is None:
         return

@@ -63,8 +63,8 @@ def run(arguments: list[str] | None = None) -> int:
 
 
 def _say(text: str) -> None:
-    """Print a line for people."""
-    from windup.tools.terminal.output import console  # only now: rich takes longer than the help
+    """Print a line on standard error."""
+    from windup.tools.terminal.output import console  # slow: it imports rich
 
     console.print(text, markup=False, soft_wrap=True)
 

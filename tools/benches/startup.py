@@ -1,6 +1,6 @@
-"""What starting costs: each way in as a ratio to `python -c "import numpy"` of the same rounds.
+"""Times of the ways to start, as ratios to `python -c "import numpy"` of the same rounds.
 
-Where one is too slow, `python -X importtime -c "..."` says which import it is.
+`python -X importtime -c "..."` shows which imports one of them spends its time on.
 """
 
 import subprocess
@@ -18,8 +18,8 @@ class Way(NamedTuple):
 
     Attributes:
         arguments: Of the Python interpreter.
-        most: Ratio of its time to that of `base` which it may take.
-        base: Name of what it is compared with.
+        most: Largest allowed ratio of its time to that of `base`.
+        base: Name of the way that it is compared with.
     """
 
     arguments: tuple[str, ...]
@@ -40,16 +40,16 @@ WAYS: Final[dict[str, Way]] = {
     WITHOUT: Way((*PYTEST, "-p", f"no:{PLUGIN}"), 1.0, WITHOUT),
     "pytest with the plugin": Way(PYTEST, 1.05, WITHOUT),
 }
-"""What is started, each in an interpreter of its own."""
+"""The ways to start, each in a new interpreter."""
 
 
 def measure_startup(robot: str, times: int = 20) -> dict[str, Any]:
     """Return the ratio of each way to start, and whether all are within their limits.
 
-    The rounds are interleaved, and the best of each way counts: noise only ever adds.
+    The rounds are interleaved, and the shortest time of each way counts: noise only adds.
 
     Args:
-        robot: Not used; every measure is given one.
+        robot: Not used.
         times: Number of rounds.
     """
     best = dict.fromkeys(WAYS, float("inf"))
@@ -67,10 +67,10 @@ def measure_startup(robot: str, times: int = 20) -> dict[str, Any]:
 
 
 def _seconds(arguments: tuple[str, ...], folder: str) -> float:
-    """Return how long an interpreter takes to run and end, s.
+    """Return the time that an interpreter takes from its start to its end, s.
 
     Raises:
-        CalledProcessError: It failed.
+        CalledProcessError: It ended with an error.
     """
     begin = time.perf_counter()
     subprocess.run(

@@ -1,6 +1,6 @@
 """`windup emulate`: serve a robot's emulated servo buses to other programs, in real time.
 
-Servos on a bench need no MuJoCo: what a robot needs is imported where there is one.
+MuJoCo is imported for a robot only, so that a bench of servos starts fast.
 """
 
 import os

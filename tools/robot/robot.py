@@ -42,7 +42,7 @@ LATER: Final = (
     "windup.sim_twin.wire.world.worlds",
     "windup.tools.assembly.supervise",
 )
-"""What only some runs use: imported with the first robot, so that nothing armed waits for it."""
+"""Modules that only some runs use, imported by `open` so that no run of an armed robot waits."""
 START_SECONDS = 1.0
 PLAY_SECONDS = 5.0
 

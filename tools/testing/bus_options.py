@@ -1,4 +1,4 @@
-"""What the buses of a test can be told, with completion, and the URL that says it."""
+"""Options of the emulated buses of a test, and the URL that they form."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,32 +9,32 @@ from windup.hal.errors import UsageError
 from windup.sim_twin.wire.world.address import SCHEME, parse_address
 
 RESERVED = ("clock", "world", "bus")
-"""Options of a twin:// URL that a test's bus chooses by itself."""
+"""Options of a twin:// URL that `ServoBus` and `ServoPty` set themselves."""
 
 
 class BusOptions(TypedDict, total=False):
-    """Options of an emulated bus; what is left out has its default.
+    """Options of an emulated bus; omitted options have their defaults.
 
     Attributes:
-        servos: On the bench, models and ids: "XM430-W350:1-20,XL430:30"; one protocol a bus.
-        baud: Baud rate of the servos, bits/s; the robot's own, or 1,000,000.
-        return_delay: Return delay of the servos at the start, in their unit of 2 us; as they leave
-            the factory (250, 500 us, of a Dynamixel) by default.
-        latency: Time for which the adapter holds bytes back, ms; 0 by default, 16 of an FTDI chip
-            whose latency timer nobody has lowered.
-        turnaround: Time from the end of a request to an answer, on top of the return delay, us.
-        missing: Behind a servo that is missing in a sync read the others "skip" its slot, or
-            "wait" for it.
-        supply: Voltage, V; the robot's own, or 12 (less where the servos stand less).
-        physics: Of a robot: "mujoco", its twin, or "inertia", each servo alone.
-        power: Whether the servo power of an OpenCR board is "on" (default) or "off" at the start.
-        hold: Whether a robot is held until its servos are driven: "yes" (default) or "no";
-            "always": also whenever none of them is driven any more.
-        hand: What hands do to limp joints: "JOINT:DEGREES:SECONDS", several joined by commas.
-        imu: A BNO08x on a port of its own, bus "imu": "rvc" or "none"; "auto" (default): as the
-            robot has it.
-        faults: What goes wrong, as a URL has it: "drop:0.01,late:0.02:seconds=0.003".
-        seed: Seed of everything random; 0 by default.
+        servos: Models and ids on a bench, "XM430-W350:1-20,XL430:30"; all of one protocol.
+        baud: Baud rate of the servos, bits/s; by default the robot's, or 1,000,000.
+        return_delay: Initial return delay register of the servos, in units of 2 us; by default the
+            factory value (of a Dynamixel 250, which is 500 us).
+        latency: Time for which the adapter holds bytes back, ms; 0 by default, 16 for an FTDI chip
+            with its default latency timer.
+        turnaround: Time from the end of a request to an answer, besides the return delay, us.
+        missing: Behaviour of the servos after a missing one in a sync read: they "skip" its slot
+            (default), or "wait" for its answer.
+        supply: Supply voltage, V; by default the robot's, or 12, limited to the servos' maximum.
+        physics: Physics of a robot: "mujoco" (its twin, default), or "inertia" (separate servos).
+        power: Servo power switched by an OpenCR board at the start: "on" (default) or "off".
+        hold: Whether a robot is held until all its servos are driven: "yes" (default), "no", or
+            "always", also whenever none of them is driven any more.
+        hand: Hands that turn limp joints, "JOINT:DEGREES:SECONDS", joined by commas.
+        imu: A BNO08x on a separate port, bus "imu": "rvc", "none", or "auto" (default), which
+            follows the robot.
+        faults: Faults in their text form, "drop:0.01,late:0.02:seconds=0.003".
+        seed: Seed of the random numbers; 0 by default.
     """
 
     servos: str
@@ -64,7 +64,7 @@ def bus_url(robot: str | Path, options: Mapping[str, object]) -> str:
         options: See `BusOptions`.
 
     Raises:
-        UsageError: An option is unknown, chosen by the bus itself, or cannot be.
+        UsageError: An option is unknown or reserved, or a value is not possible.
     """
     if taken := set(options) & set(RESERVED):
         raise UsageError(f"a test's bus chooses its own {' and '.join(sorted(taken))}")

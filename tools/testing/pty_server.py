@@ -1,8 +1,8 @@
-"""The process behind `ServoPty`: serves emulated buses, and takes orders from its parent.
+"""The process behind `ServoPty`: serves emulated buses and executes orders of its parent.
 
-``python -m windup.tools.testing.pty_server URL PATH``. One JSON object a line: on standard output
-first the paths by bus, or an error; then an answer to every order on standard input. It ends with
-its standard input, so it never outlives the program that has started it.
+``python -m windup.tools.testing.pty_server URL PATH``. It exchanges JSON objects, one a line: on
+standard output first the paths by bus or an error, then an answer to each order that arrives on
+standard input. It ends at the end of standard input, and therefore with its parent.
 """
 
 import json
@@ -17,7 +17,7 @@ from windup.sim_twin.wire.serve.emulate import Emulator, emulate
 
 
 def main(url: str, path: str) -> None:
-    """Serve until the parent closes our standard input."""
+    """Serve until standard input ends."""
     try:
         emulate(parse_address(url), pty=Path(path), on_ready=_begin)
     except WindupError as error:
@@ -25,13 +25,13 @@ def main(url: str, path: str) -> None:
 
 
 def _begin(emulator: Emulator) -> None:
-    """Say what to open, and listen for orders from now on."""
+    """Report the paths, and start the thread that executes orders."""
     _tell({"paths": {outlet.bus.name: outlet.name for outlet in emulator.outlets}})
     Thread(target=_listen, args=(emulator,), daemon=True).start()
 
 
 def _listen(emulator: Emulator) -> None:
-    """Obey until the parent has gone."""
+    """Execute orders until standard input ends, then stop the emulator."""
     for line in sys.stdin:
         try:
             _tell(_obey(emulator, json.loads(line)))
@@ -41,7 +41,7 @@ def _listen(emulator: Emulator) -> None:
 
 
 def _obey(emulator: Emulator, order: dict[str, Any]) -> dict[str, Any]:
-    """Carry out an order and return the answer."""
+    """Execute an order and return the answer."""
     if "inject" in order:
         emulator.inject(order["inject"])
     elif "clear" in order:

@@ -12,7 +12,7 @@ def test_it_survives_dropouts(servo_bus):
     robot.stand(2.0)
     assert not robot.fallen and robot.loop.missed == 0
 
-Every run of pytest imports this file, so it imports nothing of ours before a fixture is asked for.
+Every run of pytest imports this file, so the fixtures import the rest when they are used.
 """
 
 from collections.abc import Callable, Iterator
@@ -31,15 +31,15 @@ if TYPE_CHECKING:
 
 
 class MakeServoBus(Protocol):
-    """What the fixture `servo_bus` is; annotate a test's argument with it for completion."""
+    """Type of the fixture `servo_bus`; annotate a test's argument with it for completion."""
 
     def __call__(self, robot: str | Path = "bench", **options: "Unpack[BusOptions]") -> "ServoBus":
-        """Return emulated buses on a virtual clock; they are closed when the test ends."""
+        """Return emulated buses on a virtual clock; the fixture closes them after the test."""
         ...
 
 
 class MakeServoPty(Protocol):
-    """What the fixture `servo_pty` is; annotate a test's argument with it for completion."""
+    """Type of the fixture `servo_pty`; annotate a test's argument with it for completion."""
 
     def __call__(
         self,
@@ -48,13 +48,13 @@ class MakeServoPty(Protocol):
         path: str | Path | None = None,
         **options: "Unpack[BusOptions]",
     ) -> "ServoPty":
-        """Return emulated buses on pseudo-terminals; they are closed when the test ends."""
+        """Return emulated buses on pseudo-terminals; the fixture closes them after the test."""
         ...
 
 
 @pytest.fixture
 def servo_bus() -> Iterator[MakeServoBus]:
-    """Make an emulated servo bus: ``servo_bus(servos="STS3215:1-6")``; see `ServoBus`."""
+    """Return a function that makes an emulated servo bus: ``servo_bus(servos="STS3215:1-6")``."""
     from windup.tools.testing.servo_bus import ServoBus
 
     with ExitStack() as stack:
@@ -69,7 +69,7 @@ def servo_bus() -> Iterator[MakeServoBus]:
 
 @pytest.fixture
 def servo_pty() -> Iterator[MakeServoPty]:
-    """Serve emulated servos under a path: ``servo_pty(servos="STS3215:1-6").path``."""
+    """Return a function that serves servos: ``servo_pty(servos="STS3215:1-6").path``."""
     from windup.tools.testing.servo_pty import ServoPty
 
     with ExitStack() as stack:
@@ -87,7 +87,7 @@ def servo_pty() -> Iterator[MakeServoPty]:
 
 @pytest.fixture
 def servo_replay() -> "Iterator[Callable[[str | Path], ServoBus]]":
-    """Make a bus that answers from a trace: ``servo_replay("walk.trace")``."""
+    """Return a function that replays a trace as a bus: ``servo_replay("walk.trace")``."""
     from windup.tools.testing.servo_bus import ServoBus
 
     with ExitStack() as stack:

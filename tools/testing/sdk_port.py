@@ -1,10 +1,10 @@
-"""PortHandlers of the makers' SDKs that open an emulated bus and live on its virtual clock.
+"""PortHandlers of the makers' SDKs that open an emulated bus and use its virtual clock.
 
-The SDKs' PortHandlers open a device by themselves and ask `time.time` how long they have waited, so
-on a virtual clock no time would ever pass. Here a class is made of the installed SDK's own
-PortHandler that differs from it in just that: what it opens, and which clock it looks at. Packet
-handlers, groups and whatever else takes a PortHandler work with it unchanged, with all their
-defects; nothing in the SDK's modules is replaced.
+The SDKs' PortHandlers open a serial device and measure time-outs with `time.time`, so that virtual
+time would never advance. The classes here are subclasses of the installed SDK's PortHandler that
+differ only in the port that they open and the clock that they use. Packet handlers, groups and
+other users of a PortHandler work with them unchanged, including their defects; nothing in the SDK's
+modules is replaced.
 """
 
 from collections.abc import Callable
@@ -19,19 +19,19 @@ from windup.hal.errors import UsageError, suggest
 Sdk = Literal["dynamixel", "feetech"]
 
 MODULES: Final[dict[str, str]] = {"dynamixel": "dynamixel_sdk", "feetech": "scservo_sdk"}
-"""Import names; feetech-servo-sdk and ftservo-python-sdk share theirs."""
+"""Import names; feetech-servo-sdk and ftservo-python-sdk use the same one."""
 POLL: Final = 10e-6
-"""What a question costs: a program that polls sees time pass, as on a real port, s."""
+"""Virtual time that one poll of the port takes, so that polling loops end, s."""
 BITS: Final = 10.0
-"""A byte on the wire: start, eight, stop."""
+"""Bits of one byte on the bus: start bit, eight data bits, stop bit."""
 
 
 class VirtualTime:
-    """What differs from the SDK's PortHandler; its names are the SDK's, its times ms.
+    """The methods that differ from the SDK's PortHandler; names and times (ms) are the SDK's.
 
     Attributes:
-        url: What is opened, whatever the port is called.
-        clock: The clock of the world behind it.
+        url: URL of the emulated bus, which is opened whatever the port's name is.
+        clock: Clock of the bus.
     """
 
     url: str
@@ -45,7 +45,7 @@ class VirtualTime:
     closePort: Callable[[], None]  # noqa: N815 - the SDK's name
 
     def setupPort(self, cflag_baud: int) -> bool:  # noqa: N802 - the SDK's name, as all below
-        """Open the bus, or open it again at another baud rate."""
+        """Open the bus, or reopen it with another baud rate."""
         if self.is_open:
             self.closePort()
         self.ser = serial.serial_for_url(self.url, baudrate=cflag_baud, timeout=0)
@@ -60,14 +60,14 @@ class VirtualTime:
         return self.clock.now() * 1e3
 
     def getBytesAvailable(self) -> int:  # noqa: N802
-        """Return how many bytes have come."""
+        """Return the number of bytes that have been received."""
         self._poll()
         return int(self.ser.in_waiting)
 
     def readPort(self, length: int) -> bytes:  # noqa: N802
-        """Return up to `length` bytes: all of them, or what has come when the packet's time is up.
+        """Wait for `length` bytes until the packet times out; return the bytes received.
 
-        The SDK would ask again and again until then; so its loop goes round once.
+        The SDK polls until then; a blocking read has the same result in one call.
         """
         if length <= 0:
             return b""
@@ -76,17 +76,17 @@ class VirtualTime:
         return bytes(self.ser.read(length))
 
     def _poll(self) -> None:
-        """Let the time of one question pass."""
+        """Advance the clock by the time of one poll."""
         self.clock.wait_until(self.clock.now() + POLL)
 
 
 def port_handler_class(sdk: Sdk, url: str, clock: Clock) -> type[Any]:
-    """Return a subclass of an SDK's PortHandler whose ports all lead to `url`.
+    """Return a subclass of an SDK's PortHandler whose instances all open `url`.
 
     Args:
-        sdk: Whose SDK: "dynamixel" (dynamixel_sdk) or "feetech" (scservo_sdk).
-        url: The emulated bus.
-        clock: Its clock.
+        sdk: "dynamixel" (dynamixel_sdk) or "feetech" (scservo_sdk).
+        url: URL of the emulated bus.
+        clock: Clock of the bus.
 
     Raises:
         UsageError: There is no such SDK, or it is not installed.

@@ -1,11 +1,11 @@
-"""Servo buses for tests: emulated servos, their faults, traces, and the real driver on them.
+"""Emulated servo buses for tests, with faults, traces, SDK ports and the real driver.
 
 with ServoBus(servos="STS3215:1-6") as bus:
     bus.faults.drop(ids=[3], rate=0.02)
     port = bus.open_sdk("feetech")  # a PortHandler of scservo_sdk
     bus.faults.overload(ids=[2])    # now
 
-Servos on a bench need no MuJoCo; it is imported with the first robot.
+A bench of servos does not need MuJoCo, which is imported when a robot is used.
 """
 
 import math
@@ -41,17 +41,17 @@ _numbers = count(1)
 class ServoBus:
     """The emulated buses of one robot, or servos on a bench, on a virtual clock.
 
-    Time passes only when somebody waits for it: in a read, in `wait`, or in what a robot of these
-    buses does. `time.sleep` lets none pass.
+    Time advances only in a read, in `wait`, or while a robot on these buses runs; `time.sleep` does
+    not advance it.
 
     Args:
-        robot: Name of a robot, path of a folder with one, or "bench": `servos` alone.
+        robot: Name of a robot, path of its folder, or "bench" for `servos` without a robot.
         **options: Servos, baud rate, latency, supply, faults, seed: see `BusOptions`.
 
     Attributes:
         world: The world.
         clock: Its clock; it moves when somebody waits.
-        faults: What goes wrong, one method for each kind of fault.
+        faults: The faults, one method for each kind.
         url: What to open: any pyserial program in this process can.
     """
 
@@ -82,12 +82,12 @@ class ServoBus:
         """Return the robot, opened with the real driver on these buses; see `Robot.open`.
 
         Raises:
-            UsageError: There is none: these are servos on a bench, or a trace.
+            UsageError: This is a bench of servos or a trace, which has no robot.
         """
         if self._robot in ("", BENCH):
             what = "servos on a bench are" if self._robot else "a trace is"
             raise UsageError(f"{what} no robot; use port(), serial() or open_sdk()")
-        from windup.tools.robot.robot import Robot  # with MuJoCo, which a bench does without
+        from windup.tools.robot.robot import Robot  # imports MuJoCo, which a bench does not need
 
         robot = Robot.open(self._robot, port=self.url, **{"seed": self._seed, **options})
         self._robots.append(robot)
@@ -102,41 +102,41 @@ class ServoBus:
         return serial.serial_for_url(self._url(bus), baudrate=baud, timeout=timeout)
 
     def open_sdk(self, sdk: Sdk, bus: str = "", baud: int = 1_000_000) -> Any:
-        """Return an open PortHandler of a maker's SDK on a bus, the first by default.
+        """Return an open PortHandler of a maker's SDK on a bus.
 
-        Packet handlers and groups of the SDK take it as they take any other, and the bus's time
-        passes while they wait::
+        Packet handlers and groups of the SDK use it like any other, and virtual time advances while
+        they wait::
 
             port = bus.open_sdk("dynamixel")
             model, result, error = dynamixel_sdk.PacketHandler(2.0).ping(port, 1)
 
         Args:
             sdk: "dynamixel" (dynamixel_sdk) or "feetech" (scservo_sdk).
-            bus: Name of the bus.
-            baud: Baud rate, bits/s; one that the SDK knows.
+            bus: Name of the bus; by default the first.
+            baud: Baud rate, bits/s; one that the SDK supports.
 
         Raises:
-            UsageError: There is no such SDK, it is not installed, or does not know the baud rate.
+            UsageError: The SDK is unknown or not installed, or does not support the baud rate.
         """
         port = self.port_handler(sdk, bus)(self._url(bus))
         if not port.setBaudRate(baud):
-            raise UsageError(f"the {sdk} SDK knows no baud rate of {baud}")
+            raise UsageError(f"the {sdk} SDK does not support {baud} baud")
         self._sdk_ports.append(port)
         return port
 
     def port_handler(self, sdk: Sdk, bus: str = "") -> type[Any]:
-        """Return a PortHandler class whose ports all lead to a bus, whatever they are called.
+        """Return a PortHandler class whose instances open a bus, whatever their port name is.
 
-        For programs that make their PortHandler by themselves::
+        This is for programs that create their PortHandler themselves::
 
             monkeypatch.setattr(my_arm, "PortHandler", bus.port_handler("feetech"))
 
         Args:
             sdk: "dynamixel" (dynamixel_sdk) or "feetech" (scservo_sdk).
-            bus: Name of the bus, the first by default.
+            bus: Name of the bus; by default the first.
 
         Raises:
-            UsageError: There is no such SDK, or it is not installed.
+            UsageError: The SDK is unknown or not installed.
         """
         return port_handler_class(sdk, self._url(bus), self.clock)
 

@@ -1,8 +1,8 @@
-"""Emulated servos for programs that open a path: a process that lives as long as a test.
+"""Emulated servos on a pseudo-terminal, for programs that open a path.
 
 with ServoPty(servos="STS3215:1-6") as pty:
     subprocess.run(["my_program", "--port", pty.path], check=True)
-    assert pty.driven() == 0  # it has let go
+    assert pty.driven() == 0  # the program has switched torque off
 """
 
 import json
@@ -23,17 +23,17 @@ from windup.tools.testing.bus_options import BusOptions, bus_url
 
 SERVER = "windup.tools.testing.pty_server"
 PATIENCE = 60.0
-"""How long an answer of the emulator may take on a busy machine, s."""
+"""Longest time to wait for an answer of the emulator, s."""
 END = 10.0
-"""How long it may take to end, s."""
+"""Longest time to wait for its end before it is killed, s."""
 
 
 class PtyFaults(FaultMethods):
-    """What goes wrong from now on in a process that serves; `at` counts from now, s.
+    """The faults of a `ServoPty`; times (`at`) count from the call, s.
 
     Args:
-        inject: Takes a fault as text.
-        clear: Lets nothing go wrong any more.
+        inject: Adds a fault, given as text.
+        clear: Removes all faults.
     """
 
     def __init__(self, inject: Callable[[str], object], clear: Callable[[], object]) -> None:
@@ -41,43 +41,43 @@ class PtyFaults(FaultMethods):
 
     @property
     def now(self) -> float:
-        """Times count from the call, s."""
+        """The present time, s: 0, since times count from the call."""
         return 0.0
 
     def add(self, rule: Rule) -> Self:
         """Add a fault.
 
         Raises:
-            UsageError: It cannot happen on these buses.
+            UsageError: It refers to a bus, servos or an IMU that are not there.
         """
         self._inject(format_rule(rule))
         return self
 
     def clear(self) -> Self:
-        """Let nothing go wrong any more; what is broken stays broken."""
+        """Remove all faults; devices that are broken already stay broken."""
         self._clear()
         return self
 
 
 class ServoPty:
-    """Emulated buses on pseudo-terminals, in a process of their own, in real time.
+    """Emulated buses on pseudo-terminals, served in real time by a separate process.
 
-    For programs that open a path. Where a test can hand over a port instead, `ServoBus` is the
-    better choice: there time is virtual, and every run brings the same bytes.
+    This is for programs that open a path. If a test can pass an open port to the program, use
+    `ServoBus`: its time is virtual, and every run exchanges the same bytes.
 
     Args:
-        robot: Name of a robot, path of a folder with one, or "bench": `servos` alone.
-        path: Where the pseudo-terminal is to be found (several buses: with their name behind it);
-            in a new folder by default.
+        robot: Name of a robot, path of its folder, or "bench" for `servos` without a robot.
+        path: Path of the pseudo-terminal, to which the bus name is appended if there are several
+            buses; by default in a new temporary folder.
         **options: Servos, baud rate, latency, supply, faults, seed: see `BusOptions`.
 
     Attributes:
-        path: What a program opens; with several buses, that of the first.
-        paths: Name of the bus to the path.
-        faults: What goes wrong, one method for each kind of fault.
+        path: Path of the first bus.
+        paths: Paths by bus name.
+        faults: The faults, one method for each kind.
 
     Raises:
-        UsageError: An option cannot be, or something is at the path already.
+        UsageError: An option is not possible, or the path exists already.
     """
 
     def __init__(
@@ -95,7 +95,7 @@ class ServoPty:
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
-            start_new_session=True,  # Ctrl-C is for the test
+            start_new_session=True,  # Ctrl-C is sent to the test only
         )
         self.faults = PtyFaults(
             lambda text: self._ask({"inject": text}), lambda: self._ask({"clear": True})
@@ -108,11 +108,11 @@ class ServoPty:
         self.path = next(iter(self.paths.values()))
 
     def driven(self) -> int:
-        """Return how many motors are driven now: 0 is what a program should leave behind."""
+        """Return the number of motors that are driven now; 0 after a program that ended safely."""
         return int(self._ask({"driven": True})["driven"])
 
     def close(self) -> None:
-        """End the process and take its paths away. Closing twice is no error."""
+        """End the process and remove its paths; a second call has no effect."""
         stdin, stdout = self._process.stdin, self._process.stdout
         assert stdin is not None and stdout is not None
         stdin.close()
@@ -138,8 +138,8 @@ class ServoPty:
         """Return the next answer.
 
         Raises:
-            UsageError: The order cannot be carried out.
-            PortError: The process has ended, or is silent.
+            UsageError: The order is not possible.
+            PortError: The process has ended or does not answer.
         """
         stdout = self._process.stdout
         assert stdout is not None

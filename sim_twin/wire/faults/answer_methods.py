@@ -8,9 +8,9 @@ from windup.sim_twin.wire.faults.fault_rule import Rule, make_rule
 
 
 class AnswerFaultMethods(ABC):
-    """Faults of answers on their way, and of what the host sends.
+    """Adds faults of status packets in transit, and of the bytes that the host sends.
 
-    Every method adds one kind of fault and returns the object, so that calls can be chained:
+    Each method adds one fault and returns the object, so that calls can be chained:
     ``bus.faults.drop(rate=0.02, ids=[7]).corrupt(rate=0.001)``. All take the keywords of `Who`:
     ``rate`` (share of the answers, 0 to 1; 0.01 by default) or ``at`` (s), ``ids``, ``bus``.
     """
@@ -20,11 +20,11 @@ class AnswerFaultMethods(ABC):
         """Add a fault."""
 
     def drop(self, **who: Unpack[Who]) -> Self:
-        """Lose whole answers: the host runs into its time-out."""
+        """Lose whole answers, so that the host times out."""
         return self.add(make_rule("drop", **who))
 
     def corrupt(self, **who: Unpack[Who]) -> Self:
-        """Change one byte of an answer, anywhere: most often its checksum fails."""
+        """Change one random byte of an answer; its checksum usually fails."""
         return self.add(make_rule("corrupt", **who))
 
     def cut(self, **who: Unpack[Who]) -> Self:
@@ -32,29 +32,29 @@ class AnswerFaultMethods(ABC):
         return self.add(make_rule("cut", **who))
 
     def noisy(self, **who: Unpack[Who]) -> Self:
-        """Put one to eight random bytes before an answer."""
+        """Insert one to eight random bytes before an answer."""
         return self.add(make_rule("noise", **who))
 
     def late(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
-        """Let a servo answer late; those behind it in a sync read wait.
+        """Delay the answer of a servo, and of the servos after it in a sync read.
 
         Args:
-            seconds: How much later its answer begins, s; 0.002 by default.
+            seconds: Additional delay, s; 0.002 by default.
             **who: See `Who`.
         """
         return self.add(make_rule("late", seconds=seconds, **who))
 
     def delay(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
-        """Let the adapter hold back an answer and everything behind it, as a busy USB hub does.
+        """Delay the delivery of an answer and of all later bytes, as a busy USB hub does.
 
         Args:
-            seconds: For how long, s; 0.004 by default.
+            seconds: Delay, s; 0.004 by default.
             **who: See `Who`.
         """
         return self.add(make_rule("delay", seconds=seconds, **who))
 
     def wrong_id(self, **who: Unpack[Who]) -> Self:
-        """Have an answer come under another id, with a checksum that fits."""
+        """Change the id of an answer, and its checksum accordingly."""
         return self.add(make_rule("wrong_id", **who))
 
     def wrong_length(self, **who: Unpack[Who]) -> Self:
@@ -62,50 +62,50 @@ class AnswerFaultMethods(ABC):
         return self.add(make_rule("wrong_length", **who))
 
     def glue(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
-        """Let the adapter hold back an answer until the next one is there.
+        """Deliver an answer together with the next one.
 
         Args:
-            seconds: For how long at most, s; 0.004 by default.
+            seconds: Longest delay, s; 0.004 by default.
             **who: See `Who`.
         """
         return self.add(make_rule("glue", seconds=seconds, **who))
 
     def longer(self, **who: Unpack[Who]) -> Self:
-        """Put a few bytes too many into an answer, with a checksum that fits."""
+        """Append a few bytes to the data of an answer; length and checksum fit."""
         return self.add(make_rule("longer", **who))
 
     def shorter(self, **who: Unpack[Who]) -> Self:
-        """Leave a few bytes of data out of an answer, with a checksum that fits."""
+        """Remove the last bytes of the data of an answer; length and checksum fit."""
         return self.add(make_rule("shorter", **who))
 
     def zeros(self, **who: Unpack[Who]) -> Self:
-        """Let all data of an answer be zero, with a checksum that fits."""
+        """Set all data of an answer to zero; the checksum fits."""
         return self.add(make_rule("zeros", **who))
 
     def stale(self, **who: Unpack[Who]) -> Self:
-        """Have a servo repeat its last answer of the same length."""
+        """Repeat the servo's previous answer of the same length."""
         return self.add(make_rule("stale", **who))
 
     def jump(self, **who: Unpack[Who]) -> Self:
-        """Change one byte of the data of an answer, with a checksum that fits."""
+        """Change one byte of the data of an answer; the checksum fits."""
         return self.add(make_rule("jump", **who))
 
     def twice(self, **who: Unpack[Who]) -> Self:
-        """Have an answer come twice."""
+        """Deliver an answer twice."""
         return self.add(make_rule("twice", **who))
 
     def late_byte(self, seconds: float | None = None, **who: Unpack[Who]) -> Self:
-        """Let the adapter hold back one byte of an answer, and what comes behind it.
+        """Delay the delivery of one random byte of an answer and of all later bytes.
 
         Args:
-            seconds: For how long, s; 0.02 by default.
+            seconds: Delay, s; 0.02 by default.
             **who: See `Who`.
         """
         return self.add(make_rule("late_byte", seconds=seconds, **who))
 
     def echo(self, **when: Unpack[When]) -> Self:
-        """Let the adapter give the host back what it sends, as a bare half-duplex line does.
+        """Echo the host's own bytes back to it, as a half-duplex line without a switch does.
 
-        Here `rate` is a share of the requests: 1 is a line that always echoes.
+        Here `rate` is a share of the requests: with 1 the line always echoes.
         """
         return self.add(make_rule("echo", **when))

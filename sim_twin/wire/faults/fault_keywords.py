@@ -1,4 +1,4 @@
-"""The keywords that the fault methods share."""
+"""The keywords that all fault methods accept."""
 
 from collections.abc import Iterable
 from typing import TypedDict
@@ -7,14 +7,14 @@ from windup.sim_twin.wire.faults.fault_rule import Times
 
 
 class When(TypedDict, total=False):
-    """How often a fault happens, or when.
+    """Rate or times of a fault.
 
     Attributes:
-        rate: Share of the answers that it hits, 0 to 1. By default 0.01 for a fault of answers; an
-            event (`dead`, `overload`, `unplug`, ...) happens once, now, unless a rate is given.
-        at: Instead of a rate the world's time, s, or several: the first answer from then on is
-            hit, or servos, supply and adapter at that very moment.
-        bus: Name of the bus it is confined to; all by default.
+        rate: Share of the answers that are hit, 0 to 1. The default is 0.01 for a fault of answers;
+            an event (`dead`, `overload`, `unplug`, ...) without a rate happens once, now.
+        at: One or several times in the world instead of a rate, s: the first answer from then on is
+            hit; an event happens at that time.
+        bus: Name of the bus that the fault is limited to; all buses by default.
     """
 
     rate: float
@@ -23,10 +23,10 @@ class When(TypedDict, total=False):
 
 
 class Who(When, total=False):
-    """How often or when, and whom.
+    """Rate or times of a fault, and its targets.
 
     Attributes:
-        ids: The servo ids that can be hit; all by default.
+        ids: Ids of the devices that can be hit; all by default.
     """
 
     ids: Iterable[int]

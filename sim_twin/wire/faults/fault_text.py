@@ -39,7 +39,7 @@ def parse_rules(text: str, live: bool = False) -> list[Rule]:
 
 
 def format_rule(rule: Rule) -> str:
-    """Return the text of which `parse_rules` makes the same fault again.
+    """Return a fault as text, in the form that `parse_rules` reads.
 
     >>> format_rule(make_rule("unplug", at=2.5, seconds=1.0))
     'unplug:at=2.5:seconds=1.0'

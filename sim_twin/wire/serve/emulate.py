@@ -92,7 +92,7 @@ class Emulator:
         self._order(partial(self._begin, rules))
 
     def clear_faults(self) -> None:
-        """Let nothing go wrong any more; what is broken stays broken. Any thread may call this."""
+        """Remove all faults, from any thread; devices that are broken already stay broken."""
         self._order(self.world.faults.clear)
 
     def run(self) -> None:
@@ -178,7 +178,7 @@ class Emulator:
             outlet.feed()
 
     def _order(self, what: Callable[[], object]) -> None:
-        """Have the thread that serves do something soon."""
+        """Queue a call for the thread that runs `run`, and wake it."""
         self._orders.put(what)
         os.write(self._wake_write, b"i")
 
@@ -189,7 +189,7 @@ class Emulator:
             self._orders.get()()
 
     def _begin(self, rules: list[Rule]) -> None:
-        """Let begin what was injected; its times count from now."""
+        """Add injected faults, whose times count from now."""
         self.world.faults.inject(rules, self.world.now)
 
 
