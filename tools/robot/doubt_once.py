@@ -5,8 +5,8 @@ import shlex
 from pathlib import Path
 
 from windup.robots import RobotDescription
-from windup.robots.description import FOLDER
 from windup.robots.doubts import doubts
+from windup.robots.folders import FOLDER
 
 _looked_at: set[Path] = set()
 
