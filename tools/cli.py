@@ -14,6 +14,7 @@ from windup.tools.command_line.version import installed_version
 from windup.tools.stopping.interrupts import end_on_signals, ignore_signals
 from windup.tools.terminal.result import print_result
 from windup.tools.terminal.run_notes import NOTES
+from windup.tools.terminal.say import say
 from windup.tools.terminal.streams import drop_unwritten, fill_closed_streams
 from windup.tools.terminal.writing import check_writable
 
@@ -46,7 +47,7 @@ def run(arguments: list[str] | None = None) -> int:
         return _say_lost(status)
     except WindupError as error:
         _say_warnings(error.kind if isinstance(error, UnwellError) else "")
-        _say(f"windup: {error}")
+        say(f"windup: {error}")
         if command is None:
             _write_unparsed(words, error)
         else:
@@ -54,19 +55,12 @@ def run(arguments: list[str] | None = None) -> int:
         return error.exit_status
     except KeyboardInterrupt:
         _say_warnings()
-        _say("windup: interrupted")
+        say("windup: interrupted")
         return 130
     except BrokenPipeError:
         return 1  # whoever read our words, such as `head`, has gone
     except SystemExit as parsed:
         return parsed.code if isinstance(parsed.code, int) else 2
-
-
-def _say(text: str) -> None:
-    """Print a line on standard error."""
-    from windup.tools.terminal.output import console  # slow: it imports rich
-
-    console.print(text, markup=False, soft_wrap=True)
 
 
 def _quiet_mujoco() -> None:
@@ -81,13 +75,13 @@ def _quiet_mujoco() -> None:
 def _say_warnings(ended_by: str = "") -> None:
     """Print what there was to warn about, but for the kind of what ended the run."""
     if said := NOTES.said(ended_by):
-        _say(f"warning: {said}")
+        say(f"warning: {said}")
 
 
 def _say_lost(status: int) -> int:
     """Print which results could not be written; return the exit status, 1 if it was 0."""
     for why in filter(None, NOTES.lost):
-        _say(f"windup: {why}")
+        say(f"windup: {why}")
     return status or int(bool(NOTES.lost))
 
 

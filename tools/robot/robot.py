@@ -41,6 +41,7 @@ LATER: Final = (
     "windup.control.falling.protection",
     "windup.sim_twin.wire.world.worlds",
     "windup.tools.assembly.supervise",
+    "windup.tools.terminal.output",
 )
 """Modules that only some runs use, imported by `open` so that no run of an armed robot waits."""
 START_SECONDS = 1.0
