@@ -7,8 +7,7 @@ from typing import Annotated, Any
 import tyro
 from rich.table import Table
 
-from windup.robots import load_robot, robot_names
-from windup.robots.folders import FOLDER
+from windup.robots.folders import FOLDER, robot_names
 from windup.robots.summary import summarise
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
@@ -28,7 +27,8 @@ class Robots(Command):
         found: list[str] | None = None
         folders = [FOLDER / name for name in robot_names()]
         if self.robot is not None:
-            from windup.robots.doubts import doubts  # imports MuJoCo, which the list does not need
+            from windup.robots import load_robot  # imports MuJoCo, which the list does not need
+            from windup.robots.doubts import doubts
 
             robot = load_robot(self.robot)
             folders, found = [robot.folder], doubts(robot)

@@ -58,6 +58,11 @@ def test_hal_and_servos_on_a_bench_need_no_mujoco(program: str) -> None:
     assert ran.returncode == 0, ran.stderr
 
 
+def test_robots_are_listed_without_mujoco() -> None:
+    ran = run_without(("mujoco",), "from windup.tools.cli import main; main(['robots'])")
+    assert ran.returncode == 0 and "op3" in ran.stderr, ran.stderr
+
+
 def test_servos_on_a_bench_are_served_without_mujoco() -> None:
     words = ["emulate", "--servos", "STS3215:1-6", "--tcp", "0"]
     program = f"from windup.tools.cli import main; main({words})"
