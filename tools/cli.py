@@ -86,7 +86,7 @@ def _say_lost(status: int) -> int:
 
 
 def _write_unparsed(arguments: list[str], error: WindupError) -> None:
-    """Tell programs that their command line could not be understood."""
+    """Tell programs that their command line could not be decode."""
     if "--json" in arguments[:-1]:
         _write_record(Path(arguments[arguments.index("--json") + 1]), arguments[0], error)
 

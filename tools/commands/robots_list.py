@@ -18,26 +18,19 @@ class Robots(Command):
     """List the robots and what they can do."""
 
     robot: Annotated[str | None, tyro.conf.Positional, tyro.conf.arg(metavar="[ROBOT]")] = None
-    """Only this one, by name or folder, and what is doubtful about its MJCF."""
+    """Only this one, by name or folder; `windup check FOLDER` says what is wrong with it."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
     def run(self) -> int:
         """List the robots; return the exit status."""
-        found: list[str] | None = None
         folders = [FOLDER / name for name in robot_names()]
         if self.robot is not None:
             from windup.robots import load_robot  # imports MuJoCo, which the list does not need
-            from windup.robots.doubts import doubts
 
-            robot = load_robot(self.robot)
-            folders, found = [robot.folder], doubts(robot)
+            folders = [load_robot(self.robot).folder]
         rows = [summarise(folder)._asdict() for folder in folders]
         console.print(_table(rows))
-        for doubt in found or []:
-            console.print(f"warning: {doubt}", markup=False, soft_wrap=True)
-        if found is not None:
-            rows[0]["doubts"] = found
         write_json(self.json, "robots", {"robots": rows})
         return 0
 
