@@ -33,13 +33,13 @@ def read_position(port: Any, servo: int) -> int:
 
 
 def test_it_reads_a_position(servo_bus):
-    bus = servo_bus("bench", servos="STS3215:1-3")
+    bus = servo_bus(servos="STS3215:1-3")
     with bus.serial() as port:
         assert read_position(port, 2) == pytest.approx(COUNTS // 2, abs=2)
 
 
 def test_it_tries_again_where_answers_are_lost(servo_bus):
-    bus = servo_bus("bench", servos="STS3215:1-3", seed=1)
+    bus = servo_bus(servos="STS3215:1-3", seed=1)
     bus.faults.drop(rate=0.2).corrupt(rate=0.1)
     with bus.serial() as port:
         for servo in (1, 2, 3) * 5:
@@ -48,7 +48,7 @@ def test_it_tries_again_where_answers_are_lost(servo_bus):
 
 
 def test_it_names_the_servo_that_is_dead(servo_bus):
-    bus = servo_bus("bench", servos="STS3215:1-3")
-    bus.faults.dead(ids=[3], at=0.0)
+    bus = servo_bus(servos="STS3215:1-3")
+    bus.faults.dead(ids=[3])  # now
     with bus.serial() as port, pytest.raises(ServoSilentError, match="servo 3"):
         read_position(port, 3)
