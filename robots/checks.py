@@ -15,6 +15,7 @@ from windup.hal.families import family_of
 from windup.hal.servos import servo_names
 from windup.robots import mjcf
 from windup.robots.couplings import coupling_mistakes
+from windup.robots.imu import imu_mistakes
 from windup.robots.limits import travel_mistakes
 from windup.robots.records import Foot, JointEntry, RobotFile
 from windup.robots.structure import mistakes
@@ -201,6 +202,8 @@ class Checks:
         if imu is None:
             return
         self._known("imu.site", "site", imu.site, mjcf.names(self.model, "site"))
+        for key, mistake in imu_mistakes(imu, self.robot.bus):
+            self._fail(key, mistake)
         for key, kind in IMU_SENSORS.items():
             if (name := getattr(imu, key)) is not None:
                 self._sensor(f"imu.{key}", name, kind)

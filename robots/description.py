@@ -12,6 +12,7 @@ from windup.hal.config import load_toml
 from windup.hal.contacts import ContactSensors
 from windup.hal.errors import UnknownNameError, UsageError
 from windup.hal.guard import HealthLevels, StopPolicy
+from windup.hal.imu.kind import ImuKind
 from windup.hal.joints import Array, Joint, Joints
 from windup.hal.mirror import Mirror
 from windup.hal.servos import servo_model
@@ -19,6 +20,7 @@ from windup.hal.servos.servo_model import ServoMount
 from windup.robots import mjcf, structure
 from windup.robots.checks import Checks, whole_steps
 from windup.robots.completion import complete, complete_for
+from windup.robots.imu import imu_of
 from windup.robots.limits import with_limits
 from windup.robots.mirror import mirror_map
 from windup.robots.records import (
@@ -112,6 +114,11 @@ class RobotDescription:
             ConfigError: The robot is not symmetric.
         """
         return mirror_map(self.joints.names, self.axes)
+
+    @cached_property
+    def imu_kind(self) -> ImuKind | None:
+        """What its IMU is, mounted as in this robot; None without one."""
+        return imu_of(self.imu, self.buses)
 
     @cached_property
     def health(self) -> HealthLevels:

@@ -143,9 +143,21 @@ class Imu(Record, frozen=True):
     """The IMU: the site it sits at and the names of its sensors in the MJCF.
 
     A gyroscope and an accelerometer that the MJCF lacks are added, where the file names none.
+
+    Attributes:
+        site: A site whose axes are the base's.
+        kind: What it is: opencr, bno08x_rvc, bno055 or open_duck. By default an OpenCR where the
+            first bus has protocol "dynamixel2" or there is none, and a BNO08x elsewhere.
+        mounting: The axes of the IMU that point along the base's x (forward), y (left) and z (up),
+            such as ["-y", "x", "z"]; by default those of its kind.
+        gyro: Name of a sensor in the MJCF.
+        accelerometer: Name of a sensor in the MJCF.
+        orientation: Name of a sensor in the MJCF, if it has one.
     """
 
     site: str
+    kind: str | None = None
+    mounting: tuple[str, str, str] | None = None
     gyro: str = GYRO
     accelerometer: str = ACCELEROMETER
     orientation: str | None = None

@@ -1,42 +1,23 @@
 """What a real IMU does to the twin's true motion: a low-pass filter, noise, bias, and counts."""
 
-from dataclasses import dataclass
-from math import pi, radians
+from math import pi
 
 import numpy as np
 
-from windup.hal.imu.opencr import ACCELERATION, CUTOFF, GYRO
+from windup.hal.imu.kind import ImuKind
+from windup.hal.imu.opencr import OPENCR
 from windup.hal.joints import Array
+from windup.robots import RobotDescription
 
 
-@dataclass(frozen=True)
-class ImuFigures:
-    """Figures of an IMU, gyro and accelerometer; the biases are standard deviations.
+def imu_on_twin(robot: RobotDescription) -> ImuKind:
+    """Return the IMU that a twin without a wire has where its robot's state is estimated.
 
-    Attributes:
-        cutoff: Of its low-pass filter, taken as one of first order, Hz.
-        noise: Densities, rad/s and m/s2 in a root of hertz.
-        bias: rad/s and m/s2, on each axis.
-        unit: One count, rad/s and m/s2.
+    A twin feels rates and accelerations. For a robot whose IMU sends no rates, or that has none,
+    that is an OpenCR; behind ``twin://`` it has its own.
     """
-
-    cutoff: float
-    noise: tuple[float, float]
-    bias: tuple[float, float]
-    unit: tuple[float, float]
-
-    @property
-    def lag(self) -> float:
-        """Delay of the filter, s."""
-        return 1.0 / (2.0 * pi * self.cutoff)
-
-
-OPENCR = ImuFigures(
-    cutoff=CUTOFF,
-    noise=(radians(0.01), 300e-6 * 9.80665),  # its data sheet
-    bias=(radians(0.3), 0.05),  # our guess of what the calibration at rest leaves
-    unit=(GYRO, ACCELERATION),
-)
+    kind = robot.imu_kind
+    return kind if kind is not None and kind.gyroscope else OPENCR
 
 
 class LowPass:
@@ -67,7 +48,7 @@ class ImuErrors:
     """Turns true motion into samples.
 
     Args:
-        figures: The IMU.
+        kind: The IMU.
         timestep: Time between two calls of `feel`, s.
         seed: Seed of its noise and biases.
 
@@ -75,13 +56,13 @@ class ImuErrors:
         bias: (6,) rad/s and m/s2.
     """
 
-    def __init__(self, figures: ImuFigures, timestep: float, seed: int = 0) -> None:
+    def __init__(self, kind: ImuKind, timestep: float, seed: int = 0) -> None:
         self._random = np.random.default_rng(seed)
-        self._filter = LowPass(figures.lag, timestep)
-        bandwidth = 0.5 * pi * figures.cutoff
-        self._noise = np.repeat(figures.noise, 3) * bandwidth**0.5
-        self._unit = np.repeat(figures.unit, 3)
-        self.bias = self._random.normal(size=6) * np.repeat(figures.bias, 3)
+        self._filter = LowPass(kind.lag, timestep)
+        bandwidth = 0.5 * pi * kind.cutoff
+        self._noise = np.repeat(kind.noise, 3) * bandwidth**0.5
+        self._unit = np.repeat(kind.unit, 3)
+        self.bias = self._random.normal(size=6) * np.repeat(kind.bias, 3)
 
     def feel(self, motion: Array) -> None:
         """Take the true rates and accelerations (6,) of one time step."""

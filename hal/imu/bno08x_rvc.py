@@ -21,10 +21,14 @@ from typing import NamedTuple
 import numpy as np
 
 from windup.hal.imu.frame_clock import FrameClock
+from windup.hal.imu.kind import ImuKind
+from windup.hal.imu.mounting import Mounting
 from windup.hal.imu.quaternion import between, conjugate, euler_zxy, multiply, rotate
+from windup.hal.imu.serial_link import SerialLink
 from windup.hal.joints import Array
 from windup.hal.observation import ImuState
 from windup.hal.port.port import Port
+from windup.hal.port.replug import Opener
 
 HEADER = b"\xaa\xaa"
 LENGTH = 19
@@ -127,6 +131,10 @@ class Bno08xRvc:
         self._index, self._seen, self._at = 0, -np.inf, -np.inf
         self.implausible = 0
 
+    def connect(self, opener: Opener) -> SerialLink:
+        """Open its port; see `ImuSource`."""
+        return SerialLink(self, opener)
+
     def attach(self, port: Port) -> None:
         """Listen on `port` from now on; a frame begun on another port is forgotten."""
         self._port = port
@@ -177,3 +185,20 @@ class Bno08xRvc:
         if self._before is None:
             return np.zeros(3)
         return between(self._before, orientation) / (frames * PERIOD) if recent else None
+
+
+def _mounted(url: str, mounting: Mounting) -> Bno08xRvc:
+    return Bno08xRvc(url, mounting.quaternion)
+
+
+BNO08X_RVC = ImuKind(
+    name="bno08x_rvc",
+    wiring="serial",
+    rate=1.0 / PERIOD,
+    cutoff=CUTOFF,
+    noise=(0.0, 0.0),  # a frame's resolution is coarser
+    bias=(0.0, 0.05),  # our guess of what the calibration at rest leaves
+    unit=(DEGREE / PERIOD, ACCELERATION),
+    gyroscope=False,
+    driver=_mounted,
+)

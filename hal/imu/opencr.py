@@ -6,11 +6,12 @@ attitude is the estimator's business.
 """
 
 from dataclasses import dataclass
-from math import pi
+from math import pi, radians
 
 import numpy as np
 
-from windup.hal.joints import Array
+from windup.hal.imu.kind import ImuKind
+from windup.hal.imu.mounting import Mounting
 from windup.hal.observation import ImuState
 from windup.hal.protocols.protocol2 import Span
 from windup.hal.registers import Register
@@ -21,6 +22,8 @@ GYRO = 2000.0 / 32800.0 * pi / 180.0
 """rad/s of one count."""
 ACCELERATION = 2.0 / 32768.0 * 9.80665
 """m/s2 of one count."""
+IN_OP3 = Mounting(("-x", "-y", "z"))
+"""How the chip of its board is turned in the body of an OP3."""
 POWER = Register("dynamixel_power", 24, 1)
 """1: the servos of the bus have power."""
 POWER_UP_TIME = 0.5
@@ -44,12 +47,12 @@ class OpenCr:
     Attributes:
         bus: Name of its bus.
         id: Its id there.
-        signs: (3,) sign of each axis of the chip in the body frame.
+        mounting: How the chip is turned in the body; by default as in an OP3.
     """
 
     bus: str
     id: int = 200
-    signs: tuple[int, int, int] = (-1, -1, 1)
+    mounting: Mounting = IN_OP3
 
     @property
     def span(self) -> Span:
@@ -59,7 +62,7 @@ class OpenCr:
     @property
     def lag(self) -> float:
         """Delay of the sensor's own filter, taken as one of first order, s."""
-        return 1.0 / (2.0 * pi * CUTOFF)
+        return OPENCR.lag
 
     def buttons(self, data: bytes) -> tuple[str, ...]:
         """Return the names of the buttons that are down in the bytes of `span`."""
@@ -69,5 +72,17 @@ class OpenCr:
     def decode(self, data: bytes, age: float) -> ImuState:
         """Return the sample in the bytes of `span`, `age` s old, in the body frame."""
         counts = np.frombuffer(data, "<i2", count=6, offset=2).astype(np.float64)
-        signs: Array = np.array(self.signs, dtype=np.float64)
-        return ImuState(None, counts[:3] * signs * GYRO, counts[3:] * signs * ACCELERATION, age)
+        body = self.mounting.body
+        return ImuState(None, body(counts[:3]) * GYRO, body(counts[3:]) * ACCELERATION, age)
+
+
+OPENCR = ImuKind(
+    name="opencr",
+    wiring="board",
+    rate=1000.0,  # the firmware's loop over the chip
+    cutoff=CUTOFF,
+    noise=(radians(0.01), 300e-6 * 9.80665),  # data sheet of the MPU9250, tables 1 and 2
+    bias=(radians(0.3), 0.05),  # our guess of what the calibration at rest leaves
+    unit=(GYRO, ACCELERATION),
+    axes=IN_OP3.axes,
+)

@@ -13,9 +13,8 @@ from windup.hal.command import JointCommand, shifted_goal
 from windup.hal.coupling import Coupling, Couplings
 from windup.hal.errors import HardwareError, PortError
 from windup.hal.heartbeat import Heartbeat, beating, no_heartbeat
-from windup.hal.imu.imu_link import ImuLink
 from windup.hal.imu.opencr import OpenCr
-from windup.hal.imu.source import ImuSource
+from windup.hal.imu.source import ImuConnection, ImuSource
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 from windup.hal.port.open_port import open_port
@@ -53,7 +52,7 @@ class ServoBackend:
         ports: Bus name to its port.
         supply: Voltage for which stiffness is turned into P registers, V.
         board: The OpenCR, read with the servos of its bus.
-        imu: An IMU on a port of its own.
+        imu: An IMU with a connection of its own.
         couplings: Joints that two servos move together.
         watchdog: Silence after which a bus watchdog freezes the pose, torque on, s; 0 for none.
         contacts: Number of contact sensors that observations have room for; none is measured.
@@ -94,7 +93,7 @@ class ServoBackend:
         self._ports, self._opener, self._watchdog = dict(ports), opener, watchdog
         self.clock: Clock = WallClock()
         self.links: list[BusConnection] = []
-        self._imu_link: ImuLink | None = None
+        self._imu_link: ImuConnection | None = None
         self._alerts = ServoAlerts(joints, self.mounts)
         self.button = StopButton()
         self._torque = JointTorque(joints, self._couplings)

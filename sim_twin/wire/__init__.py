@@ -1,7 +1,12 @@
-"""Emulated servos on a bus. Importing this makes ``twin://`` a port that pyserial can open."""
+"""Emulated servos on a bus. Importing this makes ``twin://`` a port that pyserial can open.
+
+An IMU on I2C is opened by the same URL, see `windup.hal.imu.i2c`.
+"""
 
 import serial
 
+from windup.hal.imu.i2c import HANDLERS as I2C_HANDLERS
+from windup.sim_twin.wire.serve.i2c import open_twin_i2c
 from windup.sim_twin.wire.world.address import Address, parse_address
 from windup.sim_twin.wire.world.build import build_world
 from windup.sim_twin.wire.world.bus_world import BusWorld
@@ -10,6 +15,7 @@ from windup.sim_twin.wire.world.worlds import drop_world, find_world, put_world
 HANDLERS = f"{__name__}.serve"
 if HANDLERS not in serial.protocol_handler_packages:
     serial.protocol_handler_packages.append(HANDLERS)
+I2C_HANDLERS["twin"] = open_twin_i2c
 
 __all__ = [
     "Address",

@@ -41,7 +41,12 @@ def body_of(robot: RobotDescription) -> Body:
 
 
 def build_estimator(
-    robot: RobotDescription, lag: float, *, switches: bool = True, attitude: bool = False
+    robot: RobotDescription,
+    lag: float,
+    *,
+    switches: bool = True,
+    attitude: bool = False,
+    apart: bool = False,
 ) -> BaseEstimator:
     """Return what estimates the base of `robot` from its sensors.
 
@@ -50,6 +55,7 @@ def build_estimator(
         lag: Delay of its IMU's own filter, s.
         switches: Its contact sensors exist; without them the soles' heights tell who stands.
         attitude: Its IMU tells its attitude and has no gyroscope.
+        apart: Its IMU is on no servo bus: it is not read with the joints.
 
     Raises:
         StateMissingError: The robot has no IMU or no feet, is fixed, or has passive joints.
@@ -67,10 +73,9 @@ def build_estimator(
         load,
         model.site(robot.imu.site).pos.copy(),
         lag=lag,
-        # What is no gyroscope has no bias; and what is on no servo bus is not read with the joints.
-        noise=ImuNoise(start_bias=0.0, drift=0.0) if attitude else None,
+        noise=ImuNoise(start_bias=0.0, drift=0.0) if attitude else None,  # no gyroscope, no bias
         fused=attitude,
-        read=robot.drive.wire_delay if attitude else 0.0,
+        read=robot.drive.wire_delay if apart else 0.0,
     )
 
 

@@ -16,7 +16,7 @@ from windup.hal.joints import Array
 from windup.hal.observation import BaseState, Observation
 from windup.robots import load_robot
 from windup.sim_twin.backend import TwinBackend
-from windup.sim_twin.imu_errors import OPENCR, ImuErrors
+from windup.sim_twin.imu_errors import ImuErrors, imu_on_twin
 from windup.sim_twin.sensors import Sensors
 from windup.tools.assembly.build import build_estimator, build_walk
 from windup.tools.assembly.walk_options import WalkOptions
@@ -189,9 +189,10 @@ class Estimate(Command):
             referee = Referee(estimator, TwinStateSource(Sensors(robot.twin)), listen)
             robot.stack = replace(robot.stack, estimator=referee)
             return referee
-        errors = ImuErrors(OPENCR, robot.twin.timestep, self.seed)
+        felt = imu_on_twin(robot.description)
+        errors = ImuErrors(felt, robot.twin.timestep, self.seed)
         backend = TwinBackend(robot.twin, imu_errors=errors)
-        estimator = build_estimator(robot.description, OPENCR.lag, switches=self.switches)
+        estimator = build_estimator(robot.description, felt.lag, switches=self.switches)
         referee = Referee(estimator, None, listen)
         guarded = replace(robot.backend, backend=backend)
         robot.stack = replace(robot.stack, backend=guarded, estimator=referee)

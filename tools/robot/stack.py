@@ -10,14 +10,15 @@ import windup.sim_twin.wire as wire
 from windup.control.loop import Estimator
 from windup.hal.errors import UsageError
 from windup.hal.guard import GuardedBackend, HealthWatch, SafetyLimits
-from windup.hal.imu.bno08x_rvc import Bno08xRvc
+from windup.hal.imu.kind import ImuKind
 from windup.hal.imu.opencr import OpenCr
+from windup.hal.imu.source import ImuSource
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
 from windup.hal.torque_state import TorqueState
 from windup.robots import RobotDescription
 from windup.sim_twin.backend import TwinBackend
 from windup.sim_twin.environment import Environment
-from windup.sim_twin.imu_errors import OPENCR, ImuErrors
+from windup.sim_twin.imu_errors import ImuErrors, imu_on_twin
 from windup.sim_twin.sensors import Sensors
 from windup.sim_twin.twin import Twin
 from windup.tools.assembly.build import build_estimator
@@ -88,8 +89,9 @@ def twin_stack(
     twin = Twin(robot, delay=delay, world=world)
     twin.reset(noise=noise, seed=seed)
     true = state == "true"
-    errors = None if true else ImuErrors(OPENCR, twin.timestep, seed)
-    estimator = None if true else build_estimator(robot, OPENCR.lag)
+    felt = imu_on_twin(robot)
+    errors = None if true else ImuErrors(felt, twin.timestep, seed)
+    estimator = None if true else build_estimator(robot, felt.lag)
     backend = _guarded(TwinBackend(twin, paced=paced, true_base=true, imu_errors=errors), robot)
     delay = robot.drive.command_delay if delay is None else delay
     return Stack(backend, twin, estimator, delay + robot.drive.sensor_delay)
@@ -132,8 +134,7 @@ def wire_stack(
     try:
         backend.connect()
         twin = _twin_behind(world) if emulated else None
-        sensor = servos.board or servos.imu
-        estimator = _estimator(robot, twin, state, 0.0 if sensor is None else sensor.lag)
+        estimator = _estimator(robot, twin, state)
         if twin is not None:
             begin_noisily(world, twin, noise, seed)
         backend.configure()
@@ -145,9 +146,7 @@ def wire_stack(
     return Stack(backend, twin, estimator, delay, True, arm or emulated, world, given)
 
 
-def _estimator(
-    robot: RobotDescription, twin: Twin | None, state: State | None, lag: float
-) -> Estimator | None:
+def _estimator(robot: RobotDescription, twin: Twin | None, state: State | None) -> Estimator | None:
     """Return what fills in the base state behind a port; no servo bus carries foot switches."""
     if state is None and not can_estimate(robot):
         if not robot.fixed:
@@ -156,8 +155,14 @@ def _estimator(
             )
         return None
     if state != "true":
-        apart = not _imu_on_the_bus(robot)
-        return build_estimator(robot, lag, switches=False, attitude=apart)
+        kind = robot.imu_kind
+        return build_estimator(
+            robot,
+            0.0 if kind is None else kind.lag,
+            switches=False,
+            attitude=kind is not None and not kind.gyroscope,
+            apart=_has_own_connection(kind),
+        )
     if twin is None:
         raise UsageError("--state true needs a twin; a robot has `--state estimated`")
     return TwinStateSource(Sensors(twin))
@@ -188,14 +193,14 @@ def servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
         raise UsageError(f"{robot.name} has no servos on a wire; leave --port away")
     bauds = {bus.name: bus.baud for bus in robot.buses}
     urls = _urls(robot, port)
-    imu = urls.pop(IMU, None)
+    board, imu = _imu(robot, urls.pop(IMU, None))
     return ServoBackend(
         robot.joints,
         mounts,
         {name: BusPort(url, bauds[name]) for name, url in urls.items()},
         supply=robot.drive.supply,
-        board=OpenCr(robot.buses[0].name) if _imu_on_the_bus(robot) else None,
-        imu=Bno08xRvc(imu) if imu is not None else None,
+        board=board,
+        imu=imu,
         contacts=len(robot.contacts.names),
     )
 
@@ -213,13 +218,23 @@ def check_port(robot: RobotDescription, port: str) -> None:
             wire.parse_address(url)
 
 
-def _imu_on_the_bus(robot: RobotDescription) -> bool:
-    """An OP3's IMU hangs on the servo bus; other robots have a BNO08x on a port of its own."""
-    return robot.imu is not None and robot.buses[0].protocol == "dynamixel2"
+def _imu(robot: RobotDescription, url: str | None) -> tuple[OpenCr | None, ImuSource | None]:
+    """Return the driver of the robot's IMU: a board's, or one with a connection at `url`."""
+    kind = robot.imu_kind
+    if kind is None or not _has_own_connection(kind):
+        return (None if kind is None else OpenCr(robot.buses[0].name, mounting=kind.mounting)), None
+    if url is None or kind.driver is None:
+        return None, None
+    return None, kind.driver(url, kind.mounting)
+
+
+def _has_own_connection(kind: ImuKind | None) -> bool:
+    """Return whether an IMU has a connection of its own, beside the servo buses."""
+    return kind is not None and kind.wiring != "board"
 
 
 def _urls(robot: RobotDescription, port: str) -> dict[str, str]:
-    """Return the URL of each bus, and of the IMU where it has a port of its own.
+    """Return the URL of each bus, and of the IMU where it has a connection of its own.
 
     Raises:
         UsageError: The robot has no bus, a bus has no URL, or a name is no bus of the robot.
@@ -227,7 +242,7 @@ def _urls(robot: RobotDescription, port: str) -> dict[str, str]:
     names = [bus.name for bus in robot.buses]
     if not names:
         raise UsageError(f"{robot.name} has no servos on a bus; leave --port away for its twin")
-    apart = robot.imu is not None and not _imu_on_the_bus(robot)
+    apart = _has_own_connection(robot.imu_kind)
     first, equals, _ = port.partition("=")
     if equals and first in names:
         given = dict(part.partition("=")[::2] for part in port.split(","))

@@ -11,6 +11,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from windup.hal.imu.mounting import Mounting
+from windup.hal.imu.opencr import IN_OP3
 from windup.hal.joints import Array
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.imu.imu import GRAVITY, ImuSource
@@ -26,7 +28,6 @@ from windup.sim_twin.wire.servos.x_series import BAUD_RATES
 
 GYRO_UNIT = math.radians(2000.0 / 32800.0)  # rad/s a count
 ACCELERATION_UNIT = 2.0 / 32768.0 * GRAVITY  # m/s2 a count
-BODY_TO_CHIP = np.array([-1.0, -1.0, 1.0])  # signs, gyro and accelerometer alike
 MODE_BUTTON, START_BUTTON, USER_BUTTON = 0x01, 0x02, 0x04
 PRESENT = (30, 49)
 
@@ -65,6 +66,7 @@ class OpenCr:
         baud: Its baud rate.
         supply: Battery voltage, V.
         powered: Whether the servos have power from the start; on the robot they do not.
+        mounting: How its chip is turned in the body.
 
     Attributes:
         buttons: The buttons that are pressed.
@@ -79,8 +81,10 @@ class OpenCr:
         baud: int = 1_000_000,
         supply: float = 12.0,
         powered: bool = False,
+        mounting: Mounting = IN_OP3,
     ) -> None:
         self.imu, self.servos, self.supply = imu, tuple(servos), supply
+        self._chip = mounting.chip
         self.buttons = 0
         self.dead: list[Device] = []
         self.on_power: Callable[[bool], None] | None = None
@@ -151,8 +155,8 @@ class OpenCr:
     def sample(self) -> None:
         """Look at the IMU."""
         motion = self._motion
-        motion[0:3] = self.imu.angular_velocity * BODY_TO_CHIP / GYRO_UNIT
-        motion[3:6] = self.imu.acceleration * BODY_TO_CHIP / ACCELERATION_UNIT
+        motion[0:3] = self._chip(self.imu.angular_velocity) / GYRO_UNIT
+        motion[3:6] = self._chip(self.imu.acceleration) / ACCELERATION_UNIT
         motion[6:9] = 10.0 * np.degrees(roll_pitch_yaw(self.imu.orientation))
 
     def read(self, address: int, count: int, now: float) -> tuple[int, bytes]:

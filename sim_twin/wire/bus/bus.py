@@ -15,6 +15,7 @@ from windup.sim_twin.wire.bus.heard import Heard
 from windup.sim_twin.wire.bus.inbox import Burst, Inbox
 from windup.sim_twin.wire.bus.timing import Timing
 from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.imu.bno055 import Bno055Registers
 from windup.sim_twin.wire.imu.imu_faults import FaultyImu
 from windup.sim_twin.wire.schedule import Schedule
 
@@ -100,6 +101,7 @@ class Bus:
         spoken: The protocol of the frame that is being executed: who speaks another one does not
             hear it. None: all devices speak the same.
         imu: The IMU that a board on it reports, or that sends on it by itself.
+        chip: The chip that the IMU is where this is an I2C bus, which carries no bytes of servos.
         tap: Called with the direction (">" from the host), the baud rate and each burst of bytes.
     """
 
@@ -120,6 +122,7 @@ class Bus:
         self.plugged, self.plugs = True, 0
         self.spoken: int | None = None
         self.imu: FaultyImu | None = None
+        self.chip: Bno055Registers | None = None
         self.tap: Callable[[str, int, Burst], None] | None = None
         self._dice = random.Random(0)
         self._baud = baud

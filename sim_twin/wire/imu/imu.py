@@ -4,6 +4,8 @@ from typing import Protocol
 
 import numpy as np
 
+from windup.hal.imu.mounting import Mounting
+from windup.hal.imu.quaternion import multiply
 from windup.hal.joints import Array
 
 GRAVITY = 9.80665  # m/s2
@@ -40,3 +42,35 @@ class RestingImu:
     angular_velocity: Array = np.zeros(3)
     acceleration: Array = np.array([0.0, 0.0, GRAVITY])
     orientation: Array = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+class MountedImu:
+    """The same motion in the axes of an IMU that is turned in the body.
+
+    Args:
+        source: The motion in the body's axes.
+        mounting: How the IMU is turned.
+    """
+
+    def __init__(self, source: ImuSource, mounting: Mounting) -> None:
+        self._source, self._mounting = source, mounting
+
+    @property
+    def silent(self) -> bool:
+        """Whether it reports nothing now."""
+        return self._source.silent
+
+    @property
+    def angular_velocity(self) -> Array:
+        """(3,) rad/s."""
+        return self._mounting.chip(self._source.angular_velocity)
+
+    @property
+    def acceleration(self) -> Array:
+        """(3,) m/s2."""
+        return self._mounting.chip(self._source.acceleration)
+
+    @property
+    def orientation(self) -> Array:
+        """(4,) wxyz, IMU to world."""
+        return multiply(self._source.orientation, self._mounting.quaternion)

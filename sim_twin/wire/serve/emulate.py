@@ -191,6 +191,8 @@ def emulate(
 ) -> None:
     """Serve the world of an address, each of its buses on a plug, until `Emulator.stop`.
 
+    An IMU on I2C has no plug: other programs open only I2C buses of the kernel.
+
     Args:
         address: The world.
         pty: Path of the pseudo-terminal; with several buses, each has its name behind it.
@@ -203,9 +205,10 @@ def emulate(
         raise UsageError("an emulated bus needs a --pty PATH or a --tcp PORT, one of them")
     emulator = Emulator(build_world(address), journal, events)
     with contextlib.closing(emulator):
-        for k, bus in enumerate(emulator.world.buses):
+        serial = [name for name, bus in emulator.world.buses.items() if bus.chip is None]
+        for k, bus in enumerate(serial):
             if pty is not None:
-                alone = len(emulator.world.buses) == 1
+                alone = len(serial) == 1
                 emulator.plug(bus, partial(Pty, pty if alone else Path(f"{pty}-{bus}")))
             elif tcp is not None:
                 emulator.plug(bus, partial(Tcp, tcp + k if tcp else free_port()))

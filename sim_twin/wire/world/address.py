@@ -45,8 +45,8 @@ class Address:
             factory.
         physics: Of a robot: "mujoco", its twin, or "inertia", where each servo has nothing to do
             with the others.
-        imu: A BNO08x in UART-RVC mode on a port of its own, bus "imu": "rvc" or "none"; "auto": a
-            robot has one unless its servo bus has a board with an IMU.
+        imu: The IMU on a port of its own, bus "imu": "auto", the one that a robot's file says;
+            "rvc", a BNO08x in UART-RVC mode; or "none".
     """
 
     robot: str

@@ -4,8 +4,9 @@ import math
 from dataclasses import replace
 
 from windup.hal.errors import UsageError
-from windup.hal.imu.bno08x_rvc import Bno08xRvc
-from windup.hal.imu.opencr import OpenCr as Board
+from windup.hal.imu.bno08x_rvc import BNO08X_RVC
+from windup.hal.imu.kind import ImuKind
+from windup.hal.imu.mounting import STRAIGHT
 from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
 from windup.robots import RobotDescription, load_robot
@@ -18,7 +19,8 @@ from windup.sim_twin.wire.bus.bus import Bus, Language
 from windup.sim_twin.wire.bus.timing import Timing
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.faults.faults import Faults
-from windup.sim_twin.wire.imu.imu import ImuSource, RestingImu
+from windup.sim_twin.wire.imu.bno055 import Bno055Registers
+from windup.sim_twin.wire.imu.imu import ImuSource, MountedImu, RestingImu
 from windup.sim_twin.wire.imu.imu_faults import FaultyImu
 from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft, Shaft
@@ -56,11 +58,16 @@ class Workshop:
         self.buses[name] = bus
         return bus
 
-    def imu(self, source: ImuSource) -> None:
-        """Add the port of an IMU that talks by itself."""
+    def imu(self, source: ImuSource, kind: ImuKind = BNO08X_RVC) -> None:
+        """Add the port of an IMU that sends by itself, or the I2C bus of one that is asked."""
         bus = self.bus(IMU, [], Mute(), RVC_BAUD)
+        if kind.mounting.axes != STRAIGHT:
+            source = MountedImu(source, kind.mounting)
         bus.imu = FaultyImu(source, self.schedule)
-        start_rvc(bus, bus.imu)
+        if kind.wiring == "i2c":
+            bus.chip = Bno055Registers(bus.imu, self.schedule)
+        else:
+            start_rvc(bus, bus.imu)
 
     def world(self, physics: Physics, supply: float, owned: tuple[object, ...] = ()) -> BusWorld:
         """Return the world with its buses."""
@@ -120,20 +127,23 @@ def _robot(address: Address, robot: RobotDescription, around: Environment) -> Bu
         twin = Twin(robot, delay=0.0, supply=supply, world=_behind_a_wire(around, robot, supply))
     hung, shafts = _hang_servos(address, robot, twin, supply)
     first = robot.buses[0]
-    board = robot.imu is not None and first.protocol == "dynamixel2"
+    kind = robot.imu_kind
     source: ImuSource = RestingImu()
-    if twin is not None and robot.imu is not None:
-        source = TwinImu(twin, Board(first.name).lag if board else Bno08xRvc.lag)
+    if twin is not None and kind is not None:
+        source = TwinImu(twin, kind.lag)
     felt = FaultyImu(source, shop.schedule)
-    if board:
-        servos, on = hung[first.name], address.power == "on"
-        servos.append(OpenCr(felt, [*servos], address.baud or first.baud, supply, powered=on))
+    board = kind is not None and kind.wiring == "board"
+    if kind is not None and board:
+        servos, on, baud = hung[first.name], address.power == "on", address.baud or first.baud
+        servos.append(OpenCr(felt, [*servos], baud, supply, powered=on, mounting=kind.mounting))
     for bus in robot.buses:
         shop.bus(bus.name, hung[bus.name], make_language(bus.protocol), address.baud or bus.baud)
     if board:
         shop.buses[first.name].imu = felt
-    if address.imu == "rvc" or (address.imu == "auto" and robot.imu is not None and not board):
+    if address.imu == "rvc":
         shop.imu(source)
+    elif address.imu == "auto" and kind is not None and not board:
+        shop.imu(source, kind)
     if twin is None:
         alone = [shaft for shaft in shafts if isinstance(shaft, InertiaShaft)]
         world = shop.world(Bench(alone, robot.timestep), supply)
