@@ -16,6 +16,7 @@ from windup.control.falling.fall import FallPredictor
 from windup.hal.command import JointCommand
 from windup.hal.controller import Controller
 from windup.hal.errors import StateMissingError
+from windup.hal.geometry.up_axis import uprightness
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import JointState, Observation
 
@@ -163,7 +164,7 @@ class Protected:
         if base is None:
             raise StateMissingError("the base state was lost in a fall")
         _, x, y, _ = base.orientation
-        if self.phase is Phase.FALLING and 1.0 - 2.0 * (x * x + y * y) < cos(way.soften):
+        if self.phase is Phase.FALLING and uprightness(x, y) < cos(way.soften):
             self.phase = Phase.IMPACT
         if float(np.linalg.norm(base.angular_velocity)) > STILL:
             self._still = None

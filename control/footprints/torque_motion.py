@@ -15,6 +15,7 @@ from windup.control.footprints.swing import gaussian_progress, lift
 from windup.control.kinematics.rotation import turn, turn_between, yaw_of
 from windup.control.whole_body.whole_body import Objectives, Plan, WholeBody
 from windup.hal.command import JointCommand
+from windup.hal.geometry.angles import wrapped
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
@@ -180,13 +181,13 @@ class TorqueMotion(ABC):
         at[:2] += way * (swing.target - swing.start[:2])
         at[2] = (1.0 - way) * swing.start[2] + lift(part, self._lifted)
         at[2] -= max(part - 1.0, 0.0) * self._lifted  # and on, until it meets the ground
-        left = (swing.yaw[1] - swing.yaw[0] + np.pi) % (2.0 * np.pi) - np.pi
+        left = wrapped(swing.yaw[1] - swing.yaw[0])
         return at, swing.yaw[0] + way * left
 
     def _trunk_rate(self) -> Array:
         """Return the angular acceleration (3,) that turns the base upright, as the feet stand."""
         yaws = [yaw_of(end.rotation) for end in self.dynamics.ends]
-        half = 0.5 * ((yaws[1] - yaws[0] + np.pi) % (2.0 * np.pi) - np.pi)
+        half = 0.5 * wrapped(yaws[1] - yaws[0])
         base = self.dynamics.base.rotation
         error = base.T @ turn_between(base, turn(yaws[0] + half))  # seen from the base
         return POSE_GAIN * error - POSE_DAMPING * self.dynamics.velocity[3:6]

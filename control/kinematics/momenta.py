@@ -10,9 +10,9 @@ from math import sqrt
 import mujoco
 import numpy as np
 
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
 
-GRAVITY = 9.81
 LEAST_LOAD = 0.3
 """Part of the weight that is taken for the ground's force at least, in free fall as well."""
 

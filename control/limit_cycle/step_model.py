@@ -12,14 +12,13 @@ takes the whole J, one-sided, and solves damped least squares.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal
 
 import numpy as np
 
 from windup.control.limit_cycle.step_memory import Memory
+from windup.control.pose_graph.gait_file import Sampling
 from windup.hal.joints import Array, Mask
 
-Sampling = Literal["sp", "fl", "lf", "full"]
 # Plays steps with scalings (m, r): regulation variables (m, r) and which of the m fell.
 Sample = Callable[[Array], tuple[Array, Mask]]
 

@@ -14,11 +14,10 @@ from windup.control.motions.planted import Planted
 from windup.hal.command import JointCommand
 from windup.hal.controller import Begins, Controller, first_pose_of
 from windup.hal.errors import FirstMotionError
+from windup.hal.geometry.smooth_step import PEAK, smooth_step
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
-PEAK = 1.5
-"""The largest speed of a smooth step (3 s^2 - 2 s^3) over its mean."""
 STIFFENING = 0.6
 """What it takes at least to become stiff, s."""
 SETTLING = 0.3
@@ -185,7 +184,7 @@ class Approach:
     def _on_the_way(self, observation: Observation, dt: float) -> JointCommand:
         passed = observation.time - self._began
         s = min(passed / self._seconds, 1.0)
-        smooth = s * s * (3.0 - 2.0 * s)
+        smooth = smooth_step(s)
         assert self._following is not None, "planned before"
         goal = self._from + smooth * self._way
         if passed >= self._seconds + SETTLING:

@@ -1,19 +1,15 @@
 """Holding and changing a course: the wanted heading moves on, and each step turns after it."""
 
 from dataclasses import dataclass, field
-from math import copysign, degrees, isfinite, pi, radians, sqrt
+from math import copysign, degrees, isfinite, radians, sqrt
 
 import numpy as np
 
 from windup.control.pose_graph.gait_file import Heading, Turn
 from windup.control.steering.guide import WalkCommand
+from windup.hal.geometry.angles import wrapped
 
 LEAD = radians(30.0)  # farthest that the wanted heading runs ahead of the body
-
-
-def wrapped(angle: float) -> float:
-    """Return `angle` between -pi and pi."""
-    return (angle + pi) % (2.0 * pi) - pi
 
 
 @dataclass

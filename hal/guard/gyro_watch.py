@@ -14,6 +14,7 @@ from math import acos, exp, pi, sqrt
 
 import numpy as np
 
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.guard.finding import AGAIN, Saying
 from windup.hal.joints import Array
 
@@ -42,8 +43,8 @@ AROUND = 1.0
 """Turn about the vertical while all joints stand still, rad."""
 STANDS = 0.5
 """A joint slower than this stands still, rad/s."""
-GRAVITY, NEAR = 9.81, 0.15
-"""m/s2, and how far from it what feels nothing else may be, as a share."""
+NEAR = 0.15
+"""How far from gravity what feels nothing else may be, as a share."""
 DRAW = 1.0
 """Time constant with which the accelerometer draws the vertical, s."""
 LONGEST = 0.1

@@ -19,6 +19,7 @@ import numpy as np
 
 from windup.hal.backend import Clock
 from windup.hal.errors import PortError
+from windup.hal.geometry.gravity import STANDARD_GRAVITY
 from windup.hal.imu.i2c import I2cChip, I2cOpener, open_i2c
 from windup.hal.imu.kind import ImuKind
 from windup.hal.imu.mounting import Mounting
@@ -212,7 +213,7 @@ BNO055 = ImuKind(
     wiring="i2c",
     rate=1.0 / PERIOD,
     cutoff=32.0,  # the gyroscope's; the accelerometer's is 62.5 Hz (table 3-4)
-    noise=(radians(0.014), 150e-6 * 9.80665),  # typical, table 0-2
+    noise=(radians(0.014), 150e-6 * STANDARD_GRAVITY),  # typical, table 0-2
     bias=(radians(0.3), 0.05),  # our guess of what its calibration while it runs leaves
     unit=(GYRO, ACCELERATION),
     driver=Bno055,

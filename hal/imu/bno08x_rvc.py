@@ -20,6 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from windup.hal.geometry.gravity import STANDARD_GRAVITY
 from windup.hal.imu.frame_clock import FrameClock
 from windup.hal.imu.kind import ImuKind
 from windup.hal.imu.mounting import Mounting
@@ -39,7 +40,7 @@ ON_THE_WIRE = 10 * LENGTH / BAUD
 """From a sample to the end of its frame, s."""
 DEGREE = 0.01 * np.pi / 180.0
 """rad of one count of an angle."""
-ACCELERATION = 1e-3 * 9.80665
+ACCELERATION = 1e-3 * STANDARD_GRAVITY
 """m/s2 of one count."""
 LARGEST: Array = np.radians([180.0, 90.0, 180.0]) + 1e-9
 """Largest yaw, pitch and roll, rad."""

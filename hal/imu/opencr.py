@@ -10,6 +10,7 @@ from math import pi, radians
 
 import numpy as np
 
+from windup.hal.geometry.gravity import STANDARD_GRAVITY
 from windup.hal.imu.kind import ImuKind
 from windup.hal.imu.mounting import Mounting
 from windup.hal.observation import ImuState
@@ -20,7 +21,7 @@ MODEL_NUMBER = 0x7400
 """What the board answers to a ping."""
 GYRO = 2000.0 / 32800.0 * pi / 180.0
 """rad/s of one count."""
-ACCELERATION = 2.0 / 32768.0 * 9.80665
+ACCELERATION = 2.0 / 32768.0 * STANDARD_GRAVITY
 """m/s2 of one count."""
 IN_OP3 = Mounting(("-x", "-y", "z"))
 """How the chip of its board is turned in the body of an OP3."""
@@ -81,7 +82,7 @@ OPENCR = ImuKind(
     wiring="board",
     rate=1000.0,  # the firmware's loop over the chip
     cutoff=CUTOFF,
-    noise=(radians(0.01), 300e-6 * 9.80665),  # data sheet of the MPU9250, tables 1 and 2
+    noise=(radians(0.01), 300e-6 * STANDARD_GRAVITY),  # data sheet of the MPU9250, tables 1 and 2
     bias=(radians(0.3), 0.05),  # our guess of what the calibration at rest leaves
     unit=(GYRO, ACCELERATION),
     axes=IN_OP3.axes,

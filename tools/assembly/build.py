@@ -7,7 +7,7 @@ import numpy as np
 
 from windup.control.estimation.estimator import BaseEstimator
 from windup.control.estimation.foot_load import FootLoad
-from windup.control.estimation.tilt_filter import GRAVITY, ImuNoise
+from windup.control.estimation.tilt_filter import ImuNoise
 from windup.control.kinematics.body import Body
 from windup.control.kinematics.soles import Soles
 from windup.control.limit_cycle.balancer import Balancer
@@ -22,6 +22,7 @@ from windup.control.regulation.footfalls import Footfalls
 from windup.control.regulation.variables import RegulationVariable, regulation_variables
 from windup.hal.controller import Predictor
 from windup.hal.errors import StateMissingError, UnknownNameError, UsageError
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.ranges import Range, read_number
 from windup.robots import RobotDescription
 from windup.tools.assembly.gaits import find_gait

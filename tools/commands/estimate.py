@@ -12,6 +12,7 @@ import tyro
 from windup.control.kinematics.body import heading
 from windup.control.loop import Estimator
 from windup.hal.errors import UsageError
+from windup.hal.geometry.angles import wrapped
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState, Observation
 from windup.robots import load_robot
@@ -217,7 +218,7 @@ class Estimate(Command):
 def _errors(base: BaseState, truth: BaseState) -> Array:
     """Return roll, pitch, yaw, velocity (3), height errors and the confidence."""
     angles = np.array([_angles(base.orientation), _angles(truth.orientation)])
-    turn = (angles[0] - angles[1] + np.pi) % (2.0 * np.pi) - np.pi
+    turn = wrapped(angles[0] - angles[1])
     velocity = base.linear_velocity - truth.linear_velocity
     height = base.position[2] - truth.position[2]
     return np.concatenate([turn, velocity, [height, base.confidence]])

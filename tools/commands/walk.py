@@ -11,6 +11,7 @@ import numpy as np
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from windup.hal.errors import UsageError
+from windup.hal.geometry.up_axis import uprightness
 from windup.robots import load_robot
 from windup.tools.assembly.build import build_walk
 from windup.tools.assembly.stepping import find_stepping
@@ -214,7 +215,7 @@ def _update(progress: Progress, bar: Any, robot: Robot) -> Callable[[int, float]
     def update(steps: int, speed: float) -> None:
         assert robot.base is not None, "a walk has a base state"
         _, x, y, _ = robot.base.orientation
-        lean = np.degrees(np.arccos(np.clip(1.0 - 2.0 * (x * x + y * y), -1.0, 1.0)))
+        lean = np.degrees(np.arccos(np.clip(uprightness(x, y), -1.0, 1.0)))
         progress.update(
             bar, completed=steps, speed=f"{speed:5.2f} m/s", lean=f"lean {lean:4.1f} deg"
         )

@@ -11,11 +11,12 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from windup.hal.geometry.gravity import STANDARD_GRAVITY
 from windup.hal.imu.mounting import Mounting
 from windup.hal.imu.opencr import IN_OP3
 from windup.hal.joints import Array
 from windup.sim_twin.wire.device import Device
-from windup.sim_twin.wire.imu.imu import GRAVITY, ImuSource
+from windup.sim_twin.wire.imu.imu import ImuSource
 from windup.sim_twin.wire.servos.register_file import (
     BAD_ACCESS,
     BAD_INSTRUCTION,
@@ -27,7 +28,7 @@ from windup.sim_twin.wire.servos.register_file import (
 from windup.sim_twin.wire.servos.x_series import BAUD_RATES
 
 GYRO_UNIT = math.radians(2000.0 / 32800.0)  # rad/s a count
-ACCELERATION_UNIT = 2.0 / 32768.0 * GRAVITY  # m/s2 a count
+ACCELERATION_UNIT = 2.0 / 32768.0 * STANDARD_GRAVITY  # m/s2 a count
 MODE_BUTTON, START_BUTTON, USER_BUTTON = 0x01, 0x02, 0x04
 PRESENT = (30, 49)
 

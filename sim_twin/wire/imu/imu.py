@@ -4,11 +4,10 @@ from typing import Protocol
 
 import numpy as np
 
+from windup.hal.geometry.gravity import STANDARD_GRAVITY
 from windup.hal.imu.mounting import Mounting
 from windup.hal.imu.quaternion import multiply
 from windup.hal.joints import Array
-
-GRAVITY = 9.80665  # m/s2
 
 
 class ImuSource(Protocol):
@@ -40,7 +39,7 @@ class RestingImu:
 
     silent = False
     angular_velocity: Array = np.zeros(3)
-    acceleration: Array = np.array([0.0, 0.0, GRAVITY])
+    acceleration: Array = np.array([0.0, 0.0, STANDARD_GRAVITY])
     orientation: Array = np.array([1.0, 0.0, 0.0, 0.0])
 
 

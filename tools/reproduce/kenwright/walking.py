@@ -1,9 +1,11 @@
 """Section V: the inverted pendulum keeps walking, or halts, in any direction."""
 
+from math import degrees, radians
 from typing import Any
 
 import numpy as np
 
+from windup.hal.geometry.angles import wrapped
 from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.kenwright.jobs import stride
 
@@ -46,8 +48,7 @@ def _split(results: Results) -> tuple[list[Result], list[Result], list[Result]]:
 
 def _off(leg: dict[str, Any]) -> float:
     """Return how far the measured heading is from the ordered one, degrees."""
-    away = (leg["measured_heading"] - leg["heading"] + 180.0) % 360.0 - 180.0
-    return float(abs(away))
+    return abs(degrees(wrapped(radians(leg["measured_heading"] - leg["heading"]))))
 
 
 def claims(results: Results) -> list[Claim]:
