@@ -117,7 +117,8 @@ class Walk(TwinOptions, Common):
             known_ground=self.known_ground,
         ) as robot:
             trace = Trace(robot.description.contacts)
-            robot.watch = trace.add if self.plot and show else None
+            if self.plot and show:
+                robot.watch.append(trace.add)
             with _progress(show and not self.realtime) as progress:
                 report = self._walk(robot, progress)
         if show:
@@ -144,7 +145,7 @@ class Walk(TwinOptions, Common):
             return robot.walk(
                 steps=self._most,
                 options=self._options(),
-                on_step=_update(progress, bar, robot),
+                on_step=[_update(progress, bar, robot)],
                 disturb=self.disturb(),
                 stand=self.stand,
             )

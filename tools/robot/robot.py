@@ -4,7 +4,7 @@ with Robot.open("op3") as robot:              # its twin
     report = robot.walk(speed=0.2, steps=40)
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from typing import Self
@@ -181,7 +181,7 @@ class Robot(Session):
         speed: Speed | None = None,
         steps: Count = 40,
         options: WalkOptions | None = None,
-        on_step: OnStep | None = None,
+        on_step: Sequence[OnStep] = (),
         disturb: Callable[["Robot"], None] | None = None,
         stand: Seconds = 0.0,
     ) -> WalkReport:
@@ -191,7 +191,7 @@ class Robot(Session):
             speed: m/s; the gait's default if None.
             steps: How many.
             options: Everything else; `speed` wins.
-            on_step: Called at the end of each step with its number and its speed, m/s.
+            on_step: All are called at the end of each step with its number and its speed, m/s.
             disturb: Called before the first step, to arrange pushes on a twin.
             stand: Then come to rest and stand for so long, s.
 

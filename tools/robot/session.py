@@ -50,7 +50,7 @@ class Session(Armed):
         period: Period of the control loop, s.
         paced: Its time is real time.
         protect: A fall that cannot be prevented is softened, where the robot's file says how.
-        watch: Called with every observation, for whoever draws or logs.
+        watch: All are called with every observation: whoever draws, logs or looks on.
         telemetry: Where everybody else can read how it goes, once it runs.
         imu: Judges the IMU, where the base state is estimated from it.
         slowness: Ticks and plans that came late in all runs.
@@ -59,7 +59,7 @@ class Session(Armed):
     period: float = field(kw_only=True)
     paced: bool = False
     protect: bool = True
-    watch: Watch | None = field(default=None, init=False)
+    watch: list[Watch] = field(default_factory=list, init=False)
     telemetry: TelemetryWriter | None = field(default=None, init=False)
     imu: ImuWatch = field(default_factory=ImuWatch, init=False)
     slowness: Slowness = field(init=False)
@@ -171,8 +171,8 @@ class Session(Armed):
             def end(observation: Observation) -> str | None:
                 nonlocal begin
                 self.base = observation.base
-                if self.watch is not None:
-                    self.watch(observation)
+                for look in self.watch[:]:  # one may take itself off
+                    look(observation)
                 if (by := wanted()) is not None:
                     asked.add(by)
                 if by := self._running.asked:

@@ -133,7 +133,7 @@ def test_a_stop_that_fails_in_a_diverged_twin_does_not_hide_why(
             if observation.time > 0.1:
                 robot.twin.data.qvel[8] = np.nan
 
-        robot.watch = watch
+        robot.watch.append(watch)
         with pytest.raises(DivergedError, match=r"the twin diverged at 0\.10\d s"):
             robot.stand()
         assert robot.loop.reason.startswith("the twin diverged at 0.10")
@@ -149,7 +149,7 @@ def test_an_interrupted_walk_reports_what_was_measured() -> None:
             if observation.time > 1.2:
                 raise KeyboardInterrupt
 
-        robot.watch = watch
+        robot.watch.append(watch)
         with pytest.raises(RunInterruptedError) as stopped_by:
             robot.walk(steps=40)
         result = stopped_by.value.report.result()
@@ -167,7 +167,7 @@ def test_a_walk_interrupted_before_its_first_step_has_all_its_keys() -> None:
         def watch(observation: Observation) -> None:
             raise KeyboardInterrupt
 
-        robot.watch = watch
+        robot.watch.append(watch)
         with pytest.raises(RunInterruptedError) as stopped_by:
             robot.walk(steps=40)
         result = stopped_by.value.report.result()

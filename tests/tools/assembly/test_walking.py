@@ -211,7 +211,23 @@ def test_a_graph_without_an_end_is_played_for_five_seconds() -> None:
         def watch(observation: object) -> None:
             assert robot.twin.time < 6.0, "it plays for ever"
 
-        robot.watch = watch
+        robot.watch.append(watch)
         report = robot.play("squat")
         assert report.sim_time == pytest.approx(5.0, abs=0.02)
         assert not robot.fallen
+
+
+def test_several_look_on_and_one_may_take_itself_off() -> None:
+    seen: list[str] = []
+    steps: list[tuple[int, int]] = []
+    with Robot.open("op3") as robot:
+
+        def once(observation: object) -> None:
+            seen.append("once")
+            robot.watch.remove(once)
+
+        robot.watch += [once, lambda _: seen.append("always")]
+        first, second = (lambda at, _, who=who: steps.append((who, at)) for who in (1, 2))
+        robot.walk(steps=2, options=WalkOptions(open_loop=True), on_step=[first, second])
+    assert seen[:3] == ["once", "always", "always"] and "once" not in seen[1:]
+    assert steps == [(1, 1), (2, 1), (1, 2), (2, 2)]

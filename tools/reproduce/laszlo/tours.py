@@ -62,7 +62,7 @@ def run_tour(
             if len(recorder.trace) > len(bend):  # as often as it keeps a sample
                 bend.append(float(observation.joints.position[bending]))
 
-        machine.watch = watch
+        machine.watch.append(watch)
         machine.start_at(walker.gait.file.start)
         try:
             machine.run(walker, until=WalkEnd(walker, steps))
