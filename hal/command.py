@@ -22,6 +22,8 @@ class JointCommand:
     instead of a torque limit, and never less damping than its motor's own K^2/R. The backend's
     `write` therefore returns what the joints really got.
 
+    Made by `of`, and not changed afterwards: whoever wants another command makes another one.
+
     Attributes:
         block: The five rows below as one (5, n) array; the rows are views of it.
     """
@@ -54,13 +56,43 @@ class JointCommand:
         return self.block[4]
 
     @classmethod
+    def of(
+        cls,
+        joints: Joints,
+        *,
+        position: Array | float,
+        velocity: Array | float = 0.0,
+        torque: Array | float = 0.0,
+        stiffness: Array | float | None = None,
+        damping: Array | float | None = None,
+    ) -> "JointCommand":
+        """Return a command whose arrays are read-only.
+
+        Args:
+            joints: The joints.
+            position: (n,) rad.
+            velocity: (n,) rad/s.
+            torque: (n,) N m.
+            stiffness: (n,) N m/rad, by default the joints' own.
+            damping: (n,) N m s/rad, by default the joints' own.
+        """
+        block = np.empty((len(FIELDS), len(joints)))
+        block[0], block[1], block[2] = position, velocity, torque
+        block[3] = joints.stiffness if stiffness is None else stiffness
+        block[4] = joints.damping if damping is None else damping
+        block.setflags(write=False)
+        return cls(block)
+
+    @classmethod
     def hold(cls, joints: Joints, position: Array) -> "JointCommand":
         """Return the command that holds `position` (n,) rad with the robot's default gains."""
-        block = np.zeros((len(FIELDS), len(joints)))
+        return cls.of(joints, position=position)
+
+    def at(self, position: Array) -> "JointCommand":
+        """Return the same command with other target positions (n,) rad."""
+        block = self.block.copy()
         block[0] = position
-        block[3] = joints.stiffness
-        block[4] = joints.damping
-        return cls(block)
+        return JointCommand(block)
 
 
 def joint_torque(command: JointCommand, q: Array, dq: Array, limit: Array) -> Array:

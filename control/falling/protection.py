@@ -63,15 +63,13 @@ def bounded(joints: Joints, pose: Array, share: Array, state: JointState) -> Joi
         share: (n,) of the joints' stiffness.
         state: The joints as observed.
     """
-    command = JointCommand.hold(joints, pose)
-    stiffness = command.stiffness
-    stiffness *= share
+    stiffness = joints.stiffness * share
     most, braking = EFFORT * joints.torque, joints.damping * state.velocity
     lowest = state.position + (braking - most) / stiffness
     highest = state.position + (braking + most) / stiffness
     goal = np.minimum(np.maximum(pose, lowest), highest)
-    command.position[:] = np.clip(goal, joints.lower, joints.upper)
-    return command
+    goal = np.clip(goal, joints.lower, joints.upper)
+    return JointCommand.of(joints, position=goal, stiffness=stiffness)
 
 
 class Phase(Enum):

@@ -95,13 +95,15 @@ class TorqueMotion(ABC):
             self._decide(now)
             self._plan = self._body.plan(self._objectives(now))
             self._planned, self._speed = now, self.dynamics.velocity[6:].copy()
-        command = JointCommand(np.zeros((5, len(self._joints))))
-        command.position[:] = self._stance
-        command.torque[:] = self._body.torque(self._plan)
-        # A light foot runs away between two plans where it meets ground that was not expected.
-        command.damping[:] = FOLLOW_DAMPING
-        command.velocity[:] = self._speed + (now - self._planned) * self._plan.acceleration[6:]
-        return command
+        return JointCommand.of(
+            self._joints,
+            position=self._stance,
+            velocity=self._speed + (now - self._planned) * self._plan.acceleration[6:],
+            torque=self._body.torque(self._plan),
+            stiffness=0.0,
+            # A light foot runs away between two plans where it meets ground that was not expected.
+            damping=FOLLOW_DAMPING,
+        )
 
     @abstractmethod
     def _decide(self, now: float) -> None:

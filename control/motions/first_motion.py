@@ -194,9 +194,8 @@ class Approach:
         if self._planted is not None and (wrong := self._planted.update(observation)) is not None:
             raise FirstMotionError(wrong)
         self.motion.share = self._share + smooth * (1.0 - self._share)
-        command = JointCommand.hold(self.joints, goal)
-        command.stiffness[:] *= self.motion.share
-        return command
+        stiffness = self.joints.stiffness * self.motion.share
+        return JointCommand.of(self.joints, position=goal, stiffness=stiffness)
 
     def _hand_over(self, observation: Observation, goal: Array, dt: float) -> JointCommand:
         """Let the controller begin; one that starts from a pose starts from the goal."""

@@ -73,9 +73,7 @@ class GraphPlayer:
         self._begun = True
         nothing = np.zeros((1, 0))
         state = PolicyInput(nothing, nothing, nothing, nothing, observation.contacts[None])
-        block = self._hold.block.copy()
-        block[0] = self._tracker.step(state, dt)[0]
-        return JointCommand(block)
+        return self._hold.at(self._tracker.step(state, dt)[0])
 
     @property
     def finished(self) -> bool:

@@ -80,9 +80,7 @@ class StagedPlayer:
         goal = self._goal
         if self._upright is not None:
             goal = self._upright.apply(goal, observation, self._state)
-        block = self._hold.block.copy()
-        block[0] = goal
-        return JointCommand(block)
+        return self._hold.at(goal)
 
     def _enter(self, state: int) -> None:
         self._state, self._elapsed, self._from = state, 0.0, self._goal

@@ -32,8 +32,9 @@ class Trouble:
 
 class NotANumber(Trouble):
     def trouble(self, command: JointCommand) -> JointCommand:
-        command.block[0, 3] = np.nan
-        return command
+        block = command.block.copy()
+        block[0, 3] = np.nan
+        return JointCommand(block)
 
 
 class Crash(Trouble):
@@ -91,9 +92,7 @@ def test_nan_in_mid_walk_is_status_1(shell: Windup, monkeypatch: pytest.MonkeyPa
 
         def broken(observation: Observation, dt: float) -> JointCommand:
             command = step(observation, dt)
-            if observation.time > 0.5:
-                command.block[0, 0] = np.nan
-            return command
+            return command.at(np.full(20, np.nan)) if observation.time > 0.5 else command
 
         walker.step = broken  # type: ignore[method-assign]
         return walker
