@@ -10,12 +10,14 @@ from typing import Any, Literal
 import numpy as np
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
+from windup.control.pose_graph.gait_file import Sampling
 from windup.hal.errors import UsageError
 from windup.hal.geometry.up_axis import uprightness
 from windup.robots import load_robot
 from windup.tools.assembly.build import build_walk
 from windup.tools.assembly.stepping import find_stepping
 from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.command_line.typed import as_typed
 from windup.tools.commands.plot import Trace, plot_walk
 from windup.tools.measures.walk_text import format_summary
 from windup.tools.options.common import Common
@@ -63,7 +65,7 @@ class Walk(TwinOptions, Common):
     """Name of the gait, or the path of a gait file of your own."""
     rv: tuple[str, ...] | None = None
     """Regulation variables, such as: up, or up.forward swing_com.lateral."""
-    sampling: Literal["sp", "fl", "lf", "full"] | None = None
+    sampling: Sampling | None = None
     """How the step model is sampled."""
     model: Literal["full", "frozen", "library"] = "full"
     """Sample the step model every step, or only when regulation drifts (frozen), or look it up by
@@ -125,7 +127,7 @@ class Walk(TwinOptions, Common):
             console.print(str(report), markup=False, soft_wrap=True)
         if self.learn is not None:
             with NOTES.losing():
-                keep_learnt(self.learn, report)
+                keep_learnt(self.learn, report, as_typed(self, ("learn", "json", "plot")))
         if self.plot is not None and show:
             with NOTES.losing():
                 plot_walk(self.plot, report, trace)
