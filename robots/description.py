@@ -1,7 +1,7 @@
 """A robot as the rest of the stack sees it: robot.toml and model.xml, read and cross-checked."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
 
@@ -22,6 +22,7 @@ from windup.robots.checks import Checks, whole_steps
 from windup.robots.completion import complete, complete_for
 from windup.robots.imu import imu_of
 from windup.robots.limits import with_limits
+from windup.robots.loaded import Loaded
 from windup.robots.mirror import mirror_map
 from windup.robots.records import (
     Bus,
@@ -40,6 +41,7 @@ FOLDER = Path(__file__).parent
 FILE = "robot.toml"
 NEVER = Fall(height=1e-9, tilt=4.0)
 """How a robot falls that is fixed."""
+_loaded: "Loaded[RobotDescription]" = Loaded()
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +77,7 @@ class RobotDescription:
         stop: What "stop" means.
         safety: What keeps it safe when nobody commands it.
         fall: When the robot counts as fallen.
+        model: Its MJCF compiled, with its sensors. It is shared: copy what you change.
     """
 
     folder: Path
@@ -105,6 +108,7 @@ class RobotDescription:
     stop: StopPolicy
     safety: Safety
     fall: Fall
+    model: mujoco.MjModel = field(repr=False)
 
     @cached_property
     def mirror(self) -> Mirror:
@@ -163,11 +167,23 @@ def robot_names() -> tuple[str, ...]:
 def load_robot(name_or_path: str | Path) -> RobotDescription:
     """Return a robot by the name of a folder in `robots`, or by the path of your own folder.
 
+    A robot whose files have not changed since is the same object as before.
+
     Raises:
         UnknownNameError: There is neither such a robot nor such a folder.
         ConfigError: A file of the robot says something that cannot be.
     """
     folder = _folder(name_or_path)
+    if (known := _loaded.of(folder)) is not None:
+        return known
+    robot = _load(folder)
+    if mjcf.is_alone(robot.model_path):
+        _loaded.keep(folder, (folder / FILE, robot.model_path), robot)
+    return robot
+
+
+def _load(folder: Path) -> RobotDescription:
+    """Return the robot in a folder, read anew."""
     path = folder / FILE
     robot = load_toml(path, RobotFile)
     robot = replace(robot, joint=tuple(with_defaults(joint, robot.drive) for joint in robot.joint))
@@ -221,6 +237,7 @@ def _describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDes
         stop=robot.stop,
         safety=robot.safety,
         fall=robot.fall or NEVER,
+        model=model,
     )
 
 

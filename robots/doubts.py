@@ -15,7 +15,7 @@ DEEP = 1e-3
 
 def doubts(robot: RobotDescription) -> list[str]:
     """Return what is doubtful about a robot's MJCF, a line each, with what would be better."""
-    model = robot.spec().compile()
+    model = robot.model
     data = mujoco.MjData(model)
     for name, angle in zip(robot.joints.names, robot.stance, strict=True):
         data.joint(name).qpos[0] = angle

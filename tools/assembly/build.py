@@ -38,7 +38,7 @@ TARGET = Range(-1_000.0, 1_000.0)
 def body_of(robot: RobotDescription) -> Body:
     """Return the kinematics of a robot."""
     soles = [foot.site for foot in robot.feet]
-    return Body(robot.spec().compile(), robot.base, robot.torso, soles)
+    return Body(robot.model, robot.base, robot.torso, soles)
 
 
 def build_estimator(
@@ -66,7 +66,7 @@ def build_estimator(
         if robot.fixed or robot.passive:
             how = "it is fixed" if robot.fixed else f"{robot.passive[0]!r} is passive"
         raise StateMissingError(f"the base of {robot.name} cannot be estimated; {how}")
-    model = robot.spec().compile()
+    model = robot.model
     soles = Soles(model, [foot.body for foot in robot.feet], robot.contacts)
     weight = float(model.body_subtreemass[model.body(robot.base).id]) * GRAVITY
     load = FootLoad(soles, robot.contacts, weight, sensed=switches)

@@ -45,7 +45,7 @@ class Protection:
     @cached_property
     def _ways(self) -> tuple[FallWay, ...]:
         robot = self.robot
-        legs = leg_joints(robot, robot.spec().compile())
+        legs = leg_joints(robot, robot.model)
         return tuple(
             FallWay(
                 way.toward,
