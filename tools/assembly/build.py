@@ -11,7 +11,7 @@ from windup.control.estimation.tilt_filter import ImuNoise
 from windup.control.kinematics.body import Body
 from windup.control.kinematics.soles import Soles
 from windup.control.limit_cycle.balancer import Balancer
-from windup.control.limit_cycle.planner import Planner, StepPlanner
+from windup.control.limit_cycle.planner import StepPlanner
 from windup.control.limit_cycle.step_memory import Memory
 from windup.control.limit_cycle.step_model import StepModel
 from windup.control.pose_graph.gait import Gait
@@ -100,46 +100,24 @@ def build_walk(
     """
     check_walks(robot)
     gait = blended(robot, find_gait(robot, options.gait), options)
-    if not gait.graph.ends_step.any() or gait.file.balance is None:
-        raise UsageError(
-            f"gait {gait.name!r} has no steps to balance; "
-            f"play it with `windup play {robot.name} {gait.name}`"
-        )
-    balance = gait.file.balance
-    if options.sampling is not None:
-        balance = _resampled(balance, options.sampling)
+    balance = _balance(robot, gait, options.sampling)
     variables = regulation_variables(list(options.rv or balance.regulation))
     names = _perturbations(gait, balance, variables, options.rv is not None)
     torso_servo = _torso_servo(robot, gait, options.torso_servo)
     if torso_servo is not None:
         variables = [_on_the_pelvis(variable) for variable in variables]
     body = body_of(robot)
-    planner: Planner | None = None
     memory = memory_for(robot, options, variables, names)
     # Models learnt on level soles do not hold on tilted ones.
     one_rollout = memory is not None and memory.complete
-    if predictor is not None and not options.open_loop:
-        planner = StepPlanner(
-            gait=gait,
-            joints=robot.joints,
-            contacts=robot.contacts,
-            body=body,
-            regulation=variables,
-            perturbations=names,
-            model=_step_model(gait, balance, variables, names, options, memory),
-            predictor=predictor,
-            torso_servo=torso_servo,
-            horizon=balance.horizon,
-            latency=latency,
-        )
-    return Balancer(
+    walker = Balancer(
         gait=gait,
         joints=robot.joints,
         contacts=robot.contacts,
         body=body,
         regulation=variables,
         perturbations=names,
-        planner=planner,
+        planner=None,
         steering=steering_of(robot, gait, options, [] if one_rollout else variables),
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
@@ -147,6 +125,44 @@ def build_walk(
         footfalls=_footfalls(robot, body, balance, options),
         shaken=_shaken(balance, options, one_rollout),
     )
+    if predictor is not None and not options.open_loop:
+        model = _step_model(gait, balance, variables, names, options, memory)
+        walker.planner = _planner(walker, model, predictor, balance.horizon, latency)
+    return walker
+
+
+def _planner(
+    walker: Balancer, model: StepModel, predictor: Predictor, horizon: float, latency: float
+) -> StepPlanner:
+    """Return who plans the steps of `walker` in its own time."""
+    return StepPlanner(
+        gait=walker.gait,
+        joints=walker.joints,
+        contacts=walker.contacts,
+        body=walker.body,
+        regulation=walker.regulation,
+        perturbations=walker.perturbations,
+        model=model,
+        predictor=predictor,
+        torso_servo=walker.torso_servo,
+        horizon=horizon,
+        latency=latency,
+    )
+
+
+def _balance(robot: RobotDescription, gait: Gait, sampling: Sampling | None) -> Balance:
+    """Return how a gait is balanced, sampled as the user says.
+
+    Raises:
+        UsageError: It has no steps to balance.
+    """
+    balance = gait.file.balance
+    if not gait.graph.ends_step.any() or balance is None:
+        raise UsageError(
+            f"gait {gait.name!r} has no steps to balance; "
+            f"play it with `windup play {robot.name} {gait.name}`"
+        )
+    return balance if sampling is None else _resampled(balance, sampling)
 
 
 def _footfalls(

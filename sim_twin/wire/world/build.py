@@ -126,24 +126,10 @@ def _robot(address: Address, robot: RobotDescription, around: Environment) -> Bu
     if address.physics == "mujoco":
         twin = Twin(robot, delay=0.0, supply=supply, world=_behind_a_wire(around, robot, supply))
     hung, shafts = _hang_servos(address, robot, twin, supply)
-    first = robot.buses[0]
-    kind = robot.imu_kind
     source: ImuSource = RestingImu()
-    if twin is not None and kind is not None:
-        source = TwinImu(twin, kind.lag)
-    felt = FaultyImu(source, shop.schedule)
-    board = kind is not None and kind.wiring == "board"
-    if kind is not None and board:
-        servos, on, baud = hung[first.name], address.power == "on", address.baud or first.baud
-        servos.append(OpenCr(felt, [*servos], baud, supply, powered=on, mounting=kind.mounting))
-    for bus in robot.buses:
-        shop.bus(bus.name, hung[bus.name], make_language(bus.protocol), address.baud or bus.baud)
-    if board:
-        shop.buses[first.name].imu = felt
-    if address.imu == "rvc":
-        shop.imu(source)
-    elif address.imu == "auto" and kind is not None and not board:
-        shop.imu(source, kind)
+    if twin is not None and robot.imu_kind is not None:
+        source = TwinImu(twin, robot.imu_kind.lag)
+    _hang_buses(shop, robot, hung, source, supply)
     if twin is None:
         alone = [shaft for shaft in shafts if isinstance(shaft, InertiaShaft)]
         world = shop.world(Bench(alone, robot.timestep), supply)
@@ -158,6 +144,30 @@ def _robot(address: Address, robot: RobotDescription, around: Environment) -> Bu
     world = shop.world(physics, supply, (twin,))
     world.grips = robot_grips(robot, hung, shafts, physics)
     return world
+
+
+def _hang_buses(
+    shop: Workshop,
+    robot: RobotDescription,
+    hung: dict[str, list[Device]],
+    source: ImuSource,
+    supply: float,
+) -> None:
+    """Add the buses of a robot with their servos, and its IMU: on the first of them, or apart."""
+    address, first, kind = shop.address, robot.buses[0], robot.imu_kind
+    felt = FaultyImu(source, shop.schedule)
+    board = kind is not None and kind.wiring == "board"
+    if kind is not None and board:
+        servos, on, baud = hung[first.name], address.power == "on", address.baud or first.baud
+        servos.append(OpenCr(felt, [*servos], baud, supply, powered=on, mounting=kind.mounting))
+    for bus in robot.buses:
+        shop.bus(bus.name, hung[bus.name], make_language(bus.protocol), address.baud or bus.baud)
+    if board:
+        shop.buses[first.name].imu = felt
+    if address.imu == "rvc":
+        shop.imu(source)
+    elif address.imu == "auto" and kind is not None and not board:
+        shop.imu(source, kind)
 
 
 def _hang_servos(
