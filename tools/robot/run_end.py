@@ -1,0 +1,78 @@
+"""When a run is over, and why: asked at every tick."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from windup.control.falling.protection import Protected
+from windup.control.loop import LoopReport, Until
+from windup.control.motions.first_motion import Approach
+from windup.hal.observation import Observation
+from windup.tools.robot.stopping import INTERRUPTED, LAY
+from windup.tools.stopping.interrupts import Asked
+
+EPSILON = 1e-9  # s
+
+
+@dataclass(kw_only=True)
+class RunEnd:
+    """Ends a run: because somebody asks for it, at a fall, or as its caller says.
+
+    Attributes:
+        asked: Who has asked for the end.
+        wishes: Each returns who wants the end now, or nothing.
+        fallen: Returns whether the robot has fallen.
+        loop: Report of the run.
+        opened: When the run began, s.
+        seconds: How long it lasts from the end of the first motion on, s; for ever if None.
+        until: Gives another reason to end it.
+        down: The robot may lie: a fall does not end the run.
+        approach: The first motion after torque came on, if it is due.
+        protected: What softens a fall: the run then goes on until the robot lies still.
+    """
+
+    asked: Asked
+    wishes: Sequence[Callable[[], str | None]]
+    fallen: Callable[[], bool]
+    loop: LoopReport
+    opened: float
+    seconds: float | None = None
+    until: Until | None = None
+    down: bool = False
+    approach: Approach | None = None
+    protected: Protected | None = None
+
+    def __post_init__(self) -> None:
+        self._begin = self.opened
+
+    def __call__(self, observation: Observation) -> str | None:
+        """Return why the run is over, or None."""
+        for wish in self.wishes:
+            if by := wish():
+                self.asked.add(by)
+        if self.asked():
+            return INTERRUPTED
+        if self.protected is not None and self.protected.active:
+            return self._landed() if self.protected.finished else None
+        if not self.down and self.fallen():
+            return "fell" if self.loop.ticks else LAY
+        if self._approaches(observation.time):
+            return None
+        if self.until is not None and (reason := self.until(observation)) is not None:
+            return reason
+        over = self.seconds is not None and observation.time >= self._end(self.seconds)
+        return "done" if over else None
+
+    def _approaches(self, now: float) -> bool:
+        """Return whether the first motion goes on; the time of the run counts from its end."""
+        if self.approach is None or not self.approach.active:
+            return False
+        self._begin = now
+        self.loop.first_motion = now - self.opened
+        return True
+
+    def _end(self, seconds: float) -> float:
+        return self._begin + seconds - EPSILON
+
+    def _landed(self) -> str:
+        """Return why a run ends whose fall is over."""
+        return "fell" if self.fallen() else "fall protection triggered, but the robot did not fall"
