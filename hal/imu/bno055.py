@@ -48,6 +48,8 @@ TO_CONFIG, TO_IMU = 0.019, 0.007
 """Time that a change of mode takes, s (table 3-6)."""
 START_UP = 0.65
 """From power on to a chip that answers, s (table 0-2)."""
+STEPS = 6
+"""Changes of mode after which a chip that still does not measure never will."""
 FASTEST = 36.0
 """rad/s: the gyroscope ends at 2000 degrees/s."""
 
@@ -144,8 +146,7 @@ class Bno055Link:
         self._setting = _Setting()
         try:
             self._find()
-            while not self._set_up(self.clock.now()):
-                self.clock.wait_until(self._setting.due)
+            self._begin()
         except OSError as error:
             chip.close()
             raise PortError(f"the BNO055 of {imu.url} stopped answering: {error}") from None
@@ -178,6 +179,19 @@ class Bno055Link:
                     "addresses that answer"
                 )
             self.clock.wait_until(self.clock.now() + PERIOD)
+
+    def _begin(self) -> None:
+        """Have the chip measure, with the waits that takes.
+
+        Raises:
+            PortError: It does not take its settings.
+            OSError: It stopped answering.
+        """
+        for _ in range(STEPS):
+            if self._set_up(self.clock.now()):
+                return
+            self.clock.wait_until(self._setting.due)
+        raise PortError(f"{self._imu.url}: the BNO055 does not take its mode: power it off and on")
 
     def _identity(self) -> int | None:
         try:

@@ -34,7 +34,7 @@ class FakeChip:
         self.memory = bytearray(0x80)
         self.memory[CHIP_ID], self.memory[OPR_MODE], self.memory[UNIT_SEL] = BNO055_ID, mode, 0x80
         self.written: list[tuple[float, int, int]] = []
-        self.there = True
+        self.there, self.stuck = True, False
         self.closed = 0
 
     def opener(self, url: str, address: int) -> "FakeChip":
@@ -47,7 +47,7 @@ class FakeChip:
 
     def write(self, register: int, value: int) -> None:
         self._answer()
-        self.memory[register] = value
+        self.memory[register] = self.memory[register] if self.stuck else value
         self.written.append((self.clock.now(), register, value))
 
     def close(self) -> None:
@@ -143,12 +143,19 @@ def test_a_chip_that_lost_its_power_is_set_again_without_a_wait_in_the_loop() ->
     link.poll()
     assert chip.written == [], "the next try comes a while later"
     assert chip.clock.now() == before
-    for _ in range(3):
+    for number in range(3):
         chip.clock.time += 0.25
-        chip.feel()
+        chip.feel(rates=(number, 0, 0))
         link.poll()
     state = imu.state(chip.clock.now())
     assert state is not None and state.age < 0.01
+
+
+def test_a_chip_that_never_measures_is_refused() -> None:
+    chip = FakeChip()
+    chip.stuck = True
+    with pytest.raises(PortError, match="does not take its mode: power it off and on"):
+        listening(chip)
 
 
 @pytest.mark.parametrize(

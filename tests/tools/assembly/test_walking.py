@@ -1,3 +1,4 @@
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -227,7 +228,11 @@ def test_several_look_on_and_one_may_take_itself_off() -> None:
             robot.watch.remove(once)
 
         robot.watch += [once, lambda _: seen.append("always")]
-        first, second = (lambda at, _, who=who: steps.append((who, at)) for who in (1, 2))
-        robot.walk(steps=2, options=WalkOptions(open_loop=True), on_step=[first, second])
+
+        def noting(who: int) -> Callable[[int, float], None]:
+            return lambda number, speed: steps.append((who, number))
+
+        open_loop = WalkOptions(open_loop=True)
+        robot.walk(steps=2, options=open_loop, on_step=[noting(1), noting(2)])
     assert seen[:3] == ["once", "always", "always"] and "once" not in seen[1:]
     assert steps == [(1, 1), (2, 1), (1, 2), (2, 2)]
