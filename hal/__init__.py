@@ -1,4 +1,4 @@
-"""What a robot is to a controller, and the buses that move one."""
+"""Hardware abstraction layer: the interfaces between controller and robot, and the servo buses."""
 
 from windup.hal.backend import Backend, Clock
 from windup.hal.command import JointCommand

@@ -1,4 +1,4 @@
-"""What every robot looks like to the loop: a port full of servos, a twin, or a mock."""
+"""Interfaces of a robot to the control loop: implemented by servo buses, the twin and mocks."""
 
 from collections.abc import Mapping
 from typing import Protocol, runtime_checkable
@@ -11,23 +11,23 @@ from windup.hal.torque_state import TorqueState
 
 
 class Clock(Protocol):
-    """Time belongs to the backend: the wall sleeps, the twin steps physics."""
+    """Clock of a backend: a wall clock sleeps while it waits, the twin's clock steps physics."""
 
     def now(self) -> float:
-        """Return the time, s."""
+        """Return the present time, s."""
         ...
 
     def wait_until(self, time: float) -> None:
-        """Return when it is `time` s; at once if that has passed."""
+        """Block until the clock reads `time` s; return at once if that has passed."""
         ...
 
 
 class Backend(Protocol):
-    """Joints that can be read and commanded.
+    """A set of joints that can be read and commanded.
 
-    The life of a backend: `connect`, `configure`, any number of `read` and `write`, `disconnect`.
-    `read` is `request` (ask, do not wait) followed by `collect` (wait for the answers), so that a
-    bus can carry bytes while the controller computes.
+    Order of calls: `connect`, `configure`, any number of `read` and `write`, `disconnect`.
+    `read` is `request` (send, do not wait) followed by `collect` (wait for the answers), so that
+    the bus can transfer bytes while the controller computes.
     """
 
     @property
@@ -37,103 +37,103 @@ class Backend(Protocol):
 
     @property
     def clock(self) -> Clock:
-        """The clock that this backend lives on."""
+        """The clock that all times of this backend refer to."""
         ...
 
     def connect(self) -> None:
-        """Open what has to be opened. Nothing moves."""
+        """Open ports and other resources. Nothing moves."""
         ...
 
     def configure(self) -> None:
-        """Assert the settings that the stack relies on. Nothing moves."""
+        """Apply the settings that the stack relies on. Nothing moves."""
         ...
 
     def request(self) -> None:
-        """Ask every joint for its state."""
+        """Request the state of every joint, without waiting for it."""
         ...
 
     def collect(self) -> Observation:
-        """Return the state last asked for."""
+        """Wait for the state last requested and return it."""
         ...
 
     def read(self) -> Observation:
-        """Return the present state: `request` and `collect`."""
+        """Return the present state: `request` followed by `collect`."""
         ...
 
     def write(self, command: JointCommand) -> JointCommand:
-        """Send a command and return what the joints really got."""
+        """Send a command and return the command that was really applied to the joints."""
         ...
 
     def set_torque(self, on: bool) -> TorqueState:
-        """Switch the torque of all joints and return what was read back."""
+        """Switch the torque of all joints on or off and return the state that was read back."""
         ...
 
     def disconnect(self) -> None:
-        """Give back what `connect` took."""
+        """Release the resources that `connect` opened."""
         ...
 
 
 @runtime_checkable
 class Rearmable(Protocol):
-    """A backend whose port may go and come back."""
+    """A backend whose port may disappear (adapter unplugged) and come back."""
 
     def rearm(self) -> TorqueState:
-        """Switch torque on at the present pose after a port was gone; return what was read back.
+        """Switch torque on at the present pose after a port was lost; return what was read back.
 
         Raises:
-            PortError: A port is still gone.
+            PortError: A port is still missing.
         """
         ...
 
 
 @runtime_checkable
 class TorqueWatched(Protocol):
-    """A backend that sees whether its joints still have their torque; a twin's always do."""
+    """A backend that detects joints that lost their torque; joints of the twin never do."""
 
     @property
     def lost(self) -> Mapping[str, str]:
-        """URL of each port that is gone, to what was seen of it."""
+        """Maps the URL of each lost port to a description of the failure."""
         ...
 
     @property
     def lost_joints(self) -> Mapping[str, Loss]:
-        """Joint name to how it has lost its torque since it was armed."""
+        """Maps joint name to the loss, for joints that lost their torque since they were armed."""
         ...
 
     @property
     def doubtful_joints(self) -> Mapping[str, str]:
-        """The joints of which nobody knows whether they have torque, and what to do about each."""
+        """Maps joint name to the remedy, for joints whose torque state is unknown."""
         ...
 
 
 @runtime_checkable
 class HealthReader(Protocol):
-    """A backend whose supply and temperature are read less often than its joints move."""
+    """A backend that reads supply voltage and temperature less often than joint positions."""
 
     def read_health(self) -> None:
-        """Read supply and temperature of every joint now; the next observation has them."""
+        """Read supply and temperature of every joint now; the next observation contains them."""
         ...
 
 
 @runtime_checkable
 class BusHealth(Protocol):
-    """What a backend on a bus can say about the bus and its servos; a twin has neither."""
+    """Error counters and servo alerts of a backend on a bus; the twin does not have them."""
 
     @property
     def alert_kinds(self) -> tuple[str, ...]:
-        """All that a servo can complain of."""
+        """All kinds of alert that a servo can report."""
         ...
 
     @property
     def alerts(self) -> dict[str, tuple[str, ...]]:
-        """Joint name to what its servo complains of."""
+        """Maps joint name to the alerts that its servo reports."""
         ...
 
     @property
     def clamps(self) -> Mapping[str, int]:
-        """Clamp of the driver's own to the number of commands it changed; always the same names."""
+        """Maps each clamp of the driver to the count of commands it changed; the keys are fixed."""
         ...
 
     def bus_errors(self) -> Mapping[str, int]:
-        """Return kind of error to how often it has happened; the kinds are always the same."""
+        """Return the number of errors so far by kind; the keys are fixed."""
         ...

@@ -1,4 +1,4 @@
-"""The clock on the wall."""
+"""Wall clock, precise sleeping, and real-time settings for a loop on wall time."""
 
 import contextlib
 import ctypes
@@ -8,17 +8,17 @@ import time
 from collections.abc import Iterator
 
 SPIN = 1.5e-4
-"""The last part of a wait, not trusted to a sleep, s."""
+"""Last part of a wait, spent spinning instead of sleeping, s."""
 PR_SET_TIMERSLACK = 29
 PRIORITY = 10
-"""Of the loop among real-time processes, 1 to 99; interrupts and the kernel's own are above."""
+"""Real-time priority of the loop, 1 to 99; interrupt and kernel threads have higher ones."""
 
 
 class WallClock:
-    """Monotonic time; waiting sleeps."""
+    """Monotonic time of the host; `wait_until` sleeps."""
 
     def now(self) -> float:
-        """Return the time since some moment in the past, s."""
+        """Return the time since an arbitrary fixed instant, s."""
         return time.monotonic()
 
     def wait_until(self, time_: float) -> None:
@@ -27,7 +27,7 @@ class WallClock:
 
 
 def sleep_until(time_: float) -> None:
-    """Return when `time.monotonic()` is `time_` s: a sleep to just before it, and a short spin."""
+    """Block until `time.monotonic()` is `time_` s: sleep to just before it, then spin."""
     while (left := time_ - time.monotonic()) > 0.0:
         if left > SPIN:
             time.sleep(left - SPIN)
@@ -35,11 +35,11 @@ def sleep_until(time_: float) -> None:
 
 @contextlib.contextmanager
 def punctual() -> Iterator[None]:
-    """Give a loop on the wall's time precedence, exact sleeps, and no garbage collection.
+    """Run a loop with real-time priority, exact sleeps, and garbage collection switched off.
 
-    A full collection takes 10 to 20 ms. Nothing that a tick makes needs one: reference
-    counts free it. Precedence is the kernel's round-robin scheduling where the user may have it
-    (root, or an rtprio limit); elsewhere the loop runs as everybody else.
+    A full collection takes 10 to 20 ms, and a tick does not need one: reference counting frees
+    all objects it makes. The priority is the kernel's round-robin scheduling where the user may
+    set it (root, or an rtprio limit); otherwise the loop keeps ordinary scheduling.
     """
     was = gc.isenabled()
     gc.collect()
@@ -58,14 +58,14 @@ def punctual() -> Iterator[None]:
 
 
 def _precedence(on: bool) -> None:
-    """Run before all ordinary processes, or again as one of them."""
+    """Switch this process to real-time scheduling, or back to ordinary scheduling."""
     kind, priority = (os.SCHED_RR, PRIORITY) if on else (os.SCHED_OTHER, 0)
     with contextlib.suppress(OSError, AttributeError):
-        # What is started from here, such as a planner, is no part of the loop.
+        # Child processes, such as the planner, do not inherit the real-time scheduling.
         os.sched_setscheduler(0, kind | os.SCHED_RESET_ON_FORK, os.sched_param(priority))
 
 
 def _timer_slack(nanoseconds: int) -> None:
-    """Say how late the kernel may end a sleep of this thread; 0 for its default of 50 us."""
+    """Set how late the kernel may end a sleep of this thread; 0 restores its default of 50 us."""
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, nanoseconds)

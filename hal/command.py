@@ -1,4 +1,4 @@
-"""What a controller asks of the joints, and the one torque law that says what it means."""
+"""Joint commands, and the torque law that defines them."""
 
 from dataclasses import dataclass
 
@@ -11,21 +11,21 @@ FIELDS = ("position", "velocity", "torque", "stiffness", "damping")
 
 @dataclass(frozen=True, slots=True)
 class JointCommand:
-    """A target for every joint, n joints in MJCF order.
+    """Targets and gains for n joints in MJCF order.
 
     The torque law, within the joint's limits, with q and dq the measured position and velocity::
 
         tau = stiffness (position - q) + damping (velocity - dq) + torque
 
-    Ideal torque joints do just that, at every physics step. A position servo does what it can:
+    Ideal torque joints apply this law at every physics step. A position servo approximates it:
     gain registers, a goal shifted by ``(damping velocity + torque) / stiffness``, a voltage limit
-    instead of a torque limit, and never less damping than its motor's own K^2/R. The backend's
-    `write` therefore returns what the joints really got.
+    instead of a torque limit, and at least the back-EMF damping K^2/R of its motor. The backend's
+    `write` therefore returns the command that was really applied.
 
     Made by `of`, and not changed afterwards: whoever wants another command makes another one.
 
     Attributes:
-        block: The five rows below as one (5, n) array; the rows are views of it.
+        block: (5, n) array with the rows of `FIELDS`; the properties are views of its rows.
     """
 
     block: Array
@@ -106,13 +106,14 @@ def joint_torque(command: JointCommand, q: Array, dq: Array, limit: Array) -> Ar
 
 
 def shifted_goal(command: JointCommand, stiffness: Array | None = None) -> Array:
-    """Return the goal (n,) rad that makes a position servo give the feed-forward terms as well.
+    """Return the goal (n,) rad that makes a position servo apply the feed-forward terms as well.
 
-    ``position + (damping velocity + torque) / stiffness``; joints without stiffness keep theirs.
+    ``position + (damping velocity + torque) / stiffness``; without stiffness the goal is
+    `position`.
 
     Args:
-        command: What is asked for.
-        stiffness: (n,) N m/rad that the joints really have, where that is not what is asked for.
+        command: The wanted command.
+        stiffness: (n,) N m/rad that the joints really have, if it is not the commanded one.
     """
     real = command.stiffness if stiffness is None else stiffness
     push = command.damping * command.velocity + command.torque

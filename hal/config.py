@@ -1,4 +1,4 @@
-"""Strict TOML into typed records: one error, with the file, the key and the likely word."""
+"""Loads TOML strictly into typed records; the error names file, key and the likely spelling."""
 
 import re
 import tomllib
@@ -16,9 +16,9 @@ from windup.hal.small_file import read_small
 
 T = TypeVar("T")
 LARGEST: Final = 1e12
-"""No number of a file is beyond this, in any unit."""
+"""Largest magnitude of any number in a file, in any unit."""
 MOST_NAMED: Final = 12
-"""So many missing keys are named."""
+"""Maximum number of missing keys that a message names."""
 
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
@@ -31,19 +31,19 @@ Tilt = Annotated[float, Meta(gt=0.0, le=4.0)]
 
 
 class Record(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
-    """Base of every record that stands in a TOML file. An unknown key is an error."""
+    """Base class of every record that is read from a TOML file. An unknown key is an error."""
 
 
 def load_toml(path: Path, record: type[T]) -> T:
-    """Return the file at `path` as a `record`.
+    """Return the contents of the TOML file at `path` as a `record`.
 
-    Numbers have to be finite: TOML knows `nan` and `inf`, and no key of ours does.
+    All numbers have to be finite: TOML allows `nan` and `inf`, but no key here does.
 
     Raises:
         ConfigError: The file is missing, is not TOML, or does not fit the record.
     """
     try:
-        text = read_small(path).decode("utf-8-sig")  # editors of Windows write a mark before it
+        text = read_small(path).decode("utf-8-sig")  # Windows editors may write a BOM
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
@@ -63,7 +63,7 @@ def check_finite(path: Path, data: Any) -> None:
     """Raise unless every number in the `data` of a file is finite.
 
     Raises:
-        ConfigError: One is not; the message names the file and the key.
+        ConfigError: A number is not finite; the message names the file and the key.
     """
     for key, number in _numbers(data, ""):
         if not -LARGEST <= number <= LARGEST:
@@ -73,7 +73,7 @@ def check_finite(path: Path, data: Any) -> None:
 
 
 def _numbers(data: Any, key: str) -> Iterator[tuple[str, float]]:
-    """Yield every number with its key, as `joint[3].lower`."""
+    """Yield every number with its full key, such as `joint[3].lower`."""
     if isinstance(data, dict):
         for name, item in data.items():
             yield from _numbers(item, f"{key}.{name}" if key else name)
@@ -85,7 +85,7 @@ def _numbers(data: Any, key: str) -> Iterator[tuple[str, float]]:
 
 
 def _explain(message: str, record: type, data: Any) -> str:
-    """Turn msgspec's message into ours: the key first, then the likely word."""
+    """Return the message for msgspec's `message`: the key first, then the likely spelling."""
     if "missing required field" in message:
         missing = list(missing_keys(data, record))
         more = f" and {len(missing) - MOST_NAMED} more" if len(missing) > MOST_NAMED else ""

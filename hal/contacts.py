@@ -15,12 +15,12 @@ from windup.hal.mirror import Side, side_of
 class ContactSensors:
     """Names of the k contact sensors and the feet they belong to.
 
-    A name that a gait may wait for is either one sensor or a whole foot (any of its sensors).
+    A contact that a gait waits for is named by one sensor or by a foot (any of its sensors).
 
     Attributes:
         names: The k sensor names, in the order of `Observation.contacts`.
-        feet: Foot name to its sensors' names; left before right by custom.
-        sides: The side of each foot, where it is known; else its name says so.
+        feet: Maps foot name to the names of its sensors; by convention left before right.
+        sides: Side of each foot; if empty, the side is taken from the foot's name.
         threshold: Normal force above which a sensor counts as pressed, N.
     """
 
@@ -37,16 +37,16 @@ class ContactSensors:
 
     @property
     def foot_names(self) -> tuple[str, ...]:
-        """Names of the feet."""
+        """Names of the feet, in the order of `feet`."""
         return tuple(self.feet)
 
     def is_left(self, foot: int) -> bool:
-        """Return whether the foot of this index is the left one."""
+        """Return whether the foot with index `foot` is the left one."""
         side = self.sides[foot] if self.sides else side_of(self.foot_names[foot])
         return side == "left"
 
     def mask(self, name: str) -> Mask:
-        """Return (k,) bool: the sensors that a foot or a sensor `name` stands for.
+        """Return (k,) bool: the sensors of the foot `name`, or the single sensor `name`.
 
         Raises:
             UnknownNameError: `name` is neither a foot nor a sensor.
@@ -61,9 +61,9 @@ class ContactSensors:
         return np.array([sensor in chosen for sensor in self.names], dtype=bool)
 
     def pressed(self, contacts: Array) -> Mask:
-        """Return (..., k) bool from forces (..., k) N."""
+        """Return (..., k) bool: which sensors are pressed, from forces (..., k) N."""
         return np.asarray(contacts > self.threshold)
 
     def feet_down(self, contacts: Array) -> Mask:
-        """Return (..., feet) bool: is any sensor of each foot pressed, from forces (..., k) N."""
+        """Return (..., feet) bool: which feet have a pressed sensor, from forces (..., k) N."""
         return np.asarray((self.pressed(contacts)[..., None, :] & self.members).any(axis=-1))

@@ -1,4 +1,4 @@
-"""What a controller is, and what it may ask of a predictor."""
+"""Interfaces of controllers, of batch policies, and of the predictor that plays rollouts."""
 
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
@@ -11,58 +11,58 @@ Plane = tuple[float, float, float]
 
 
 class Controller(Protocol):
-    """Observations in, joint commands out.
+    """Computes joint commands from observations.
 
-    No input or output and no clock of its own: the same observations (and predictions) give the
-    same bytes.
+    A controller does no I/O and reads no clock: the same observations (and predictions) give
+    bit-identical commands.
     """
 
     def reset(self, observation: Observation) -> None:
-        """Start from `observation`.
+        """Initialise the controller with `observation`.
 
         Raises:
-            StateMissingError: The controller needs a state that the observation lacks.
+            StateMissingError: The observation lacks a quantity that the controller needs.
         """
         ...
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the command for the tick that begins now and lasts `dt` s."""
+        """Return the command for the tick that starts now and lasts `dt` s."""
         ...
 
 
 @runtime_checkable
 class Begins(Protocol):
-    """A controller whose first command is only the beginning of a way to its first pose."""
+    """A controller that moves to its first pose gradually: its first command is not that pose."""
 
     @property
     def first_pose(self) -> Array:
-        """(n,) rad where it goes first."""
+        """(n,) pose that the controller moves to first, rad."""
         ...
 
 
 def first_pose_of(controller: Controller, first: JointCommand) -> Array:
-    """Return where a controller goes first, (n,) rad; `first` is its first command."""
+    """Return the pose (n,) rad that a controller moves to first; `first` is its first command."""
     return controller.first_pose if isinstance(controller, Begins) else first.position
 
 
 @dataclass(frozen=True, slots=True)
 class Outcomes:
-    """States of m rollouts, each at the instant its policy called itself done (or fell).
+    """Final states of m rollouts, each at the instant its policy was done or the robot fell.
 
     World frame, m and m/s; quaternions wxyz.
 
     Attributes:
-        duration: (m,) simulated time, s.
+        duration: (m,) simulated time until then, s.
         base_position: (m, 3).
         base_orientation: (m, 4).
-        base_velocity: (m, 6) linear in the world, angular in the body.
+        base_velocity: (m, 6) linear in the world frame, angular in the body frame.
         joint_position: (m, n) rad.
         com: (m, 3) whole-body centre of mass.
         com_velocity: (m, 3).
         feet: (m, feet, 3) centres of the soles.
         torso: (m, 3) unit vector along the torso.
-        contacts: (m, k) N.
-        fell: (m,) bool.
+        contacts: (m, k) normal forces of the contact sensors, N.
+        fell: (m,) bool, whether the robot fell.
     """
 
     duration: Array
@@ -80,14 +80,14 @@ class Outcomes:
 
 @dataclass(slots=True)
 class PolicyInput:
-    """The live state of m rollouts, as a batch policy sees it each tick; rows are rollouts.
+    """Present state of m rollouts, passed to a batch policy each tick; rows are rollouts.
 
     Attributes:
         joint_position: (m, n) rad.
         joint_velocity: (m, n) rad/s.
         base_orientation: (m, 4) wxyz.
-        base_angular_velocity: (m, 3) rad/s in the body.
-        contacts: (m, k) N.
+        base_angular_velocity: (m, 3) rad/s in the body frame.
+        contacts: (m, k) normal forces of the contact sensors, N.
     """
 
     joint_position: Array
@@ -98,33 +98,33 @@ class PolicyInput:
 
 
 class BatchPolicy(Protocol):
-    """A controller for m robots at once."""
+    """A controller of m simulated robots at once."""
 
     @property
     def size(self) -> int:
-        """The number m of rollouts wanted."""
+        """Number m of rollouts."""
         ...
 
     @property
     def done(self) -> Mask:
-        """(m,) bool: rollouts that have reached their end."""
+        """(m,) bool: rollouts that are finished."""
         ...
 
     def step(self, state: PolicyInput, dt: float) -> Array:
-        """Return target positions (m, n) rad for the tick that begins now."""
+        """Return target positions (m, n) rad for the tick that starts now."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class RolloutStart:
-    """Where a prediction begins.
+    """Initial state of a prediction.
 
     Attributes:
-        observation: The state, with its base.
-        in_flight: (d, n) target positions sent before and not yet at the joints, oldest first,
-            one a tick, rad.
+        observation: The state, including that of the base.
+        in_flight: (d, n) target positions that were sent but have not yet taken effect because of
+            the latency, oldest first, one per tick, rad.
         dt: Period of a tick, s.
-        ground: Ground as it was felt: height at the origin, m; rise along x; along y.
+        ground: Estimated ground plane: height at the origin, m; slope along x; slope along y.
     """
 
     observation: Observation
@@ -134,25 +134,25 @@ class RolloutStart:
 
 
 class Predictor(Protocol):
-    """Plays a batch policy forward from a state that was observed."""
+    """Simulates a batch policy from an observed state over a horizon."""
 
     @property
     def stopwatch(self) -> "Stopwatch":
-        """Rollouts played so far and the time they took."""
+        """Number of rollouts so far and the wall time they took."""
         ...
 
     def predict(self, start: RolloutStart, policy: BatchPolicy, horizon: float) -> Outcomes:
-        """Return the outcomes of `policy.size` rollouts of at most `horizon` s."""
+        """Return the final states of `policy.size` rollouts of at most `horizon` s."""
         ...
 
 
 @dataclass(slots=True)
 class Stopwatch:
-    """Count and wall time of something done now and then.
+    """Count and wall time of a repeated operation.
 
     Attributes:
-        count: How many.
-        seconds: Wall time spent.
+        count: Number of items processed.
+        seconds: Total wall time, s.
         laps: Wall time of each call, s.
     """
 
@@ -161,7 +161,7 @@ class Stopwatch:
     laps: list[float] = field(default_factory=list)
 
     def add(self, count: int, seconds: float) -> None:
-        """Count one call that did `count` things in `seconds`."""
+        """Record one call that processed `count` items in `seconds`."""
         self.count += count
         self.seconds += seconds
         self.laps.append(seconds)

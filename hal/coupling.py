@@ -1,4 +1,4 @@
-"""Two joints that two servos move together, as in a differential or an ankle of two rods."""
+"""Two joints that are driven by two servos together, as in a differential or a two-rod ankle."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,12 +15,12 @@ Matrix = tuple[tuple[float, float], tuple[float, float]]
 class Coupling:
     """``servo angles = matrix (first, second)``; sign, ratio and zero of each mount come after it.
 
-    The servos' stiffness acts on both joints; what the coupling cannot do is a stiffness of its
-    own for each, so both get the closest there is.
+    The stiffness of each servo acts on both joints, so the two joints cannot be given independent
+    stiffnesses; they get the closest achievable ones.
 
     Attributes:
-        first: Name of the joint whose mount holds the first servo.
-        second: Name of the other.
+        first: Name of the joint whose mount describes the first servo.
+        second: Name of the joint whose mount describes the second servo.
         matrix: Rows are servos, columns joints.
     """
 
@@ -30,11 +30,11 @@ class Coupling:
 
 
 class Couplings:
-    """All couplings of a robot of n joints; joints without one pass through.
+    """All couplings of a robot of n joints; values of uncoupled joints are passed unchanged.
 
     Raises:
-        UnknownNameError: A joint that is not there.
-        ValueError: A matrix that cannot be inverted.
+        UnknownNameError: A coupling names a joint that the robot does not have.
+        ValueError: A matrix cannot be inverted.
     """
 
     def __init__(self, joints: Joints, couplings: Sequence[Coupling]) -> None:
@@ -75,35 +75,35 @@ class Couplings:
         return result
 
     def servo_gains(self, gains: Array) -> Array:
-        """Return servo gains (n,), none negative, that come closest to joint gains (n,)."""
+        """Return the servo gains (n,), none negative, that best approximate joint gains (n,)."""
         result = gains.copy()
         for rows, _, _, _, back in self._parts:
             result[rows] = np.maximum(back @ gains[rows], 0.0)
         return result
 
     def joint_gains(self, gains: Array) -> Array:
-        """Return the joint gains (n,) that servo gains (n,) make."""
+        """Return the joint gains (n,) that result from servo gains (n,)."""
         result = gains.copy()
         for rows, _, _, squares, _ in self._parts:
             result[rows] = squares @ gains[rows]
         return result
 
     def oldest(self, times: Array) -> Array:
-        """Return when each joint (n,) was last known, from when each servo (n,) answered, s."""
+        """Return the oldest sample time of each joint (n,) from those of the servos (n,), s."""
         result = times.copy()
         for rows, *_ in self._parts:
             result[rows] = times[rows].min()
         return result
 
     def any(self, servos: Mask) -> Mask:
-        """Return which joints (n,) one of the `servos` (n,) moves."""
+        """Return (n,) bool: joints that are driven by at least one of the `servos` (n,) bool."""
         result = servos.copy()
         for rows, *_ in self._parts:
             result[rows] = servos[rows].any()
         return result
 
     def extent(self, lower: Array, upper: Array) -> tuple[Array, Array]:
-        """Return the smallest and largest servo angles (n,) of joints between (n,) limits, rad."""
+        """Return the smallest and largest servo angles (n,) for joint limits (n,), rad."""
         low, high = lower.copy(), upper.copy()
         for rows, matrix, *_ in self._parts:
             ends = np.stack([matrix * lower[rows], matrix * upper[rows]])

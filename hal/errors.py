@@ -1,4 +1,4 @@
-"""Every error of the stack, under one root, each with the exit status it means at the command line.
+"""All exceptions of the stack, with one base class and an exit status for the command line.
 
 Messages are one line for the person at the robot: what happened, which joint or key, what would
 be right, what to run next.
@@ -9,11 +9,11 @@ from collections.abc import Iterable
 
 
 class WindupError(Exception):
-    """Root of all errors raised by Windup.
+    """Base class of all errors raised by Windup.
 
     Attributes:
         exit_status: 1 the run failed, 2 usage or configuration (nothing moved), 3 bus or hardware.
-        limp: Whether a robot goes limp for it at once, whatever its stop policy.
+        limp: Whether torque is switched off at once on this error, whatever the stop policy.
     """
 
     exit_status = 1
@@ -21,19 +21,19 @@ class WindupError(Exception):
 
 
 class ConfigError(WindupError):
-    """A file says something that cannot be: unknown key, wrong type, broken cross-reference."""
+    """A file is invalid: unknown key, wrong type, value out of range, broken cross-reference."""
 
     exit_status = 2
 
 
 class UsageError(WindupError):
-    """A command or call with values that cannot work; nothing has moved."""
+    """A command or call has invalid arguments; nothing has moved."""
 
     exit_status = 2
 
 
 class UnknownNameError(UsageError):
-    """A name that is not there, with the known names and the likely one."""
+    """A name is unknown; the message lists the known names and suggests the likely one."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         self.kind, self.name, self.known = kind, name, tuple(known)
@@ -41,15 +41,15 @@ class UnknownNameError(UsageError):
 
 
 class StateMissingError(UsageError):
-    """A controller needs a part of the observation that this backend does not measure."""
+    """A controller needs a part of the observation that the backend does not provide."""
 
 
 class UnsafeCommandError(WindupError):
-    """A command that the guard refuses outright: not a number, or of the wrong shape."""
+    """The guard rejected a command: it contains NaN or has the wrong shape."""
 
 
 class ControllerError(WindupError):
-    """A controller failed in mid-run with an error of its own."""
+    """A controller raised an exception during a run."""
 
 
 class StaleStateError(WindupError):
@@ -59,19 +59,19 @@ class StaleStateError(WindupError):
 
 
 class DivergedError(WindupError):
-    """The twin's physics left the numbers; the simulation cannot go on."""
+    """The physics of the twin diverged; the simulation cannot continue."""
 
 
 class PlannerError(WindupError):
-    """The process that plans steps could not start, failed, or has died."""
+    """The step planner process could not start, failed, or has exited."""
 
 
 class OutputError(WindupError):
-    """A result cannot be written; what was to be done is done."""
+    """A result cannot be written; the work itself has been completed."""
 
 
 class TelemetryError(WindupError):
-    """A telemetry ring that cannot be made, is not there, or is of another version."""
+    """A telemetry ring cannot be created, does not exist, or has another version."""
 
     exit_status = 2
 
@@ -83,14 +83,14 @@ class HardwareError(WindupError):
 
 
 class PortError(HardwareError):
-    """A port cannot be opened, or went away."""
+    """A port cannot be opened, or has disappeared."""
 
 
 class NoAnswerError(HardwareError):
-    """A servo that was asked said nothing before the deadline.
+    """A servo did not answer a request before the deadline.
 
     Attributes:
-        came: How many bytes came that were no answer of its.
+        came: Number of bytes that were received but did not belong to its answer.
     """
 
     def __init__(self, message: str, came: int = 0) -> None:
@@ -99,22 +99,22 @@ class NoAnswerError(HardwareError):
 
 
 class CorruptAnswerError(HardwareError):
-    """Bytes came, but no frame with a good checksum: noise, a wrong baud rate, an id twice."""
+    """Bytes came, but no frame with a valid checksum: noise, wrong baud rate, or duplicate id."""
 
 
 class TorqueOnError(HardwareError):
-    """Torque was told to go off, and a joint read back as on."""
+    """Torque was switched off, but a joint read back as on."""
 
 
 class TorqueUnknownError(HardwareError):
-    """Torque was told to go off, and a joint could not be read back: it may be on or off."""
+    """Torque was switched off, but a joint could not be read back: it may be on or off."""
 
 
 class UnwellError(HardwareError):
-    """Something that was watched is so unwell that the robot stops.
+    """A monitored quantity reached the level at which the robot stops.
 
     Attributes:
-        kind: What it is, in the word of the warnings that came before.
+        kind: Kind of the finding, as in the warnings that preceded it.
     """
 
     def __init__(self, message: str, kind: str = "") -> None:
@@ -123,33 +123,33 @@ class UnwellError(HardwareError):
 
 
 class TorqueLostError(HardwareError):
-    """A joint has no torque any more though nobody of ours switched it off."""
+    """A joint lost its torque, and this stack did not switch it off."""
 
 
 class UnhealthyError(UnwellError):
-    """A joint is too hot, on the wrong supply, loaded for too long, or blocked."""
+    """A joint is too hot, has a wrong supply voltage, is loaded for too long, or is blocked."""
 
 
 class ImuError(UnwellError):
-    """The IMU is silent, frozen or wrong, and a robot that balances with it cannot go on."""
+    """The IMU is silent, frozen or wrong, and the robot balances with it."""
 
 
 class GuardianError(HardwareError):
-    """The process that stops the robot when this one dies has died itself, or does not react."""
+    """The guardian process, which stops the robot if this process dies, has died or hangs."""
 
 
 class FirstMotionError(HardwareError):
-    """A joint did not follow in the first motion after torque came on; the robot goes limp."""
+    """A joint did not follow in the first motion after torque enable; the robot goes limp."""
 
     limp = True
 
 
 class PostureError(UsageError):
-    """The robot is in no posture to do what it was to do; nothing has moved."""
+    """The robot's posture does not allow the requested motion; nothing has moved."""
 
 
 class RefusedError(HardwareError):
-    """A servo answered that it will not do what it was told."""
+    """A servo rejected an instruction: its status packet carries an error."""
 
 
 def suggest(name: str, known: Iterable[str]) -> str:

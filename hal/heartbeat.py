@@ -1,4 +1,4 @@
-"""What is called again and again, so that somebody who watches knows that this program lives."""
+"""Heartbeat: a callback called regularly, so that a watchdog can tell that this program runs."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -8,18 +8,18 @@ Heartbeat = Callable[[], None]
 
 
 class Beating(Protocol):
-    """What calls its heartbeat while it works."""
+    """An object that calls its `heartbeat` during long operations."""
 
     heartbeat: Heartbeat
 
 
 def no_heartbeat() -> None:
-    """Tell nobody."""
+    """Do nothing: the heartbeat of a program without a watchdog."""
 
 
 @contextmanager
 def beating(parts: Sequence[Beating], heartbeat: Heartbeat) -> Iterator[None]:
-    """Have `parts` call `heartbeat` meanwhile."""
+    """Make `parts` call `heartbeat` inside the `with` block; restore their own afterwards."""
     before = [part.heartbeat for part in parts]
     for part in parts:
         part.heartbeat = heartbeat

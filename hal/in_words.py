@@ -1,4 +1,4 @@
-"""Errors that this package did not expect, as a person reads them."""
+"""Text of exceptions for a person, including those that are not of this package."""
 
 import errno
 
@@ -6,7 +6,7 @@ from windup.hal.errors import WindupError
 
 
 def in_words(error: Exception) -> str:
-    """Return what an error says, with what helps where the operating system said it."""
+    """Return the message of `error`; for errors of the operating system, a readable one."""
     if isinstance(error, WindupError):
         return str(error)
     if isinstance(error, OSError) and error.errno in (errno.EMFILE, errno.ENFILE):

@@ -1,4 +1,4 @@
-"""The joints of one robot: names in MJCF order, limits and default gains as arrays."""
+"""The joints of a robot: names in MJCF order, limits and default gains as arrays."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -15,7 +15,7 @@ ARRAYS = ("lower", "upper", "stiffness", "damping", "torque", "velocity", "goal_
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """One actuated hinge.
+    """One actuated hinge joint.
 
     Attributes:
         name: Name in the MJCF.
@@ -23,9 +23,9 @@ class Joint:
         upper: Largest allowed target, rad.
         stiffness: Default proportional gain, N m/rad.
         damping: Default derivative gain, N m s/rad.
-        torque: Largest torque, N m.
-        velocity: Largest velocity, rad/s.
-        goal_speed: Fastest that the servo lets its goal run, rad/s.
+        torque: Maximum torque, N m.
+        velocity: Maximum velocity, rad/s.
+        goal_speed: Maximum speed at which the servo moves its internal goal, rad/s.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Joints:
     """All joints of a robot in MJCF order; `n` is their number.
 
     The arrays have shape (n,) and are read-only. Names are resolved to indices once, with
-    `index`; everything behind that works on arrays.
+    `index`; all later code works on arrays.
     """
 
     joints: tuple[Joint, ...]
@@ -70,7 +70,7 @@ class Joints:
         """Return the index of the joint `name`.
 
         Raises:
-            UnknownNameError: There is no such joint; the message names the likely one.
+            UnknownNameError: There is no such joint; the message suggests the likely one.
         """
         try:
             return self.names.index(name)

@@ -1,4 +1,4 @@
-"""Left and right: how names and poses of one side become the same of the other."""
+"""Mirror images: converts joint values and names of one side of the robot to the other."""
 
 import re
 from dataclasses import dataclass
@@ -19,8 +19,8 @@ class Mirror:
     """Mirror image across the robot's own plane y = 0.
 
     Attributes:
-        perm: (n,) index of each joint's partner; midline joints are their own.
-        sign: (n,) +1 or -1, from the directions of the two axes.
+        perm: (n,) index of each joint's partner; a midline joint is its own partner.
+        sign: (n,) +1 or -1, from the directions of the two joint axes.
     """
 
     perm: npt.NDArray[np.intp]
@@ -46,7 +46,7 @@ def other_side(name: str) -> str:
 
 
 def side_of(name: str) -> Side | Literal[""]:
-    """Return the side that a name states, or "" where it states none, or both.
+    """Return the side that is part of a name, or "" if it contains neither or both.
 
     >>> side_of("left_foot"), side_of("foot.R"), side_of("leg"), side_of("link_1")
     ('left', 'right', '', '')

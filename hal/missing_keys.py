@@ -1,4 +1,4 @@
-"""Which keys a file lacks: all of them at once."""
+"""Finds all required keys that are missing in a file."""
 
 from collections.abc import Iterator
 from typing import Annotated, Any, get_args, get_origin
@@ -7,12 +7,12 @@ import msgspec
 
 
 def missing_keys(data: Any, kind: Any, key: str = "") -> Iterator[str]:
-    """Yield the keys that `data` lacks to be of a type, as `joint[3].lower`.
+    """Yield the keys that type `kind` requires and `data` lacks, such as `joint[3].lower`.
 
     Args:
-        data: What a file says: dicts, lists and values.
-        kind: The type: a record, or a container or a union of some.
-        key: Where it stands.
+        data: Parsed contents of a file: dicts, lists and values.
+        kind: The type: a record, or a container or union of records.
+        key: Key of `data` in the file; "" for the whole file.
     """
     origin, inner = get_origin(kind), get_args(kind)
     if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
@@ -26,7 +26,7 @@ def missing_keys(data: Any, kind: Any, key: str = "") -> Iterator[str]:
         if isinstance(data, dict):
             for name, item in data.items():
                 yield from missing_keys(item, inner[1], f"{key}.{name}")
-    elif origin is not None:  # a union, or a number with its range
+    elif origin is not None:  # a union, or a type annotated with its range
         for part in inner[:1] if origin is Annotated else inner:
             yield from missing_keys(data, part, key)
 

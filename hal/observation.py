@@ -1,4 +1,4 @@
-"""What a controller is given each tick. SI units; quaternions wxyz, body to world."""
+"""Observations: the input of a controller each tick. SI units; quaternions wxyz, body to world."""
 
 from dataclasses import dataclass
 
@@ -7,17 +7,18 @@ from windup.hal.joints import Array
 
 @dataclass(frozen=True, slots=True)
 class JointState:
-    """State of the n joints in MJCF order; every attribute but None is an (n,) array.
+    """State of the n joints in MJCF order; each attribute is an (n,) array.
 
     Attributes:
-        position: rad.
-        velocity: rad/s.
-        torque: N m, from motor current; NaN where a servo measures none (a load is no torque).
-        voltage: Supply, V.
-        temperature: Motor, degrees C.
-        age: Seconds since the servo last answered.
-        health_age: Seconds since voltage and temperature were measured, which is less often; None
-            where they are as young as the rest.
+        position: Joint position, rad.
+        velocity: Joint velocity, rad/s.
+        torque: N m, from motor current; NaN if the servo does not measure current (its "load"
+            register is not a torque).
+        voltage: Supply voltage, V.
+        temperature: Motor temperature, degrees C.
+        age: Time since the servo last answered, s.
+        health_age: Time since voltage and temperature were measured, s, if they are read less
+            often than the rest; None if `age` applies to them too.
     """
 
     position: Array
@@ -31,13 +32,13 @@ class JointState:
 
 @dataclass(frozen=True, slots=True)
 class ImuState:
-    """One inertial sample, already turned into the body frame.
+    """One IMU sample, rotated into the body frame.
 
     Attributes:
-        orientation: (4,) wxyz, body to world, or None where the IMU does not fuse one.
-        angular_velocity: (3,) rad/s in the body.
-        acceleration: (3,) m/s2 in the body, gravity included (a robot at rest reads +9.81 up).
-        age: Seconds since the sample was taken.
+        orientation: (4,) wxyz, body to world, or None if the IMU does not estimate it.
+        angular_velocity: (3,) rad/s in the body frame.
+        acceleration: (3,) specific force, m/s2 in the body frame (at rest +9.81 upwards).
+        age: Time since the sample was taken, s.
     """
 
     orientation: Array | None
@@ -51,11 +52,11 @@ class BaseState:
     """Pose and velocity of the floating base.
 
     Attributes:
-        position: (3,) m in the world.
+        position: (3,) m in the world frame.
         orientation: (4,) wxyz, body to world.
-        linear_velocity: (3,) m/s in the world.
-        angular_velocity: (3,) rad/s in the body.
-        confidence: 0 unknown to 1 true.
+        linear_velocity: (3,) m/s in the world frame.
+        angular_velocity: (3,) rad/s in the body frame.
+        confidence: From 0 (unknown) to 1 (ground truth).
     """
 
     position: Array
@@ -67,14 +68,14 @@ class BaseState:
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """Everything measured at one instant.
+    """All measurements of one instant.
 
     Attributes:
-        time: When it was measured, s on the backend's clock.
-        joints: The joints.
-        imu: The IMU, or None.
+        time: Timestamp of the measurement on the backend's clock, s.
+        joints: State of the joints.
+        imu: Sample of the IMU, or None.
         contacts: (k,) normal forces of the contact sensors, N; a switch reads 0 or its threshold.
-        base: The floating base: truth on a twin, an estimate on a robot, or None.
+        base: State of the floating base: ground truth on a twin, estimate on a robot, or None.
     """
 
     time: float

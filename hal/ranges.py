@@ -1,10 +1,10 @@
-"""Numbers from outside: each is finite and in its range before anything is opened.
+"""Range checks for numbers from users and files, done before any port or file is opened.
 
-A field of a dataclass, or a parameter of a function, has its range beside its type::
+A field of a dataclass, or a parameter of a function, is annotated with its range::
 
     seconds: Annotated[float, Range(0.0, 86400.0, "s", above=True)] = 5.0
 
-The range counts for every number in it, also in a tuple. A number without a range has to be finite.
+The range applies to every number in the value, also in a tuple. Any other number must be finite.
 """
 
 from collections.abc import Callable, Hashable, Iterator, Mapping
@@ -23,13 +23,13 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Range:
-    """Which numbers make sense.
+    """A range of valid numbers.
 
     Attributes:
         low: The smallest.
         high: The largest.
-        unit: What they are numbers of.
-        above: `low` itself is too small.
+        unit: Their unit, for messages.
+        above: True if `low` itself is excluded.
     """
 
     low: float = -inf
@@ -38,7 +38,7 @@ class Range:
     above: bool = False
 
     def problem(self, value: float) -> str:
-        """Return what would be right instead of `value`; "" where it is right itself.
+        """Return an instruction that states the valid range, or "" if `value` is valid.
 
         >>> Range(0.0, 90.0, "degrees").problem(91.0)
         'give 0 .. 90 degrees'
@@ -57,33 +57,33 @@ class Range:
 
 FINITE: Final = Range()
 SHOWN: Final = 40
-"""So many characters of a wrong text are shown."""
+"""Maximum number of characters of an invalid text that a message quotes."""
 
 
 def check_number(name: str, value: float, range: Range = FINITE) -> None:
     """Raise unless a number is finite and in its range.
 
     Raises:
-        UsageError: It is not; the message begins with `name` and says what would be right.
+        UsageError: It is not; the message begins with `name` and states the valid range.
     """
     if problem := range.problem(value):
         raise UsageError(f"{name} {written(value)}: {problem}")
 
 
 def read_number(name: str, text: str, range: Range = FINITE, *, kind: type = float) -> float:
-    """Return the number that is written in `text`.
+    """Return the number that `text` contains.
 
     >>> read_number("--target up", "0.2")
     0.2
 
     Args:
-        name: Where it stands, for the message.
-        text: What is written there.
-        range: Its range.
+        name: Name of the option or key, for the message.
+        text: The text to convert.
+        range: Valid range.
         kind: float, or int for whole numbers.
 
     Raises:
-        UsageError: It is no number, not finite, or outside its range.
+        UsageError: It is not a number, not finite, or outside its range.
     """
     try:
         value: float = kind(text)
@@ -99,18 +99,18 @@ def check_numbers(record: Any, prefix: str = "") -> None:
     """Raise unless every number in a dataclass is finite and in the range of its field.
 
     Args:
-        record: The dataclass.
-        prefix: What messages begin with, before the field's name; behind "--" names have hyphens.
+        record: The dataclass instance.
+        prefix: Put before the field's name in messages; after "--" names are hyphenated.
 
     Raises:
-        UsageError: One is not.
+        UsageError: A number is not finite or is out of range.
     """
     values = {field.name: getattr(record, field.name) for field in fields(record)}
     _check(_ranges(cast(Hashable, type(record))), values, prefix)
 
 
 def numbers_checked(function: Callable[P, T]) -> Callable[P, T]:
-    """Let a function raise UsageError for arguments that are not finite or out of their range."""
+    """Decorate a function to raise UsageError if an argument is not finite or out of its range."""
     known = signature(function)
 
     @wraps(function)
@@ -122,7 +122,7 @@ def numbers_checked(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def written(value: float) -> str:
-    """Return a number as people write it; whole ones with all their digits."""
+    """Return a number as text for messages; integers with all their digits."""
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
@@ -142,7 +142,7 @@ def _ranges(owner: Hashable) -> dict[str, Range]:
 
 
 def _annotated(hint: Any) -> Iterator[Range]:
-    """Yield the ranges that stand anywhere in a type."""
+    """Yield the ranges in the annotations of a type, at any depth."""
     for part in (*getattr(hint, "__metadata__", ()), *get_args(hint)):
         if isinstance(part, Range):
             yield part
@@ -151,7 +151,7 @@ def _annotated(hint: Any) -> Iterator[Range]:
 
 
 def _numbers(value: Any) -> Iterator[float]:
-    """Yield the numbers in a value; True and False are none."""
+    """Yield the numbers in a value, except bools."""
     if isinstance(value, tuple | list):
         for item in value:
             yield from _numbers(item)

@@ -1,4 +1,4 @@
-"""A register of a servo: where it is, how it is signed, and what one count of it means."""
+"""Servo registers: address, encoding, and the SI value of one count."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -16,18 +16,18 @@ Order = Literal["little", "big"]
 
 @dataclass(frozen=True, slots=True)
 class Register:
-    """One register. Byte order and sign are its own: no bus and no process has any.
+    """One register. Byte order and sign encoding belong to the register, not to the bus.
 
     Attributes:
         name: As in the maker's manual, in lower case.
-        address: Of the first byte.
-        size: Bytes.
-        area: An "eeprom" register is locked while torque is on, and wears.
-        writable: Can it be written at all?
-        signed: Are negative counts possible, as two's complement?
+        address: Address of the first byte.
+        size: Size, bytes.
+        area: An "eeprom" register is locked while torque is on, and wears out with writes.
+        writable: Whether it can be written.
+        signed: Whether it is signed, in two's complement.
         unit: SI value of one count: rad, rad/s, A, V, s, or a fraction of 1.
-        sign_bit: Bit that says "negative" while the bits below it are the magnitude, or None.
-        order: Which byte comes first.
+        sign_bit: Bit that is set for negative values (sign-magnitude encoding), or None.
+        order: Byte order.
     """
 
     name: str
@@ -46,7 +46,7 @@ class Register:
         return f"{'<' if self.order == 'little' else '>'}{'i' if self.signed else 'u'}{self.size}"
 
     def decode(self, data: bytes) -> int:
-        """Return the counts that `data` spells."""
+        """Return the value of the raw bytes `data`, counts."""
         raw = int.from_bytes(data, self.order, signed=self.signed)
         if self.sign_bit is None:
             return raw
@@ -54,10 +54,10 @@ class Register:
         return -magnitude if raw >> self.sign_bit & 1 else magnitude
 
     def encode(self, counts: int) -> bytes:
-        """Return the bytes of `counts`.
+        """Return the raw bytes of the value `counts`.
 
         Raises:
-            OverflowError: They do not fit.
+            OverflowError: The value does not fit.
         """
         if self.sign_bit is not None:
             if abs(counts) >> self.sign_bit:
@@ -66,7 +66,7 @@ class Register:
         return counts.to_bytes(self.size, self.order, signed=self.signed)
 
     def values(self, raw: npt.NDArray[Any]) -> npt.NDArray[Any]:
-        """Return the counts behind an array of `dtype`."""
+        """Return the values of an array of raw `dtype` words, counts."""
         if self.sign_bit is None:
             return raw
         return _magnitudes(self.sign_bit).take(raw)
@@ -74,7 +74,7 @@ class Register:
 
 @lru_cache(maxsize=8)
 def _magnitudes(sign_bit: int) -> npt.NDArray[np.int32]:
-    """Return what each word of 16 bits means; to look it up costs a fifth of working it out."""
+    """Return the value of each 16-bit word as a table; a look-up takes a fifth of computing it."""
     raw = np.arange(1 << 16, dtype=np.int32)
     one = 1 << sign_bit
     magnitude = raw & one - 1
@@ -84,7 +84,7 @@ def _magnitudes(sign_bit: int) -> npt.NDArray[np.int32]:
 
 
 class RegisterTable(Mapping[str, Register]):
-    """The registers of one type of servo, by name; an unknown name lists the likely one."""
+    """The registers of one servo model, by name; the error for an unknown name suggests one."""
 
     def __init__(self, model: str, registers: Iterable[Register]) -> None:
         self.model = model

@@ -1,4 +1,4 @@
-"""Reading files that people name: a device is refused, and nothing is read past a few MB."""
+"""Reads files that users name: devices are refused, and files of more than a few MB too."""
 
 import errno
 import os
@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import Final
 
 MOST: Final = 4 * 2**20
-"""The longest file that is read, bytes."""
+"""Maximum size of a file, bytes."""
 
 
 def read_small(path: Path) -> bytes:
-    """Return what is in a file.
+    """Return the contents of a file.
 
     Raises:
-        OSError: It cannot be read, is a device, or is longer than `MOST`; `strerror` says which.
+        OSError: It cannot be read, is a device, or is longer than `MOST`; see `strerror`.
     """
     mode = os.stat(path).st_mode
     if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):

@@ -1,4 +1,4 @@
-"""How a joint lost its torque, in words, and what to do about it."""
+"""Descriptions of how a joint lost its torque, with a remedy for each."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -7,11 +7,11 @@ from windup.hal.errors import TorqueLostError
 
 
 class Loss(NamedTuple):
-    """How joints lost their torque.
+    """Cause of a loss of torque, and its remedy.
 
     Attributes:
-        what: What happened; "{servo}" stands for their servos.
-        remedy: What to do.
+        what: The cause; "{servo}" is replaced by the servo or servos concerned.
+        remedy: What the user should do.
     """
 
     what: str
@@ -22,7 +22,7 @@ class Loss(NamedTuple):
 
 
 def restarted(volts: float) -> Loss:
-    """Return the loss of a servo that has restarted; `volts` is the lowest supply read, V."""
+    """Return the loss for a servo that restarted; `volts` is the lowest supply read, V, or NaN."""
     seen = "" if volts != volts else f" (lowest supply that was read: {volts:.1f} V)"
     return Loss(
         "{servo} restarted" + seen,
@@ -31,7 +31,7 @@ def restarted(volts: float) -> Loss:
 
 
 def shut_down(errors: tuple[str, ...]) -> Loss:
-    """Return the loss of a servo whose own protection has switched it off."""
+    """Return the loss for a servo whose own protection (hardware error) switched torque off."""
     return Loss(
         "{servo} shut down: " + ", ".join(errors),
         "remove the cause, then switch the servos' power off and on",
@@ -39,7 +39,7 @@ def shut_down(errors: tuple[str, ...]) -> Loss:
 
 
 def weakened(errors: tuple[str, ...]) -> Loss:
-    """Return the loss of a servo whose own protection lets it push only weakly."""
+    """Return the loss for a servo whose own protection has reduced its torque."""
     return Loss(
         "{servo} pushes with a part of the torque only: " + ", ".join(errors),
         "remove the cause, then start again",
@@ -58,11 +58,11 @@ UNPLUGGED = Loss(
     "check the cable of the adapter, then start again",
 )
 SILENT = "check its cable and power, then run `windup health`"
-"""What to do about a servo that does not answer."""
+"""Remedy for a servo that does not answer."""
 
 
 def torque_lost(losses: Mapping[str, Loss]) -> TorqueLostError:
-    """Return the error that names the joints with how each lost its torque."""
+    """Return an error that lists the joints, grouped by how they lost their torque."""
     alike: dict[Loss, list[str]] = {}
     for name, loss in losses.items():
         alike.setdefault(loss, []).append(name)

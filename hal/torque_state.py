@@ -1,4 +1,4 @@
-"""What is known of the torque of n joints: read back as on, read back as off, or not readable."""
+"""Torque enable state of n joints: read back as on, read back as off, or unknown."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from windup.hal.joints import Joints, Mask
 
 @dataclass(frozen=True)
 class TorqueState:
-    """Torque enable of n joints as it was read back. What could not be read is neither on nor off.
+    """Torque enable of n joints as read back. A joint that cannot be read is neither on nor off.
 
     Attributes:
         on: (n,) bool, read back as on.
@@ -21,12 +21,12 @@ class TorqueState:
 
     @classmethod
     def known(cls, on: Mask) -> "TorqueState":
-        """Return the state of joints (n,) bool that could all be read."""
+        """Return the state of joints that could all be read; `on` is (n,) bool."""
         return cls(on, np.zeros_like(on))
 
     @classmethod
     def unread(cls, n: int) -> "TorqueState":
-        """Return the state of n joints none of which could be read."""
+        """Return the state of n joints of which none could be read."""
         return cls(np.zeros(n, dtype=bool), np.ones(n, dtype=bool))
 
     @property
@@ -46,7 +46,7 @@ class TorqueState:
         return bool(self.off.all())
 
     def names(self, joints: Joints, which: Mask) -> str:
-        """Return the names of some joints (n,) bool, "all joints" where it is all of several."""
+        """Return the names of the joints `which` (n,) bool, or "all joints" if all are chosen."""
         if which.all() and len(which) > 1:
             return "all joints"
         return ", ".join(np.array(joints.names)[which])

@@ -1,4 +1,4 @@
-"""The twin as a backend: the same records, and a clock that steps physics."""
+"""The MuJoCo twin behind the backend interface, with a clock that steps the physics."""
 
 import time as wall
 from math import floor
@@ -17,14 +17,14 @@ from windup.sim_twin.twin import Twin
 
 
 class TwinClock:
-    """Simulated time: waiting steps the physics, as fast as it can or paced by the wall.
+    """Simulated time: a wait steps the physics, at full speed or paced by the wall clock.
 
-    Paced, `now` is what the wall says it should be: whoever computes too long comes too late,
-    as on a robot, and the physics goes on without them.
+    When paced, `now` follows the wall clock even while the physics lags behind: a controller that
+    computes too long misses its tick, as it does on a robot.
 
     Args:
         twin: The twin.
-        paced: Let simulated time pass as real time does.
+        paced: Let simulated time pass at the rate of real time.
     """
 
     def __init__(self, twin: Twin, *, paced: bool = False) -> None:
@@ -33,18 +33,18 @@ class TwinClock:
         self._origin: float | None = None
 
     def align(self) -> None:
-        """Let the wall's time count from here: the present simulated time is now."""
+        """Make the present simulated time correspond to the present wall-clock time."""
         self._origin = wall.monotonic() - self._data.time if self.paced else None
 
     def now(self) -> float:
-        """Return the time, s, in whole physics steps; before any wait and `align` it stands."""
+        """Return the time, s, in whole physics steps; it stands still until a wait or `align`."""
         if self._origin is None:
             return self._data.time
         behind = floor((wall.monotonic() - self._origin - self._data.time) / self._timestep)
         return self._data.time + max(behind, 0) * self._timestep
 
     def wait_until(self, time: float) -> None:
-        """Step the physics until it is `time` s, and wait for the wall where the clock is paced."""
+        """Step the physics until `time`, s; when paced, also wait for the wall clock."""
         if self.paced and self._origin is None:
             self.align()
         steps = round((time - self._data.time) / self._timestep)
@@ -55,14 +55,14 @@ class TwinClock:
 
 
 class TwinBackend:
-    """A twin behind the joint-command interface.
+    """Implements the backend interface (joint commands out, observations in) on a twin.
 
     Args:
         twin: The twin.
         paced: See `TwinClock`.
-        sensor_delay: Age of everything that is read, s; the robot's own by default.
+        sensor_delay: Latency of all sensor readings, s; by default the robot description's.
         true_base: Put the true base state into observations.
-        imu_errors: What the IMU makes of the motion; by default it is perfect.
+        imu_errors: Error model of the IMU; by default the IMU is perfect.
     """
 
     def __init__(
@@ -87,30 +87,30 @@ class TwinBackend:
         self._ctrl = twin.data.ctrl
 
     def connect(self) -> None:
-        """Nothing to open."""
+        """Do nothing: there is no port to open."""
 
     def configure(self) -> None:
-        """Nothing to assert: the twin is built from the same file."""
+        """Do nothing: the twin is built from the robot's file and has no registers to check."""
 
     def disconnect(self) -> None:
-        """Nothing to close."""
+        """Do nothing: there is no port to close."""
 
     def request(self) -> None:
-        """Nothing to ask for: the twin answers at once."""
+        """Do nothing: readings need no request on a twin."""
 
     def collect(self) -> Observation:
-        """Return the present state, as the sensors see it."""
+        """Return the present observation, with sensor delay and errors."""
         return self.sensors.read()
 
     def read(self) -> Observation:
-        """Return the present state, as the sensors see it."""
+        """Return the present observation, with sensor delay and errors."""
         return self.sensors.read()
 
     def write(self, command: JointCommand) -> JointCommand:
-        """Send a command; it acts after the twin's delay. Returns what the joints really got."""
+        """Apply a command after the twin's delay and return it as the joints realise it."""
         return self._drive.write(command, self._ctrl)
 
     def set_torque(self, on: bool) -> TorqueState:
-        """Switch all actuators and return what became of it."""
+        """Switch all actuators on or off and return the resulting torque state."""
         self.twin.powered = on
         return TorqueState.known(np.full(len(self.joints), self.twin.powered))

@@ -1,4 +1,4 @@
-"""The robot's MJCF, completed to something that can be simulated."""
+"""Builds the simulation model: the robot's MJCF plus actuators, ground and plant deviations."""
 
 from dataclasses import dataclass, field
 from itertools import product
@@ -15,12 +15,12 @@ from windup.sim_twin.servo.servo_motor import add_actuators
 
 @dataclass(frozen=True)
 class Environment:
-    """What a twin lives in, and how it differs from its files.
+    """The ground around a twin, and how its robot deviates from the robot's files.
 
     Attributes:
         ground: The ground.
-        plant: The robot's differences.
-        self_collision: The two legs collide with each other.
+        plant: Deviations of the robot from its files.
+        self_collision: Whether the two legs collide with each other.
     """
 
     ground: Ground = field(default_factory=Ground)
@@ -40,10 +40,10 @@ def build_model(
 
     Args:
         robot: The robot.
-        delay: From a write to the joint acting on it, s; the robot's own by default.
-        supply: Voltage of the servos, V; the robot's own by default.
-        bare: Leave out what a rollout, which ends with a fall, does not need.
-        world: Ground, plant and self-collision; flat, as the files say, and none by default.
+        delay: Latency from a write until the joint acts on it, s; by default the robot's own.
+        supply: Supply voltage of the servos, V; by default the robot's own.
+        bare: Leave out what a rollout does not need, as it ends with a fall.
+        world: Ground, plant and self-collision; by default flat, nominal and none.
     """
     world = world or Environment()
     spec = robot.spec()
@@ -56,19 +56,19 @@ def build_model(
         _strip(spec, robot)
     delay = robot.drive.command_delay if delay is None else delay
     add_actuators(spec, robot, delay, robot.drive.supply if supply is None else supply)
-    # A twin that diverges says so; it does not quietly start again.
+    # Without autoreset a twin that diverges raises an error and does not silently start again.
     spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
-    # One robot is one island: looking for more costs a few percent.
+    # One robot is one constraint island: searching for more costs a few percent of the time.
     spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ISLAND)
-    # MuJoCo 4.0's sparse Cholesky has a bug past our size; dense is faster here anyway.
+    # MuJoCo 4.0's sparse Cholesky has a bug above our problem size; dense is faster here anyway.
     spec.option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     return spec.compile()
 
 
 def _strip(spec: mujoco.MjSpec, robot: RobotDescription) -> None:
-    """Keep the geoms of feet and floor, and of the sensors touch and CoM velocity.
+    """Keep only the geoms of feet and floor, and the contact and CoM velocity sensors.
 
-    Whatever else can touch the floor does so after the robot has fallen, and a rollout ends there.
+    Other geoms touch the floor only after the robot has fallen, and a rollout ends with the fall.
     """
     feet = {foot.body for foot in robot.feet}
     for geom in list(spec.geoms):
@@ -82,10 +82,10 @@ def _strip(spec: mujoco.MjSpec, robot: RobotDescription) -> None:
 
 
 def _part_legs(spec: mujoco.MjSpec, robot: RobotDescription) -> None:
-    """Let the left leg collide with the right one, the largest geom of each body.
+    """Let the left and right leg collide, with the largest geom of each body.
 
-    The robots' geoms meet the floor only (floor contype 1, conaffinity 0; robot 0 and 1), so the
-    legs get explicit pairs.
+    The robots' geoms collide with the floor only (floor contype 1, conaffinity 0; robot 0 and 1),
+    so the legs need explicit contact pairs.
     """
     left, right = (_leg(spec, robot, foot.body) for foot in robot.feet[:2])
     for one, other in product(left, right):

@@ -1,4 +1,4 @@
-"""How hard a twin's trunk hits the floor, and how hard its servos work, at every physics step."""
+"""Measures trunk impact speed and servo load at every physics step of a twin."""
 
 from collections import deque
 from dataclasses import dataclass, field
@@ -10,25 +10,25 @@ from windup.hal.joints import Array
 from windup.sim_twin.twin import Twin
 
 HEADS = ("head", "neck")
-"""In the names of the bodies that are no torso, and break as it does."""
+"""Substrings of body names that count as head: not torso, but as fragile."""
 KNOCK = 0.01
-"""In so short a time a knock takes speed away, s."""
+"""Window over which the torso's velocity change is measured, s."""
 
 
 @dataclass
 class ImpactGauge:
-    """Watches a twin from now on.
+    """Measures impacts and loads of a twin from its construction on.
 
     Attributes:
         twin: The twin.
-        torso: Greatest speed into the floor of a point of the torso as it touched it, m/s; 0 when
-            the torso never did.
-        head: The same of the head and the neck.
-        knock: Greatest change of the torso's velocity within 10 ms, m/s: also what limbs that hit
-            the floor pass on to it.
-        load: (n,) greatest torque of each joint's actuator, as a share of its largest (of a servo:
-            at stall); 0 for joints without a limit.
-        overload: The longest time without a break that one joint was above its largest torque, s.
+        torso: Greatest downward speed of a torso point at the moment it touched the floor, m/s; 0
+            when the torso never touched it.
+        head: The same for head and neck.
+        knock: Greatest change of the torso's velocity within 10 ms, m/s; includes the shocks that
+            limbs transmit when they hit the floor.
+        load: (n,) greatest torque of each joint's actuator, as a share of its limit (for a servo:
+            the stall torque); 0 for joints without a limit.
+        overload: Longest uninterrupted time that one joint exceeded its torque limit, s.
     """
 
     twin: Twin
@@ -54,7 +54,7 @@ class ImpactGauge:
 
     @property
     def trunk(self) -> float:
-        """The greater of both speeds, m/s."""
+        """The greater of the torso and head impact speeds, m/s."""
         return max(self.torso, self.head)
 
     @property
@@ -77,7 +77,7 @@ class ImpactGauge:
         self._work()
 
     def _touched(self, geom: int, point: Array) -> None:
-        """Take the speed that a geom's point had a step ago, before the floor stopped it."""
+        """Record the speed of a geom's point one step earlier, before the floor stopped it."""
         velocity, centre = self._before[geom]
         speed = -float((velocity[3:] + np.cross(velocity[:3], point - centre))[2])
         if geom in self._torso:
@@ -86,12 +86,12 @@ class ImpactGauge:
             self.head = max(self.head, speed)
 
     def _motion(self, geom: int) -> tuple[Array, Array]:
-        """Return a geom's velocity (6,) and its centre (3,), in the world."""
+        """Return a geom's velocity (6,) and centre (3,) in the world frame."""
         velocity = self._velocity(mujoco.mjtObj.mjOBJ_GEOM, geom)
         return velocity, self.twin.data.geom_xpos[geom].copy()
 
     def _velocity(self, kind: mujoco.mjtObj, index: int) -> Array:
-        """Return the velocity (6,) of an object at its centre in the world, rad/s before m/s."""
+        """Return an object's velocity (6,) at its centre in the world frame, rad/s before m/s."""
         velocity = np.empty(6)
         mujoco.mj_objectVelocity(self.twin.model, self.twin.data, kind, index, velocity, 0)
         return velocity

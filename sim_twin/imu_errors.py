@@ -1,4 +1,4 @@
-"""What a real IMU does to the twin's true motion: a low-pass filter, noise, bias, and counts."""
+"""Error model of an IMU: low-pass filter, noise, bias and quantisation to counts."""
 
 from math import pi
 
@@ -11,20 +11,20 @@ from windup.robots import RobotDescription
 
 
 def imu_on_twin(robot: RobotDescription) -> ImuKind:
-    """Return the IMU that a twin without a wire has where its robot's state is estimated.
+    """Return the IMU of a twin without a wire whose base state is estimated.
 
-    A twin feels rates and accelerations. For a robot whose IMU sends no rates, or that has none,
-    that is an OpenCR; behind ``twin://`` it has its own.
+    A twin measures angular rates and accelerations. Robots without an IMU, or with one that sends
+    no rates, get an OpenCR; behind ``twin://`` the robot's own IMU is emulated.
     """
     kind = robot.imu_kind
     return kind if kind is not None and kind.gyroscope else OPENCR
 
 
 class LowPass:
-    """A low-pass filter of first order, for as many signals as come.
+    """A first-order low-pass filter for an array of signals.
 
     Args:
-        lag: Its time constant, s.
+        lag: Time constant, s.
         timestep: Time between two calls of `follow`, s.
     """
 
@@ -33,27 +33,27 @@ class LowPass:
         self._value: Array | None = None
 
     def follow(self, signal: Array) -> None:
-        """Let one time step pass with `signal`."""
+        """Advance the filter by one time step with input `signal`."""
         if self._value is None:
             self._value = np.array(signal)
         else:
             self._value += self._gain * (signal - self._value)
 
     def value(self, signal: Array) -> Array:
-        """Return the filtered signal; before the first step that is `signal`."""
+        """Return the filtered signal; before the first `follow`, return `signal` itself."""
         return np.array(signal if self._value is None else self._value)
 
 
 class ImuErrors:
-    """Turns true motion into samples.
+    """Turns true motion into IMU samples with errors.
 
     Args:
         kind: The IMU.
         timestep: Time between two calls of `feel`, s.
-        seed: Seed of its noise and biases.
+        seed: Seed of noise and biases.
 
     Attributes:
-        bias: (6,) rad/s and m/s2.
+        bias: (6,) biases of gyro and accelerometer, rad/s and m/s2.
     """
 
     def __init__(self, kind: ImuKind, timestep: float, seed: int = 0) -> None:
@@ -65,10 +65,10 @@ class ImuErrors:
         self.bias = self._random.normal(size=6) * np.repeat(kind.bias, 3)
 
     def feel(self, motion: Array) -> None:
-        """Take the true rates and accelerations (6,) of one time step."""
+        """Filter the true angular rates and accelerations (6,) of one time step."""
         self._filter.follow(motion)
 
     def sample(self, motion: Array) -> Array:
-        """Return what the IMU says (6,); `motion` (6,) is the true one, before any `feel`."""
+        """Return a sample (6,) with errors; `motion` (6,) is its input until the first `feel`."""
         noise = self._noise * self._random.normal(size=6)
         return np.rint((self._filter.value(motion) + self.bias + noise) / self._unit) * self._unit

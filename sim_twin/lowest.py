@@ -1,15 +1,15 @@
-"""What of a robot is lowest, for those that have no feet."""
+"""Finds the lowest point of a robot that has no feet."""
 
 import mujoco
 import numpy as np
 
 
 def lowest_point(model: mujoco.MjModel, data: mujoco.MjData) -> float:
-    """Return the height of the lowest corner of the boxes around what can touch, m; 0 for none.
+    """Return the lowest corner's height of the boxes around all colliding geoms, m; 0 if none.
 
     Args:
         model: A robot and its floor.
-        data: Its state, with kinematics up to date.
+        data: Its state, with up-to-date kinematics.
     """
     solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
     geoms = np.flatnonzero(solid & (model.body_weldid[model.geom_bodyid] > 0))

@@ -1,14 +1,14 @@
-"""Masses that stay where they are when geoms go: an MJCF may leave them to its geoms."""
+"""Writes masses and inertias explicitly into the bodies of an MJCF that infers them from geoms."""
 
 import mujoco
 import numpy as np
 
 
 def keep_masses(spec: mujoco.MjSpec) -> None:
-    """State mass and inertia of every body of `spec` as MuJoCo computes them from its geoms.
+    """Write mass and inertia into every body of `spec`, as MuJoCo computes them from its geoms.
 
-    A rollout has no geoms but those of the feet, and a plant scales masses: both need numbers on
-    the bodies. A `spec` that states them all is left as it is.
+    Needed because a rollout deletes all geoms but those of the feet, and because a plant scales
+    masses. A `spec` in which all bodies state them is not changed.
     """
     compiler = spec.compiler
     geoms_win = compiler.inertiafromgeom == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
@@ -25,7 +25,7 @@ def keep_masses(spec: mujoco.MjSpec) -> None:
 
 
 def _state(body: mujoco.MjsBody, model: mujoco.MjModel) -> None:
-    """Write what `model` has for `body` into it; a body without mass has nothing to state."""
+    """Copy mass and inertia of `body` from `model`; skip a body without mass."""
     if model.body_mass[body.id] <= 0.0:
         return
     body.mass = model.body_mass[body.id]

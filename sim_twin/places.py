@@ -1,15 +1,15 @@
-"""Where the joints of a robot stand in MuJoCo's positions and velocities."""
+"""Indices of a robot's joints in MuJoCo's qpos and qvel."""
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
 Place = slice | npt.NDArray[np.intp]
-"""Places in an array: a slice, which gives a view, where they follow each other."""
+"""Indices into an array: a slice (which gives a view) where they are consecutive."""
 
 
 def places(addresses: npt.ArrayLike) -> Place:
-    """Return the places `addresses` (k,) of an array."""
+    """Return `addresses` (k,) as indices into an array: a slice when they are consecutive."""
     at = np.asarray(addresses, dtype=np.intp)
     first = int(at[0]) if at.size else 0
     if (at == np.arange(first, first + at.size)).all():
@@ -18,17 +18,17 @@ def places(addresses: npt.ArrayLike) -> Place:
 
 
 class JointPlaces:
-    """Where n joints stand; passive ones and a free base may stand before and between them.
+    """Indices of n joints in qpos and qvel, among passive joints and a free base.
 
     Args:
         model: The model.
-        names: The joints.
+        names: Names of the joints.
 
     Attributes:
-        qpos: (n,) addresses of their positions.
-        dofs: (n,) addresses of their velocities.
-        position: The places of their positions.
-        velocity: The places of their velocities.
+        qpos: (n,) addresses of the joints in qpos.
+        dofs: (n,) addresses of the joints in qvel.
+        position: Indices of the joint positions in qpos.
+        velocity: Indices of the joint velocities in qvel.
     """
 
     def __init__(self, model: mujoco.MjModel, names: tuple[str, ...]) -> None:

@@ -1,4 +1,4 @@
-"""A robot that is not quite as its files say: gains, friction, delay, mass and supply."""
+"""Deviations of a simulated robot from its files: gains, friction, delay, mass and supply."""
 
 from dataclasses import dataclass
 
@@ -8,20 +8,20 @@ import numpy as np
 from windup.robots import RobotDescription
 
 XM430 = 4.1
-"""Stall torque of the servo that the friction was drawn for, N m."""
+"""Stall torque of the servo for which the friction range of `Plant.random` holds, N m."""
 
 
 @dataclass(frozen=True)
 class Plant:
-    """What a twin has that the rollouts do not know; None is as the robot's files say.
+    """Deviations that a twin has but the rollouts' model lacks; None means as in the files.
 
     Attributes:
-        stiffness: Factor on the gains of all joints.
-        friction_loss: Dry friction of every joint, N m.
-        delay: From a write to the joint acting on it, s.
-        floor: Friction coefficient of feet and floor.
+        stiffness: Factor on the stiffness of all joints.
+        friction_loss: Coulomb friction of every joint, N m.
+        delay: Latency from a write until the joint acts on it, s.
+        floor: Friction coefficient between feet and floor.
         mass: Factor on all masses and inertias.
-        supply: Voltage of the servos, V.
+        supply: Supply voltage of the servos, V.
     """
 
     stiffness: float = 1.0
@@ -33,7 +33,7 @@ class Plant:
 
     @classmethod
     def random(cls, seed: int, robot: RobotDescription) -> "Plant":
-        """Return one of the random plants that a walk should survive untuned.
+        """Return a random plant that an untuned walk should survive.
 
         kp -20..+20 %, friction loss 0-0.3 N m (less with servos weaker than 4.1 N m), delay
         4-24 ms in whole physics steps, floor 0.5-1.0, mass -10..+10 %, supply -12.5..+5 %
@@ -52,7 +52,7 @@ class Plant:
         )
 
     def change(self, spec: mujoco.MjSpec) -> None:
-        """Give `spec` this plant's friction and masses."""
+        """Apply this plant's friction and mass factors to `spec`."""
         for body in spec.bodies:
             body.mass *= self.mass
             body.inertia *= self.mass

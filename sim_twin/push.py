@@ -1,4 +1,4 @@
-"""Pushes: forces on a body for a while."""
+"""Pushes: constant forces on a body for a limited time."""
 
 from dataclasses import dataclass
 
@@ -12,11 +12,11 @@ class Push:
     """A horizontal force on one body.
 
     Attributes:
-        body: Name of the body, or "" for all of them, in proportion to their masses.
-        force: (3,) N, in the world.
-        start: When it begins, s.
-        duration: How long it lasts, s.
-        height: Height of the point of application above the body's frame, m; None: at its CoM.
+        body: Name of the body, or "" to push all bodies in proportion to their masses.
+        force: (3,) force in the world frame, N.
+        start: Time at which the push begins, s.
+        duration: Duration, s.
+        height: Height of the point of application above the body's frame, m; None is the CoM.
     """
 
     body: str
@@ -35,7 +35,7 @@ class Push:
         duration: float = 0.1,
         height: float | None = None,
     ) -> "Push":
-        """Return the push of `impulse` N s toward `direction` rad (0 forward, positive left)."""
+        """Return a push of `impulse` N s toward `direction` rad (0 forward, positive left)."""
         force = impulse / duration * np.array([np.cos(direction), np.sin(direction), 0.0])
         return cls(body, force, start, duration, height)
 
@@ -43,10 +43,10 @@ class Push:
     def velocity_step(
         cls, speed: float, mass: float, direction: float, start: float, duration: float = 0.02
     ) -> "Push":
-        """Return what gives a whole robot of `mass` kg `speed` m/s toward `direction` rad."""
+        """Return a push that gives a robot of `mass` kg `speed` m/s toward `direction` rad."""
         return cls.impulse("", speed * mass, direction, start, duration)
 
     def share(self, time: float, step: float) -> float:
-        """Return the part of the step from `time` to `time + step` s that the push lasts."""
+        """Return the fraction of the step `time` .. `time + step` s in which the push acts."""
         begin, end = max(self.start, time), min(self.start + self.duration, time + step)
         return max(end - begin, 0.0) / step

@@ -1,9 +1,9 @@
-"""The predictor: plays a batch policy forward on copies of the twin, on threads.
+"""The predictor: rolls a batch policy out on copies of the twin, in several threads.
 
-Rollouts start from an observation, never from the live twin, so the same code runs on a robot. The
-observation is as old as the sensors' delay; the copies therefore carry the whole delay, sensors and
-command, between command and joint, and the policy in them sees no delay at all: both give the same
-commands at the same instants of the observed time.
+Rollouts start from an observation, never from the live twin, so the same code runs on a robot. An
+observation is as old as the sensor latency. The copies therefore apply the whole latency (sensor
+plus command) between command and joint, and their policy reads its state without latency: both
+arrangements give the same commands at the same instants of the observed time.
 """
 
 import time as wall
@@ -29,18 +29,18 @@ STAGE = int(mujoco.mjtStage.mjSTAGE_VEL)
 
 
 class RolloutPredictor:
-    """Plays rollouts of one robot.
+    """Runs rollouts of one robot.
 
     Args:
         robot: The robot.
-        delay: From a state being sensed to its command acting, s; the robot's own by default.
-        supply: Voltage of the servos, V; the robot's own by default.
-        threads: Threads that share the rollouts.
-        ground: The ground as far as it is known; else it is flat, at the height of the foot that
-            stands on it.
+        delay: Latency from sensing a state until its command acts, s; by default the robot's own.
+        supply: Supply voltage of the servos, V; by default the robot's own.
+        threads: Number of threads that share the rollouts.
+        ground: The known terrain; by default the ground is taken as flat, at the height of the
+            stance foot.
 
     Attributes:
-        delay: From a state being sensed to its command acting, s.
+        delay: Latency from sensing a state until its command acts, s.
     """
 
     def __init__(
@@ -82,7 +82,7 @@ class RolloutPredictor:
         return outcomes
 
     def _felt(self, start: RolloutStart) -> Plane:
-        """Return the ground as it was felt, or level at the lowest foot; known ground stays."""
+        """Return the ground plane: zero for known terrain, else that of `start`, else level."""
         if not self.ground.flat:
             return KNOWN
         if start.ground is not None:
@@ -90,9 +90,9 @@ class RolloutPredictor:
         return self._level.of(start.observation), 0.0, 0.0
 
     def _let_tilt(self, model: mujoco.MjModel) -> None:
-        """Let the floor's attitude count, which MuJoCo takes to be level once it has compiled it.
+        """Make later rotations of the floor plane effective, which MuJoCo compiled as aligned.
 
-        Its frame would stay the world's, and the midphase would look for contacts with it there.
+        Otherwise the plane keeps the world's frame, and the midphase searches for contacts there.
         """
         if self.ground.flat:
             model.geom_sameframe[model.geom_type == mujoco.mjtGeom.mjGEOM_PLANE] = 0
@@ -100,7 +100,7 @@ class RolloutPredictor:
 
 
 class _Worlds:
-    """A batch of m worlds."""
+    """A batch of m copies of the model (worlds)."""
 
     def __init__(
         self,
@@ -140,7 +140,7 @@ class _Worlds:
     def play(
         self, start: RolloutStart, policy: BatchPolicy, horizon: float, felt: Plane
     ) -> Outcomes:
-        """Play `policy` from `start` on ground at `level` m; see `RolloutPredictor.predict`."""
+        """Roll `policy` out on the plane `felt` (height, slopes); see `RolloutPredictor`."""
         self._place(start)
         level = felt[0]
         self._tilt(felt[1:])
@@ -151,7 +151,7 @@ class _Worlds:
         return outcomes
 
     def _tilt(self, slope: tuple[float, float]) -> None:
-        """Let flat ground rise by the gradient `slope`."""
+        """Rotate the flat ground to the gradient `slope`."""
         if slope == self.slope or not self.ground.flat:
             return
         self.slope = slope
@@ -185,7 +185,7 @@ class _Worlds:
         return result
 
     def _place(self, start: RolloutStart) -> None:
-        """Put every world into the observed state, with the commands that are in flight."""
+        """Set every world to the observed state, with the commands in flight."""
         observation = start.observation
         base, joints = observation.base, observation.joints
         assert base is not None, "the balancer has checked"
@@ -200,7 +200,7 @@ class _Worlds:
             self.history[:] = self.flight.history(start)
 
     def _first_view(self, start: RolloutStart) -> PolicyInput:
-        """Return what the policy sees before the first step: the observation itself."""
+        """Return the policy's input before the first step, with the observed contacts."""
         view = self._view()
         view.contacts = np.repeat(start.observation.contacts[None], self.size, axis=0)
         return view
@@ -256,10 +256,10 @@ class _Worlds:
 
 
 class _Flight:
-    """Where the commands in flight stand in MuJoCo's history rows.
+    """Locates the commands in flight (sent but not yet acting) in MuJoCo's history rows.
 
-    A row is, for each actuator, [user, cursor, n times, n values of each input]; only the values
-    change here, since every rollout begins at time 0.
+    A row holds, for each actuator, [user, cursor, n times, n values of each input]. Only the
+    values change here, since every rollout begins at time 0.
     """
 
     def __init__(self, model: mujoco.MjModel) -> None:
@@ -269,11 +269,11 @@ class _Flight:
         self.samples = int(samples[0]) if len(samples) else 0
         width = model.nu // len(model.actuator_historyadr)
         first = model.actuator_historyadr + 2 + self.samples
-        # (samples, n): the place of each sample's position input
+        # (samples, n): index of each sample's position input
         self.places = first[None, :] + width * np.arange(self.samples)[:, None]
 
     def history(self, start: RolloutStart) -> Array:
-        """Return a history row that holds the commands of `start`, held between ticks."""
+        """Return a history row with the commands in flight of `start`, each held for one tick."""
         row = self.row.copy()
         sent = start.in_flight
         if not len(sent):

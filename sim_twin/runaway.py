@@ -1,4 +1,4 @@
-"""Which degree of freedom runs away first where a twin diverges."""
+"""Finds the degree of freedom that first exceeds plausible speeds when a twin diverges."""
 
 import mujoco
 import numpy as np
@@ -6,17 +6,17 @@ import numpy as np
 from windup.hal.joints import Array
 
 WILD = 1e5
-"""Squared speeds of all joints and the base above which something is going wrong."""
+"""Sum of squared speeds of joints and base above which the simulation is suspect."""
 
 
 def fastest_dof(model: mujoco.MjModel, data: mujoco.MjData, before: Array, steps: int) -> int:
-    """Return the degree of freedom that first got too fast in the last `steps`, replayed.
+    """Return the degree of freedom that first got too fast in the last `steps`, by replaying them.
 
     Args:
         model: The twin's model.
         data: Its state after the steps.
-        before: (nq + nv,) positions and velocities before them.
-        steps: How many.
+        before: (nq + nv,) positions and velocities before the steps.
+        steps: Number of steps.
     """
     replay = mujoco.MjData(model)
     replay.qpos[:], replay.qvel[:] = before[: model.nq], before[model.nq :]

@@ -21,16 +21,16 @@ from windup.sim_twin.push import Push
 from windup.sim_twin.runaway import WILD, fastest_dof
 
 STATE = mujoco.mjtState.mjSTATE_INTEGRATION
-LOST = 1e6  # sum of positions that no robot has
+LOST = 1e6  # sum of positions that only a diverged simulation reaches
 
 
 @dataclass(frozen=True)
 class TwinState:
-    """Everything that decides a twin's future.
+    """The complete state of a twin, which determines its future.
 
     Attributes:
         physics: MuJoCo's integration state, with the commands in flight.
-        pushes: Pushes under way or to come.
+        pushes: Pushes that act now or later.
     """
 
     physics: Array
@@ -38,22 +38,22 @@ class TwinState:
 
 
 class Twin:
-    """A simulated robot: physics, pushes, and its complete state.
+    """A simulated robot: its physics, its pushes and its complete state.
 
     Args:
         robot: The robot.
-        delay: From a write to the joint acting on it, s; the robot's own by default.
-        supply: Voltage of the servos, V; the robot's own by default.
-        world: Ground, plant and self-collision; its plant's delay and supply win.
+        delay: Latency from a write until the joint acts on it, s; by default the robot's own.
+        supply: Supply voltage of the servos, V; by default the robot's own.
+        world: Ground, plant and self-collision; its plant's delay and supply take precedence.
 
     Attributes:
-        world: See above.
+        world: The environment, as given.
         model: MuJoCo's model, with actuators.
         data: MuJoCo's state.
-        places: Where the joints stand in MuJoCo's state.
-        up: (3,) unit vector along the torso, a live view.
-        on_step: Called after every physics step, where something has to look that closely.
-        on_jump: Called after a reset or a restore, for whoever remembers the past.
+        places: Indices of the joints in MuJoCo's state.
+        up: (3,) the torso's up axis in the world frame, a live view.
+        on_step: Called after every physics step, if set.
+        on_jump: Called after a reset or a restore, if set, so that callers can clear history.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class Twin:
         self.reset()
 
     def reset(self, pose: Array | None = None, *, noise: float = 0.0, seed: int = 0) -> None:
-        """Put the robot at rest on the floor in `pose` (n,) rad, its stance by default.
+        """Put the robot at rest on the floor in `pose` (n,) rad, by default its stance.
 
         Args:
             pose: Joint positions, rad.
@@ -104,16 +104,16 @@ class Twin:
         self._jumped()
 
     def lay(self, front: bool, pose: Array, *, noise: float = 0.0, seed: int = 0) -> None:
-        """Put the robot on the floor, on its front or its back, in any direction.
+        """Put the robot on the floor, lying on its front or its back, with a random heading.
 
         Args:
-            front: On its front.
-            pose: (n,) rad.
+            front: True to lie on its front.
+            pose: (n,) joint positions, rad.
             noise: Standard deviation of noise on every joint position, degrees.
-            seed: Seed of that noise and of the direction.
+            seed: Seed of that noise and of the heading.
 
         Raises:
-            UsageError: The robot is fixed.
+            UsageError: The robot is fixed to the ground.
         """
         if self.robot.fixed:
             raise UsageError(f"{self.robot.name} is fixed to the ground and cannot lie")
@@ -132,7 +132,7 @@ class Twin:
         self._jumped()
 
     def set_goals(self, pose: Array) -> None:
-        """Make `pose` (n,) rad the target now and in everything still in flight."""
+        """Make `pose` (n,) rad the target, including all commands still in flight."""
         width = self.model.nu // len(pose)
         ctrl = np.zeros((len(pose), width))
         ctrl[:, 0] = pose
@@ -163,7 +163,7 @@ class Twin:
 
     @property
     def fallen(self) -> bool:
-        """True when the base is low or the torso is tilted, as the robot's file says."""
+        """True when the base is low or the torso tilted beyond the limits in the robot's file."""
         if self.robot.fixed:
             return False
         height = self._qpos[2]
@@ -173,7 +173,7 @@ class Twin:
 
     @property
     def powered(self) -> bool:
-        """False when the servos are switched off and the joints are limp."""
+        """False when all actuators are switched off and the joints are limp."""
         return not self.model.opt.disableactuator
 
     @powered.setter
@@ -181,7 +181,7 @@ class Twin:
         self.model.opt.disableactuator = 0 if on else 1
 
     def push(self, push: Push) -> None:
-        """Apply a push when its time comes.
+        """Schedule a push; it acts from its start time on.
 
         Raises:
             UnknownNameError: The robot has no such body.
@@ -191,10 +191,10 @@ class Twin:
         self._pushes.append(push)
 
     def check_body(self, name: str) -> None:
-        """Raise when the robot has no body of this name.
+        """Check that the robot has a body of this name.
 
         Raises:
-            UnknownNameError: It has none.
+            UnknownNameError: The robot has no such body.
         """
         names = [self.model.body(i).name for i in range(1, self.model.nbody)]
         if name not in names:
@@ -204,7 +204,7 @@ class Twin:
         """Advance the physics by `steps` of its time steps.
 
         Raises:
-            DivergedError: The physics left the numbers.
+            DivergedError: The physics diverged.
         """
         self._before[: self.model.nq] = self._qpos
         self._before[self.model.nq :] = self._qvel
@@ -220,26 +220,26 @@ class Twin:
             self._look_closer(steps)
 
     def save(self) -> TwinState:
-        """Return the complete physical state, with everything in flight and to come."""
+        """Return the complete physical state, with commands in flight and pushes to come."""
         state = np.empty(mujoco.mj_stateSize(self.model, STATE))
         mujoco.mj_getState(self.model, self.data, state, STATE)
         return TwinState(state, tuple(self._pushes))
 
     def restore(self, state: TwinState) -> None:
-        """Go back to a state from `save`."""
+        """Restore a state from `save`."""
         mujoco.mj_setState(self.model, self.data, state.physics, STATE)
         self._pushes[:] = state.pushes
         self._jumped()
 
     def _jumped(self) -> None:
-        """Bring what is derived up to date after a jump in time."""
+        """Update derived quantities after a jump in time."""
         self._suspect = None
         mujoco.mj_forward(self.model, self.data)
         if self.on_jump is not None:
             self.on_jump()
 
     def _drop_to_floor(self) -> None:
-        """Set the base height so that the lowest sole is on the floor; without feet, anything."""
+        """Set the base height so that the lowest sole, or else the lowest geom, is on the floor."""
         if self.robot.fixed:
             return
         self.data.qpos[3:7] = [1.0, 0.0, 0.0, 0.0]
@@ -252,7 +252,7 @@ class Twin:
         self.data.xfrc_applied[:] = 0.0
         for push in self._pushes:
             share = push.share(self.time, self.timestep)
-            if share > 1e-6:  # less is rounding of the time
+            if share > 1e-6:  # smaller shares are rounding errors of the time
                 self._apply(push, share * push.force)
         if all(self.time >= push.start + push.duration for push in self._pushes):
             self._pushes.clear()
@@ -269,10 +269,10 @@ class Twin:
             self.data.xfrc_applied[body, 3:] += np.cross(point - self.data.xipos[body], force)
 
     def _look_closer(self, steps: int) -> None:
-        """Remember which joint ran away first, and give up when the numbers are lost.
+        """Remember which joint got too fast first; raise when the state is no longer usable.
 
         Raises:
-            DivergedError: They are.
+            DivergedError: The positions are beyond `LOST`, or not numbers.
         """
         if self._suspect is None:
             self._suspect = fastest_dof(self.model, self.data, self._before, steps)

@@ -1,1 +1,1 @@
-"""Transactions on a servo bus: one request, its answers, and what became of it."""
+"""Servo bus: register access, sync reads and writes, and the settings of servos."""

@@ -1,4 +1,4 @@
-"""One bus of servos: who is there, single registers, and several servos at once."""
+"""One servo bus: scan, single registers, and sync access to several servos."""
 
 import contextlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -21,13 +21,13 @@ from windup.hal.registers import Register
 Counts = npt.NDArray[np.int64]
 
 REBOOT_TIME = 0.6
-"""How long a servo is deaf after a reboot, s."""
+"""Time for which a servo does not answer after a reboot, s."""
 BEAT = 20e-3
-"""Longest time between two heartbeats while waiting, s."""
+"""Maximum time between two heartbeats during a wait, s."""
 FIRST = (1,)
-"""Whom a scan asks for the adapter's sake: the id that most servos leave the factory with."""
+"""Ids that a scan probes to measure the adapter: 1, the factory default of most servos."""
 EEPROM_TIME = 20e-3
-"""How long a Feetech servo writes its EEPROM after it has answered, s."""
+"""Time that a Feetech servo needs to write its EEPROM after its status packet, s."""
 
 
 class Found(NamedTuple):
@@ -43,16 +43,16 @@ class Found(NamedTuple):
 class Bus:
     """The servos on one port, all of one family.
 
-    `ping`, `read`, `write` and their like go through the maker's SDK, wait for the answer, and try
-    again; `sync_read` and `sync_write` are one transaction of ours. A loop holds its own
-    `CyclicRead` and `CyclicWrite` and drives `exchange` itself.
+    `ping`, `read`, `write` and similar methods use the maker's SDK, wait for the answer, and retry;
+    `sync_read` and `sync_write` are one transaction of this package. A control loop holds its own
+    `CyclicRead` and `CyclicWrite` and uses `exchange` directly.
 
     Attributes:
         port: The port.
-        family: Its servos.
-        exchange: Its cyclic traffic and error statistics.
-        heartbeat: Called before every transaction but those of the exchange itself, and while
-            `wait` waits: somebody may be watching that this program lives.
+        family: Family of all servos on the bus.
+        exchange: Cyclic transactions and error statistics.
+        heartbeat: Called before every transaction except those made through `exchange` directly,
+            and during `wait`; it feeds the watchdog of this program, if there is one.
     """
 
     def __init__(self, port: Port, family: Family = DYNAMIXEL_X) -> None:
@@ -62,9 +62,9 @@ class Bus:
         self._fast: dict[tuple[int, ...], bool] = {}
 
     def move_to(self, port: Port) -> None:
-        """Go on over another port, as after an adapter was unplugged; statistics go on too.
+        """Continue on another port, as after replugging an adapter; statistics are kept.
 
-        What was measured of the adapter is taken to be true of this one too.
+        The latency and echo measured on the old port are assumed for the new one.
         """
         before = self.port
         port.echoes, port.known = before.echoes, before.known
@@ -76,7 +76,7 @@ class Bus:
 
     @property
     def heartbeat(self) -> Heartbeat:
-        """What is called meanwhile; the maker's SDK calls it before each attempt."""
+        """Heartbeat callback; the SDK wrapper also calls it before each attempt."""
         return self._link.heartbeat
 
     @heartbeat.setter
@@ -84,10 +84,10 @@ class Bus:
         self._link.heartbeat = heartbeat
 
     def get_to_know_adapter(self, ids: Iterable[int]) -> None:
-        """Measure how long the adapter holds answers back, and whether it gives requests back.
+        """Measure the latency of the adapter, and whether it echoes requests.
 
         Args:
-            ids: Who may be there; the first that answers is asked a few times.
+            ids: Ids of servos that may be present; the first that answers is probed several times.
         """
         probes = (self.family.dialect.probe(id) for id in ids)
         get_to_know(self.port, probes, self.heartbeat)
@@ -96,14 +96,14 @@ class Bus:
         """Return the model number of servo `id`.
 
         Raises:
-            NoAnswerError: Nobody answers.
+            NoAnswerError: The servo does not answer.
         """
         return self._link.ping(id)
 
     def scan(self, bauds: Iterable[int] | None = None) -> list[Found]:
-        """Return every servo that answers, at each of `bauds` (all by default).
+        """Return every servo that answers at any of `bauds` (by default all of the family).
 
-        The port is left at the baud rate it had.
+        The baud rate of the port is restored afterwards.
         """
         before = self.port.baud
         try:
@@ -112,18 +112,18 @@ class Bus:
             self.port.baud = before
 
     def read(self, id: int, register: Register) -> int:
-        """Return the counts in one register."""
+        """Return the value of one register, counts."""
         return register.decode(self._link.read(id, register.address, register.size))
 
     def write(self, id: int, register: Register, counts: int) -> None:
         """Write one register and read it back.
 
         Raises:
-            HardwareError: It reads back as something else.
+            HardwareError: The value read back differs.
         """
         self.command(id, register, counts, unlock=register.area == "eeprom")
         now = self.read(id, register)
-        if now != counts:  # not for an answer that came late
+        if now != counts:  # read again: the first answer may have been a late one
             self._link.settle()
             now = self.read(id, register)
         if now != counts:
@@ -133,16 +133,16 @@ class Bus:
             )
 
     def command(self, id: int, register: Register, counts: int, unlock: bool = False) -> None:
-        """Write what does not read back; `unlock` opens an EEPROM that has a lock."""
+        """Write one register without reading back; `unlock` unlocks the EEPROM for the write."""
         with self._unlocked(id, unlock):
             self._link.write(id, register.address, register.encode(counts))
 
     def sync_read(
         self, ids: Sequence[int], register: Register, fast: bool = False
     ) -> tuple[Counts, Mask]:
-        """Return (n,) counts of one register, and (n,) bool: whose are fresh.
+        """Return (n,) counts of one register, and (n,) bool: which servos answered.
 
-        Plain by default: behind a missing servo a fast answer is silent.
+        A plain sync read is the default: in a fast one, servos after a missing one are silent.
         """
         self.heartbeat()
         spans = [Span(id, register.address, register.size) for id in ids]
@@ -152,14 +152,14 @@ class Bus:
         return register.values(read.column(0, register.dtype)).astype(np.int64), valid
 
     def bulk_read(self, spans: Sequence[Span]) -> dict[int, bytes]:
-        """Return the bytes of other registers of each servo, by id, of those who answered.
+        """Read a different span of each servo; return the bytes by id, of those that answered.
 
-        One transaction in protocol 2 and on MX that answered `probe_fast`, else one a servo.
+        One transaction in protocol 2 and on MX that passed `probe_fast`, else one per servo.
         """
         return {id: status.params for id, status in self.statuses(spans).items()}
 
     def statuses(self, spans: Sequence[Span], rest: bool = False) -> dict[int, Status]:
-        """Return the same with the error bytes of the answers; `rest` as of `request`."""
+        """Return the status packets of a `bulk_read`; for `rest` see `BusTransactions.request`."""
         self.heartbeat()
         read = self.family.dialect.read(spans, self.fast([span.id for span in spans]))
         self.exchange.request(read, rest)
@@ -172,13 +172,13 @@ class Bus:
         }
 
     def sync_write(self, register: Register, counts: Mapping[int, int]) -> None:
-        """Write one register of several servos at once. Nobody answers: read back what matters."""
+        """Write one register of several servos at once, without answers: read back what matters."""
         data = {id: register.encode(value) for id, value in counts.items()}
         frames = self.family.dialect.sync_write(data, register.address, register.size)
         self.exchange.send(frames)
 
     def wait(self, seconds: float) -> None:
-        """Let time pass."""
+        """Wait on the port's clock, calling the heartbeat."""
         clock = self.port.clock
         until = clock.now() + seconds
         while (now := clock.now()) < until:
@@ -186,15 +186,15 @@ class Bus:
             clock.wait_until(min(now + BEAT, until))
 
     def fast(self, ids: Sequence[int]) -> bool:
-        """Return whether these servos answered `probe_fast`."""
+        """Return whether `probe_fast` succeeded for these servos."""
         return self._fast.get(tuple(ids), False)
 
     def probe_fast(self, ids: Sequence[int]) -> bool:
-        """Find out whether all of `ids` know the fast read of their family.
+        """Test whether all of `ids` support the fast read of their family, and return that.
 
-        That is the fast sync read, the sync read of SCS, the bulk read of MX.
-        Silence proves nothing about a servo without power: False is remembered only when the
-        same servos answer the plain one.
+        That is the fast sync read of X, the sync read of SCS, the bulk read of MX.
+        An unpowered servo is silent too, so False is remembered only if the same servos answer
+        the plain read.
         """
         spans = [Span(id, self.family.registers["id"].address, 1) for id in ids]
         if self._everybody(self.family.dialect.read(spans, fast=True)):
@@ -204,16 +204,16 @@ class Bus:
         return self.fast(ids)
 
     def reboot(self, id: int) -> None:
-        """Restart a servo (torque off, RAM registers at their defaults) and wait for it."""
+        """Reboot a servo (torque off, RAM registers at their defaults) and wait for its answer."""
         self._link.reboot(id)
         self.wait(REBOOT_TIME)
         self._link.ping(id)
 
     def set_id(self, id: int, new: int) -> None:
-        """Give a servo another id.
+        """Change the id of a servo.
 
         Raises:
-            UsageError: Somebody has it already, or there is no such id.
+            UsageError: Another servo has the new id, or the id is out of range.
         """
         last = self.family.dialect.last_id
         if not 0 <= new <= last:
@@ -226,10 +226,10 @@ class Bus:
         self._link.ping(new)
 
     def set_baud(self, id: int, baud: int) -> None:
-        """Give a servo another baud rate and leave the port at that rate.
+        """Change the baud rate of a servo and leave the port at that rate.
 
         Raises:
-            UsageError: No servo of the family has this rate.
+            UsageError: The family does not support this rate.
         """
         register, code = self.family.registers["baud_rate"], self.family.baud_code(baud)
         with self._unlocked(id):
@@ -238,7 +238,7 @@ class Bus:
         self._link.ping(id)
 
     def factory_reset(self, id: int, keep: int = 0x02) -> None:
-        """Reset a servo; `keep` 0xFF nothing, 0x01 the id, 0x02 id and baud rate."""
+        """Reset a servo; `keep`: 0xFF keeps nothing, 0x01 the id, 0x02 id and baud rate."""
         self._link.factory_reset(id, keep)
         self.wait(REBOOT_TIME)
 
@@ -252,7 +252,7 @@ class Bus:
 
     @contextlib.contextmanager
     def _unlocked(self, id: int, unlock: bool = True, after: int | None = None) -> Iterator[None]:
-        """Open the EEPROM of a Feetech servo for a write, and close it under the id `after`."""
+        """Unlock the EEPROM of a Feetech servo for a write; lock it again, under the id `after`."""
         lock = self.family.registers.get("lock")
         if lock is None or not unlock:
             yield

@@ -1,4 +1,4 @@
-"""What a servo holds that is not as the stack needs it."""
+"""Record of the registers of a servo that differ from the required settings."""
 
 from typing import NamedTuple
 
@@ -7,15 +7,15 @@ from windup.hal.bus.servo_settings import Setting
 
 
 class Differs(NamedTuple):
-    """What one servo holds that is not as the stack needs it.
+    """Registers of one servo that differ from the required settings or the factory defaults.
 
     Attributes:
         bus: Its bus.
-        id: Its id there.
-        joint: Its joint's name.
-        settings: What has to be written.
-        limits: How it protects itself otherwise than it is delivered; that stays.
-        repaired: What had to be written already for it to answer, in words; "" for nothing.
+        id: Its id on the bus.
+        joint: Name of its joint.
+        settings: Registers that have to be written.
+        limits: Protection registers that differ from the factory defaults; they are not changed.
+        repaired: Description of a write that was needed to make it answer; "" for none.
     """
 
     bus: Bus

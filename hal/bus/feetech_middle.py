@@ -1,4 +1,4 @@
-"""What only Feetech's STS servos can do: call the present position the middle."""
+"""Homing of Feetech STS servos: sets the homing offset so that the present position is 2048."""
 
 from windup.hal.bus.bus import Bus
 from windup.hal.errors import HardwareError, UsageError
@@ -6,16 +6,16 @@ from windup.hal.servos.feetech_registers import MIDDLE
 
 CENTRE = 2048
 TOLERANCE = 8
-"""Counts by which the shaft may move while nobody holds it."""
+"""Tolerated movement of the free shaft during the calibration, counts."""
 
 
 def set_middle(bus: Bus, id: int) -> int:
-    """Make the present position of servo `id` count 2048, for good; nothing moves.
+    """Make the present position of servo `id` read 2048 permanently; nothing moves.
 
-    Returns the offset, counts, that the servo has put into its register 31.
+    Returns the homing offset that the servo has stored in its register 31, counts.
 
     Raises:
-        UsageError: It is no STS; an SCS has no offset.
+        UsageError: It is not an STS; an SCS has no homing offset.
         HardwareError: Its torque is on, or it does not read 2048 afterwards.
     """
     registers = bus.family.registers

@@ -1,4 +1,4 @@
-"""The settings of a servo that the stack relies on: read, written where they differ, read back."""
+"""The required settings of a servo: compared, written where they differ, and read back."""
 
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ from windup.hal.servos.servo_model import ServoModel, ServoMount
 
 
 class Setting(NamedTuple):
-    """A register that is not as the stack needs it."""
+    """A register whose present value differs from the wanted one, counts."""
 
     register: Register
     present: int
@@ -20,7 +20,7 @@ class Setting(NamedTuple):
 
 
 def differences(bus: Bus, mount: ServoMount) -> list[Setting]:
-    """Return the settings of a servo that differ. Nothing is written."""
+    """Return the required settings of a servo that differ. Nothing is written."""
     table = bus.family.table(mount.model.name)
     found = []
     for name, value, mask in wanted_of(bus.family, mount):
@@ -34,14 +34,14 @@ def differences(bus: Bus, mount: ServoMount) -> list[Setting]:
 
 
 def wanted_of(family: Family, mount: ServoMount) -> list[RequiredSetting]:
-    """Return what the registers of a servo have to be, in the order in which they are written."""
+    """Return the required settings of a servo, in the order in which they are written."""
     other = family.extended if mount.extended else None
     usual = family.wanted(mount.model)
     return [other if other is not None and want.name == other.name else want for want in usual]
 
 
 def limits(bus: Bus, id: int, model: ServoModel) -> list[Setting]:
-    """Return how servo `id` protects itself oddly; `wanted` is the value it is delivered with."""
+    """Return the unusual protection registers of servo `id`; `wanted` is the factory default."""
     table = bus.family.table(model.name)
     found = []
     for usual in bus.family.usual(model):
@@ -57,7 +57,7 @@ def assert_settings(bus: Bus, id: int, settings: list[Setting]) -> None:
     """Write `settings` and read each one back.
 
     Raises:
-        HardwareError: The servo refuses, or reads back something else.
+        HardwareError: The servo refuses a write, or reads back another value.
     """
     for setting in settings:
         bus.write(id, setting.register, setting.wanted)

@@ -1,4 +1,4 @@
-"""What is changed in servos, or how they protect themselves, in words: before it is written."""
+"""Messages about settings that will be changed in servos, and about unusual protection limits."""
 
 from collections.abc import Iterator, Sequence
 
@@ -6,13 +6,13 @@ from windup.hal.bus.differs import Differs
 from windup.hal.bus.servo_settings import Setting
 
 MANY = 4
-"""More joints than these are counted, not named."""
+"""Maximum number of joints that a message names; more are counted."""
 
 
 def in_words(found: Sequence[Differs]) -> list[str]:
-    """Return a line about what is changed in the EEPROM of which joints, and one about limits.
+    """Return a line about EEPROM changes, grouped by joints, and a line about unusual limits.
 
-    What a servo forgets without power is set at every start, and not worth a word.
+    RAM registers are not mentioned: they are lost without power, and are set at every start.
     """
     changes = [(differs.joint, change) for differs in found for change in _changes(differs)]
     limits = [
@@ -25,7 +25,7 @@ def in_words(found: Sequence[Differs]) -> list[str]:
 
 
 def _changes(differs: Differs) -> Iterator[str]:
-    """Yield what is changed in one servo."""
+    """Yield a description of each EEPROM change in one servo."""
     if differs.repaired:
         yield differs.repaired
     for setting in differs.settings:
@@ -38,7 +38,7 @@ def _change(setting: Setting) -> str:
 
 
 def _grouped(pairs: Sequence[tuple[str, str]], all_: int) -> str:
-    """Return what is so at which joints, each kind once."""
+    """Return the texts of (joint, text) pairs, each once, with the joints it applies to."""
     joints: dict[str, list[str]] = {}
     for joint, what in pairs:
         joints.setdefault(what, []).append(joint)
@@ -46,7 +46,7 @@ def _grouped(pairs: Sequence[tuple[str, str]], all_: int) -> str:
 
 
 def _some(names: Sequence[str], all_: int) -> str:
-    """Return the names of some joints, or how many, where a list would be long."""
+    """Return the names of some joints, or their number if there are more than `MANY`."""
     if len(names) == all_ > 1:
         return f"all {all_} joints"
     return ", ".join(names) if len(names) <= MANY else f"{len(names)} joints"

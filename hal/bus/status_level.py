@@ -1,7 +1,7 @@
-"""Servos that obey in silence: a status return level that answers nothing, or reads alone.
+"""Repairs a status return level at which a servo answers pings only, or reads only.
 
-Such a servo answers a ping and looks dead to everything else. The level is written as a sync write,
-which no servo answers whatever its level is, and read back.
+At level 0 a servo answers a ping and nothing else. The required level is written with a sync write,
+which is never answered whatever the level is, and then read back.
 """
 
 from windup.hal.bus.bus import Bus
@@ -12,10 +12,10 @@ REGISTER = "status_return_level"
 
 
 def make_answer(bus: Bus, id: int, model: ServoModel) -> str:
-    """Have a servo answer to reads and writes; return what was changed, or "".
+    """Make a servo answer reads and writes; return a description of the change, or "".
 
     Raises:
-        HardwareError: It answers to nothing but pings all the same.
+        HardwareError: It still answers nothing but pings, or reads back another level.
     """
     register = bus.family.registers.get(REGISTER)
     wanted = next((want.value for want in bus.family.wanted(model) if want.name == REGISTER), None)
@@ -29,7 +29,7 @@ def make_answer(bus: Bus, id: int, model: ServoModel) -> str:
         return ""
     lock = bus.family.registers.get("lock")
     if lock is not None and register.area == "eeprom":
-        bus.sync_write(lock, {id: 1})  # so it holds until the power goes, and wears nothing
+        bus.sync_write(lock, {id: 1})  # locked: kept in RAM, no EEPROM wear
     bus.sync_write(register, {id: wanted})
     try:
         now = bus.read(id, register)

@@ -1,4 +1,4 @@
-"""Split-phase reads on one port: ask, compute, collect, with deadlines from the wire itself."""
+"""Split-phase reads on one port: request, compute, collect, with deadlines from the wire time."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -12,43 +12,43 @@ from windup.hal.protocols.batched1 import ChainRead
 from windup.hal.protocols.cyclic import CyclicRead
 
 SLACK = 2e-3
-"""What the host and its driver may add to the time on the wire, s."""
+"""Delay that the host and its driver may add to the time on the wire, s."""
 TURNAROUND = 20e-6
-"""What a servo with a return delay of 0 takes to answer, s."""
+"""Time that a servo with a return delay of 0 takes to answer, s."""
 UNSET_TURNAROUND = 550e-6
-"""The same as it leaves the factory, s."""
+"""Time that a servo with the factory default return delay takes to answer, s."""
 STRANGE = 256
-"""Bytes that may come before an answer: noise, or what an adapter gives back."""
+"""Maximum number of extra bytes before an answer (noise, or an echo of the adapter)."""
 STILL_COMING = 0.03
-"""So long after a request that got no answer one may still come, s."""
+"""Time after an unanswered request in which a late answer may still come, s."""
 JITTER = 1e-4
-"""What a servo may answer later than it should, s."""
+"""Jitter of the answer time of a servo, s."""
 GRACE = 3e-3
-"""Silence granted to servos that are late, before all are asked again, s."""
+"""Pause after an incomplete answer, for late servos to finish before the next request, s."""
 LATE = 6
-"""Requests without an answer after which a servo is not late, but gone."""
+"""Number of unanswered requests after which a servo counts as missing, not late."""
 DOUBTS = 2
-"""Doubtful answers, one behind the other, after which the line is let fall quiet."""
+"""Number of consecutive doubtful answers after which requests pause until the line is quiet."""
 
 
 _NOBODY: Mask = np.zeros(0, dtype=bool)
 
 
 class BusTransactions:
-    """The cyclic traffic of one port.
+    """The cyclic transactions of one port.
 
-    The time on the wire of everything sent is kept in mind, so that a request behind a long
-    write has its deadline moved, and no answer is waited for longer than it can take.
+    The wire time of all bytes sent is tracked, so that the deadline of a request after a long
+    write is later, and no answer is waited for longer than it can take.
 
     Attributes:
         port: The port.
-        errors: Kind of error to how often it happened: "no answer" and "corrupt" count servos,
-            "resynchronised" counts answers in which something was lost, "implausible" counts
-            servos whose good frame said what cannot be.
-        stuffed: Answers that were longer than plain and all there: data that looked like a header
-            was stuffed, or noise came with them, which is no error.
-        cycles: Answers collected.
-        turnaround: What each servo takes before it answers, s; `TURNAROUND` once its return
+        errors: Number of errors by kind: "no answer" and "corrupt" count servos,
+            "resynchronised" counts answers with missing replies, "implausible" counts
+            servos whose valid frame contained impossible values.
+        stuffed: Number of complete answers that were longer than the layout, by byte stuffing or
+            noise; this is not an error.
+        cycles: Number of answers collected.
+        turnaround: Time that each servo takes before it answers, s; `TURNAROUND` once its return
             delay has been set to 0.
     """
 
@@ -61,15 +61,15 @@ class BusTransactions:
         self._wire_free = 0.0
         self._deadline = 0.0
         self._pending: CyclicRead | None = None
-        self._owed: dict[int, int] = {}  # who has not answered, and how often by now
-        self._parts_owed: dict[int, float] = {}  # who may still answer alone, and until when, s
+        self._owed: dict[int, int] = {}  # id: number of unanswered requests
+        self._parts_owed: dict[int, float] = {}  # id: until when a late single answer may come, s
         self._whole_owed = -inf  # until when a fast answer may still come, s
         self._silence = 0.0
         self._doubts = 0
-        self._quiet = 0.0  # until when nobody is to be asked, s
+        self._quiet = 0.0  # until when no request is sent, s
 
     def move_to(self, port: Port) -> None:
-        """Go on over another port; what was asked on the old one is forgotten."""
+        """Continue on another port; requests pending on the old one are dropped."""
         self.port = port
         self._wire_free = self._deadline = self._silence = self._quiet = 0.0
         self._pending = None
@@ -77,17 +77,17 @@ class BusTransactions:
         self._whole_owed = -inf
 
     def send(self, frames: Iterable[bytes]) -> None:
-        """Send frames that nobody answers."""
+        """Send frames that are not answered."""
         for frame in frames:
             self.port.write(frame)
             self._occupy(len(frame))
 
     def request(self, read: CyclicRead, rest: bool = False) -> None:
-        """Ask; input that has come before is too late for whatever it answered.
+        """Send the request of `read`; input received before is discarded as too late.
 
         Args:
-            read: What to ask.
-            rest: Rather ask nobody than wait, where the line has to fall quiet.
+            read: The read to request.
+            rest: If the line has to fall quiet first, send nothing instead of waiting.
         """
         if rest and self._quiet > self.port.clock.now():
             self._pending = None
@@ -100,7 +100,7 @@ class BusTransactions:
         self._pending = read
 
     def collect(self) -> Mask:
-        """Return (n,) bool: who answered the request in time; all False without a request."""
+        """Return (n,) bool: which servos answered in time; an empty array without a request."""
         read, self._pending = self._pending, None
         if read is None:
             return _NOBODY
@@ -121,7 +121,7 @@ class BusTransactions:
         return read.valid
 
     def _answer(self, read: CyclicRead) -> bytes:
-        """Return as many bytes as the answer has, without the request if that came back."""
+        """Read up to `read.length` bytes; an echo of the request in front of them is removed."""
         stream = self.port.read(read.length, self._deadline)
         request = read.request
         if stream and request.startswith(stream[: len(request)]):
@@ -131,10 +131,10 @@ class BusTransactions:
         return stream
 
     def _newest(self, read: CyclicRead, stream: bytes) -> bytes:
-        """Return `stream` as far as it can be an answer, where earlier ones may still be coming.
+        """Return `stream` as far as it can be the answer, while late ones may still arrive.
 
-        What an adapter held back comes sooner than the wire can carry an answer, or has more
-        behind it.
+        A late answer held back by the adapter comes sooner than the wire time of the new answer
+        allows, or is followed by more bytes.
         """
         now = self.port.clock.now()
         if len(stream) < read.length:
@@ -147,18 +147,18 @@ class BusTransactions:
         return stream + self.port.read(PLENTY, last)
 
     def _alone(self, read: CyclicRead, stream: bytes) -> None:
-        """Take in an answer that must be whole and alone: an earlier one may still be coming."""
+        """Decode an answer only if it is complete and alone: a late one may still arrive."""
         stream = self._newest(read, stream)
         read.decode(stream if len(stream) == read.length else b"")
         if not read.complete:
             self._count_lost(read, stream)
 
     def _note_owed(self, read: CyclicRead) -> None:
-        """Remember who was asked and has not answered, also where a reply may have been another's.
+        """Record which servos still owe an answer, including those whose reply was doubtful.
 
-        Where a servo is late, so are all behind it: they are let finish before the next request,
-        a few times. One that is silent alone is not waited for. Where answers go on being doubtful,
-        the line is let fall quiet.
+        If a servo is late, so are all after it: the next request waits for them, at most `LATE`
+        times. A single silent servo is not waited for. After `DOUBTS` doubtful answers in a row,
+        requests pause until the line is quiet.
         """
         now = self.port.clock.now()
         self._doubts = self._doubts + 1 if read.doubted else 0
@@ -180,7 +180,7 @@ class BusTransactions:
             self._silence = self._deadline + GRACE
 
     def _collect_chain(self, chain: ChainRead) -> Mask:
-        """Take in the first answer of a chain, then ask and take in one after the other."""
+        """Collect the first answer of a chain, then request and collect the others one by one."""
         for row, part in enumerate(chain.parts):
             if row:
                 self._ask(part)
@@ -189,7 +189,7 @@ class BusTransactions:
         return chain.valid
 
     def _collect_part(self, part: CyclicRead) -> None:
-        """Take in the answer of one servo; an earlier one that comes late has another behind it."""
+        """Collect the answer of one servo; a late one is recognised by bytes after it."""
         id = part.spans[0].id
         stream, now = self._answer(part), self.port.clock.now()
         if id in self._owed or now < self._parts_owed.get(id, -inf):
@@ -204,7 +204,7 @@ class BusTransactions:
             self._parts_owed[id] = now + STILL_COMING
 
     def answer_time(self, read: CyclicRead) -> float:
-        """Return how long the answer to `read` may take once the request is on the wire, s."""
+        """Return the maximum time from the end of the request of `read` to its full answer, s."""
         wire = read.length * BITS / self.port.baud
         return wire + len(read.spans) * self.turnaround + self.port.latency + SLACK
 
@@ -218,7 +218,7 @@ class BusTransactions:
         self._deadline = self._wire_free + self.answer_time(read)
 
     def _resynchronise(self, read: CyclicRead, stream: bytes) -> None:
-        """Wait for what stuffing, noise or a lost byte has moved back, and keep what is good."""
+        """Read and decode more bytes until the deadline: stuffing, noise or loss moved replies."""
         while not read.complete and self.port.clock.now() < self._deadline:
             more = self.port.read(max(1, read.length - len(stream)), self._deadline)
             if not more:
@@ -233,7 +233,7 @@ class BusTransactions:
             self._count_lost(read, stream)
 
     def _count_lost(self, read: CyclicRead, stream: bytes) -> None:
-        """Count who is missing in an answer."""
+        """Count the replies that are missing in an answer."""
         self.errors["resynchronised"] += 1
         kind = "corrupt" if len(stream) > read.answered() else "no answer"
         self.errors[kind] += int((~read.valid).sum())

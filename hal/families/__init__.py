@@ -1,4 +1,4 @@
-"""Families of servos: what differs between makes, one object each."""
+"""Families of servos: one object each with all that differs between makers."""
 
 from windup.hal.errors import UnknownNameError
 from windup.hal.families.dynamixel_1 import DYNAMIXEL_1
@@ -12,13 +12,13 @@ _OF_MODEL = {name: family for family in FAMILIES for name in family.numbers.valu
 
 
 def family_of(model: str) -> Family:
-    """Return the family of a servo; what follows a dash may be its winding.
+    """Return the family of a servo model; a suffix after a dash, such as its winding, is ignored.
 
     >>> family_of("STS3215-7.4V").name, family_of("MX-28").name
     ('Feetech STS', 'Dynamixel AX/MX')
 
     Raises:
-        UnknownNameError: No family has such a servo.
+        UnknownNameError: No family has such a model.
     """
     name = model if model in _OF_MODEL else model.split("-")[0]
     try:

@@ -1,9 +1,9 @@
-"""Configuration through dynamixel-sdk, on our port and our clock, with its defects repaired.
+"""Servo configuration through dynamixel-sdk, on a `Port` and its clock, with SDK defects fixed.
 
-What is repaired, each without touching the installed package: the SDK sends payloads unstuffed and
-unstuffs wrongly; it polls the wall clock, so virtual time would never pass; it opens ports itself
-and reopens them for another baud rate; its time-outs assume 16 ms of latency whatever the
-adapter; an exception leaves its port marked as in use for ever.
+The fixes do not change the installed package. Defects of the SDK: it sends payloads without byte
+stuffing and unstuffs wrongly; it polls the wall clock, so virtual time would never advance; it
+opens ports itself and reopens them to change the baud rate; its timeouts assume 16 ms of latency
+for every adapter; an exception leaves its port marked as in use forever.
 """
 
 import contextlib
@@ -22,9 +22,9 @@ from windup.hal.port.port import BITS, Port
 from windup.hal.protocols import protocol2
 
 QUIET = 20e-3
-"""Silence, on top of the adapter's latency, after which no late answer is to be expected, s."""
+"""Silence, in addition to the adapter's latency, after which no late answer is expected, s."""
 NOISY = 0.1
-"""How long quiet is waited for on a line that has none, s."""
+"""Maximum time to wait for silence on a noisy line, s."""
 SLACK = 10e-3
 """Time a servo may take to write its EEPROM before it answers, s."""
 ATTEMPTS = 3
@@ -41,7 +41,7 @@ REFUSALS = {
 
 
 class SdkPort(PortHandler):  # type: ignore[misc]  # the SDK has no types
-    """The SDK's idea of a port over ours. Times are ms, as the SDK has them."""
+    """Implements the SDK's port interface with a `Port`. Times are in ms, as in the SDK."""
 
     def __init__(self, port: Port) -> None:
         super().__init__(port.url)
@@ -49,32 +49,32 @@ class SdkPort(PortHandler):  # type: ignore[misc]  # the SDK has no types
         self.baudrate = port.baud
         self.is_open = True
         self._sent = b""
-        self._ahead: bytes | None = None  # what was read, unless it may still be our own request
+        self._ahead: bytes | None = None  # bytes read ahead; None before the echo check
 
     def openPort(self) -> bool:  # noqa: N802 - the SDK's name, as all below
-        """The port is open already."""
+        """Do nothing: the port is open already."""
         return True
 
     def closePort(self) -> None:  # noqa: N802
-        """The port belongs to who opened it."""
+        """Do nothing: the port is closed by the code that opened it."""
 
     def clearPort(self) -> None:  # noqa: N802
-        """Discard input."""
+        """Discard received bytes."""
         self.port.flush_input()
 
     def setBaudRate(self, baudrate: int) -> bool:  # noqa: N802
-        """Change the baud rate in place."""
+        """Change the baud rate of the open port."""
         self.port.baud = self.baudrate = baudrate
         return True
 
     def getBytesAvailable(self) -> int:  # noqa: N802
-        """Nothing is ever read ahead."""
+        """Return 0: no bytes are buffered for the SDK to poll."""
         return 0
 
     def readPort(self, length: int) -> bytes:  # noqa: N802
-        """Wait for `length` bytes until the packet's time is up; this lets virtual time pass.
+        """Wait for `length` bytes until the packet timeout; blocking lets virtual time advance.
 
-        A request that comes back is left out: in protocol 1 it looks like an answer.
+        An echo of the request is removed: in protocol 1 it looks like an answer.
         """
         deadline = (self.packet_start_time + self.packet_timeout) * 1e-3
         if self._ahead is None:
@@ -87,18 +87,18 @@ class SdkPort(PortHandler):  # type: ignore[misc]  # the SDK has no types
         return got + self.port.read(length - len(got), deadline) if len(got) < length else got
 
     def writePort(self, packet: list[int]) -> int:  # noqa: N802
-        """Send, all or an exception."""
+        """Send the whole packet, or raise."""
         self._sent, self._ahead = bytes(packet), None
         self.port.write(self._sent)
         return len(packet)
 
     def setPacketTimeout(self, packet_length: int) -> None:  # noqa: N802
-        """Give request and answer their time on the wire, the adapter its latency, and slack."""
+        """Set the timeout to the wire time of request and answer, adapter latency and slack."""
         wire = (2 * len(self._sent) + packet_length) * BITS / self.port.baud
         self.setPacketTimeoutMillis((wire + 2.0 * self.port.latency + SLACK) * 1e3)
 
     def isPacketTimeout(self) -> bool:  # noqa: N802
-        """Reading blocks until the packet's time, so an instant short of it is the end of it."""
+        """Return whether the packet timeout has passed; reads block until then."""
         return bool(self.getTimeSinceStart() >= self.packet_timeout - 1e-6)
 
     def getCurrentTime(self) -> float:  # noqa: N802
@@ -107,17 +107,17 @@ class SdkPort(PortHandler):  # type: ignore[misc]  # the SDK has no types
 
 
 class SdkPackets(Protocol2PacketHandler):  # type: ignore[misc]  # the SDK has no types
-    """The SDK's packet handler with byte stuffing that works both ways."""
+    """The SDK's packet handler with correct byte stuffing and unstuffing."""
 
     def addStuffing(self, packet: list[int]) -> list[int]:  # noqa: N802
-        """Stuff in place: the caller throws the result away."""
+        """Stuff the packet in place, because the caller ignores the result."""
         end = 7 + packet[5] + (packet[6] << 8) - 2
         body = protocol2.stuff(bytes(packet[7:end]))
         packet[5:] = [*(len(body) + 2).to_bytes(2, "little"), *body, 0, 0]
         return packet
 
     def removeStuffing(self, packet: list[int]) -> list[int]:  # noqa: N802
-        """Return the packet unstuffed; its CRC has been checked."""
+        """Return the unstuffed packet; its CRC has been checked before."""
         end = 7 + packet[5] + (packet[6] << 8) - 2
         body = protocol2.unstuff(bytes(packet[7:end]))
         length = (len(body) + 2).to_bytes(2, "little")
@@ -125,7 +125,7 @@ class SdkPackets(Protocol2PacketHandler):  # type: ignore[misc]  # the SDK has n
 
 
 def keep_received(packets: Any) -> deque[Sequence[int]]:
-    """Return where the last packet is kept that the SDK receives: it never looks at the length."""
+    """Return a queue that keeps the last packet received, as the SDK does not check its length."""
     got: deque[Sequence[int]] = deque(maxlen=1)
     receive = packets.rxPacket
 
@@ -139,16 +139,16 @@ def keep_received(packets: Any) -> deque[Sequence[int]]:
 
 
 class ServoConfigurator(ABC):
-    """One servo at a time, verified and slow: what configuration needs.
+    """Verified access to one servo at a time, with retries; slow, for configuration only.
 
-    Everything raises `NoAnswerError`, `CorruptAnswerError`, `RefusedError` or `PortError`.
+    All methods raise `NoAnswerError`, `CorruptAnswerError`, `RefusedError` or `PortError`.
 
     Attributes:
-        heartbeat: Called before each attempt: a silent servo takes several.
+        heartbeat: Called before each attempt, because a silent servo takes several.
     """
 
     timed_out: int = COMM_RX_TIMEOUT
-    """What the SDK returns when nothing came."""
+    """Result code of the SDK for a timeout."""
 
     def __init__(self, port: Port, packets: Any) -> None:
         self._port, self._packets = SdkPort(port), packets
@@ -157,7 +157,7 @@ class ServoConfigurator(ABC):
         self._got = keep_received(packets)
 
     def settle(self) -> None:
-        """Wait until no answer to an earlier request can come any more."""
+        """Wait until no late answer to an earlier request can arrive."""
         self._port.port.settle(QUIET + self._port.port.latency, NOISY)
         self._unsettled = False
 
@@ -170,7 +170,7 @@ class ServoConfigurator(ABC):
         """Return `size` bytes at `address`."""
 
     def write(self, id: int, address: int, data: bytes) -> None:
-        """Write `data` at `address`; the servo has answered when this returns."""
+        """Write `data` at `address`, and wait for the status packet."""
         value = list(data)
         self._ask(
             id,
@@ -183,11 +183,11 @@ class ServoConfigurator(ABC):
 
     @abstractmethod
     def reboot(self, id: int) -> None:
-        """Restart a servo; it is deaf for some 100 ms."""
+        """Reboot a servo; it does not answer for some 100 ms."""
 
     @abstractmethod
     def factory_reset(self, id: int, keep: int) -> None:
-        """Reset a servo; `keep` 0xFF nothing, 0x01 the id, 0x02 id and baud rate."""
+        """Reset a servo; `keep`: 0xFF keeps nothing, 0x01 the id, 0x02 id and baud rate."""
 
     def _ask(
         self,
@@ -196,10 +196,10 @@ class ServoConfigurator(ABC):
         size: int,
         attempts: int = ATTEMPTS,
     ) -> tuple[Any, int]:
-        """Return value and error byte of a call that ends in (value, result, error).
+        """Return (value, error byte) of an SDK call that returns (value, result, error); retry.
 
-        After a call that failed its answer may still come, so the line is let fall quiet before
-        the next request; an answer with another number of parameters than `size` is never taken.
+        The answer to a failed call may still arrive, so silence is waited for before the next
+        request; an answer whose number of parameters is not `size` is rejected.
         """
         result, before = COMM_SUCCESS, self._port.port.received
         for _ in range(attempts):
@@ -227,15 +227,15 @@ class ServoConfigurator(ABC):
 
     @abstractmethod
     def _size(self, packet: Sequence[int]) -> int:
-        """Return the number of parameters of a status that the SDK has received."""
+        """Return the number of parameters of a status packet from the SDK."""
 
     @abstractmethod
     def _check(self, id: int, error: int) -> None:
-        """Raise RefusedError where an error byte says that the servo will not."""
+        """Raise RefusedError if the error byte says that the servo rejected the instruction."""
 
     @contextlib.contextmanager
     def _released(self) -> Iterator[None]:
-        """Leave the SDK's port free, whatever happens."""
+        """Clear the SDK's "in use" flag before and after a call, also on an exception."""
         self._port.is_using = False
         try:
             yield
@@ -244,7 +244,7 @@ class ServoConfigurator(ABC):
 
 
 class DynamixelConfigurator(ServoConfigurator):
-    """Protocol 2, through dynamixel-sdk."""
+    """Configuration of protocol 2 servos through dynamixel-sdk."""
 
     def __init__(self, port: Port) -> None:
         super().__init__(port, SdkPackets())
@@ -260,15 +260,15 @@ class DynamixelConfigurator(ServoConfigurator):
         return bytes(data)
 
     def reboot(self, id: int) -> None:
-        """Restart a servo; it is deaf for some 100 ms."""
+        """Reboot a servo; it does not answer for some 100 ms."""
         self._ask(id, lambda: (None, *self._packets.reboot(self._port, id)), 0, attempts=1)
 
     def factory_reset(self, id: int, keep: int) -> None:
-        """Reset a servo; `keep` 0xFF nothing, 0x01 the id, 0x02 id and baud rate."""
+        """Reset a servo; `keep`: 0xFF keeps nothing, 0x01 the id, 0x02 id and baud rate."""
         self._ask(id, lambda: (None, *self._packets.factoryReset(self._port, id, keep)), 0, 1)
 
     def _size(self, packet: Sequence[int]) -> int:
-        """Return the number of parameters of a status that the SDK has received."""
+        """Return the number of parameters of a status packet from the SDK."""
         return packet[5] + (packet[6] << 8) - 4
 
     def _check(self, id: int, error: int) -> None:

@@ -1,11 +1,11 @@
 """Configuration of protocol 1: Dynamixel through dynamixel-sdk, Feetech through feetech-servo-sdk.
 
-Both run on `SdkPort`: our port, our clock, input discarded before each request (feetech-servo-sdk
-flushes output instead). What is left alone in feetech-servo-sdk: everything that turns bytes into
-words, because its byte order is one global of the process; and its grouped reads, which mix old
-and new values after a failure. Both SDKs return the checksum as data where an answer is too short,
-and dynamixel-sdk 4.1.0 cannot do a bulk read in protocol 1 (TypeError). Here they carry whole
-packets, one servo at a time.
+Both run on `SdkPort`: on a `Port` and its clock, with input discarded before each request
+(feetech-servo-sdk flushes output instead). Parts of feetech-servo-sdk that are not used: its
+conversion of bytes to words, because its byte order is a global of the process; and its grouped
+reads, which mix old and new values after a failure. Both SDKs return the checksum as data if an
+answer is too short, and dynamixel-sdk 4.1.0 cannot do a bulk read in protocol 1 (TypeError). So
+they are used only to transmit whole packets, one servo at a time.
 """
 
 from collections.abc import Sequence
@@ -27,16 +27,16 @@ REFUSALS = {
     4: "saw a wrong checksum",
     6: "does not know the instruction",
 }
-"""Bit of a Dynamixel's error byte that means "no"; the others say how the servo is."""
+"""Bits of a Dynamixel's error byte that reject an instruction; the others report its health."""
 
 
 class Protocol1Configurator(ServoConfigurator):
-    """What both makers have alike.
+    """Base class of the configurators of both makers.
 
     Args:
         port: The port.
         packets: The SDK's packet handler.
-        model_number: The register in which a servo says what it is.
+        model_number: The register of the model number.
     """
 
     def __init__(self, port: Port, packets: Any, model_number: Register) -> None:
@@ -44,7 +44,7 @@ class Protocol1Configurator(ServoConfigurator):
         self._model_number = model_number
 
     def ping(self, id: int, attempts: int = ATTEMPTS) -> int:
-        """Return the model number of servo `id`; the answer to a ping does not hold it."""
+        """Return the model number of servo `id`, read after a ping, whose answer lacks it."""
         self._instruct(id, Instruction.PING, attempts)
         register = self._model_number
         return register.decode(self.read(id, register.address, register.size))
@@ -61,18 +61,18 @@ class Protocol1Configurator(ServoConfigurator):
         return bytes(data)
 
     def reboot(self, id: int) -> None:
-        """There is no such instruction in protocol 1."""
+        """Raise UsageError: protocol 1 has no reboot instruction."""
         raise UsageError(
             f"id {id} on {self._port.port.url} cannot be rebooted from here; "
             "switch its power off and on"
         )
 
     def factory_reset(self, id: int, keep: int) -> None:
-        """Reset everything but what the maker keeps; `keep` cannot be chosen in protocol 1."""
+        """Reset a servo; protocol 1 has no choice of `keep`: the servo decides what it keeps."""
         self._instruct(id, Instruction.FACTORY_RESET, attempts=1)
 
     def reset_turns(self, id: int) -> None:
-        """Make a Feetech servo forget whole turns."""
+        """Reset the multi-turn count of a Feetech servo."""
         self._instruct(id, Instruction.RESET_TURNS)
 
     def _instruct(self, id: int, instruction: Instruction, attempts: int = ATTEMPTS) -> None:
@@ -86,15 +86,15 @@ class Protocol1Configurator(ServoConfigurator):
         self._ask(id, call, 0, attempts)
 
     def _size(self, packet: Sequence[int]) -> int:
-        """Return the number of parameters of a status that the SDK has received."""
+        """Return the number of parameters of a status packet from the SDK."""
         return packet[3] - 2
 
     def _check(self, id: int, error: int) -> None:
-        """A servo's health rides in every error byte; it refuses nothing."""
+        """Do nothing: the error byte of a Feetech reports health only, never a rejection."""
 
 
 class Dynamixel1Configurator(Protocol1Configurator):
-    """AX and MX."""
+    """Configuration of Dynamixel AX and MX."""
 
     def __init__(self, port: Port, model_number: Register) -> None:
         super().__init__(port, Protocol1PacketHandler(), model_number)
@@ -105,7 +105,7 @@ class Dynamixel1Configurator(Protocol1Configurator):
 
 
 class FeetechConfigurator(Protocol1Configurator):
-    """STS, SMS and SCS."""
+    """Configuration of Feetech STS, SMS and SCS."""
 
     timed_out = COMM_RX_TIMEOUT
 

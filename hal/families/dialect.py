@@ -1,4 +1,4 @@
-"""How the servos of a bus are spoken to: one dialect for each protocol and maker."""
+"""Dialects: the requests and reads of each protocol as implemented by each maker."""
 
 import contextlib
 from abc import ABC, abstractmethod
@@ -18,17 +18,17 @@ from windup.hal.protocols.protocol2 import Span
 from windup.hal.registers import Register
 
 PING_SLOT = 3e-3
-"""Servos answer a broadcast ping of protocol 2 one after the other, each in its slot of this, s."""
+"""Time slot of each id in the answer to a broadcast ping of protocol 2, s."""
 PING_TIME = 3e-3
-"""What a servo may take to answer a ping of its own, return delay and driver included, s."""
+"""Maximum time to the answer to a ping of one servo, including return delay and driver, s."""
 MODEL_NUMBER = Register("model_number", 0, 2, "eeprom", False)
-"""Where every Dynamixel says what it is, whatever it speaks."""
+"""Model number register of every Dynamixel, in both protocols."""
 LATEST = 0.1
-"""What comes later than this is noise, s."""
+"""Maximum delay of a late answer, s; later bytes are noise."""
 
 
 class Answered(NamedTuple):
-    """Who answered a ping, and what it is."""
+    """A servo that answered a ping."""
 
     id: int
     model_number: int
@@ -36,11 +36,11 @@ class Answered(NamedTuple):
 
 
 class ServoProtocol(ABC):
-    """One protocol as one maker speaks it.
+    """One protocol as implemented by one maker.
 
     Attributes:
-        last_id: The largest id a servo can have.
-        weak: Is the checksum so short that a good frame proves little?
+        last_id: The largest id that a servo can have.
+        weak: Whether the checksum is so short (8 bits) that corrupt frames often pass it.
     """
 
     last_id: int
@@ -48,11 +48,11 @@ class ServoProtocol(ABC):
 
     @abstractmethod
     def link(self, port: Port) -> ServoConfigurator:
-        """Return what speaks to one servo at a time."""
+        """Return a configurator, for access to one servo at a time."""
 
     @abstractmethod
     def read(self, spans: Sequence[Span], fast: bool = False) -> CyclicRead:
-        """Return a cyclic read; `fast` is one that not all servos of the family may know."""
+        """Return a cyclic read; `fast` selects one that not all servos of the family support."""
 
     @abstractmethod
     def write(self, ids: Sequence[int], register: Register) -> CyclicWrite:
@@ -64,11 +64,11 @@ class ServoProtocol(ABC):
 
     @abstractmethod
     def probe(self, id: int) -> Probe:
-        """Return a request to one servo whose answer cannot be taken for its echo."""
+        """Return a request to one servo whose answer cannot be mistaken for its echo."""
 
     @abstractmethod
     def who(self, port: Port, link: ServoConfigurator) -> list[Answered]:
-        """Return who is there at the port's present baud rate."""
+        """Return the servos that answer at the port's present baud rate."""
 
     def estranged(self, port: Port, id: int) -> int | None:
         """Return the model number of a silent servo that answers in another protocol, or None."""
@@ -76,16 +76,16 @@ class ServoProtocol(ABC):
 
 
 class Protocol2(ServoProtocol):
-    """Dynamixel protocol 2. Fast is the fast sync read."""
+    """Dynamixel protocol 2. Its fast read is the fast sync read."""
 
     last_id, weak = protocol2.LAST_ID, False
 
     def link(self, port: Port) -> ServoConfigurator:
-        """Return what speaks to one servo at a time."""
+        """Return a configurator, for access to one servo at a time."""
         return DynamixelConfigurator(port)
 
     def read(self, spans: Sequence[Span], fast: bool = False) -> CyclicRead:
-        """Return a sync read, or a bulk read where the spans differ."""
+        """Return a sync read, or a bulk read if the spans differ."""
         return BlockRead(spans, fast)
 
     def write(self, ids: Sequence[int], register: Register) -> CyclicWrite:
@@ -97,12 +97,12 @@ class Protocol2(ServoProtocol):
         return [protocol2.sync_write(data, address, size)]
 
     def probe(self, id: int) -> Probe:
-        """Return a ping: a status has an instruction byte of its own."""
+        """Return a ping: its answer differs from its echo by the instruction byte."""
         answer = protocol2.status(id, bytes(3))
         return Probe(protocol2.ping(id), len(answer), answer[:8])
 
     def who(self, port: Port, link: ServoConfigurator) -> list[Answered]:
-        """Ping everybody at once; every reply that is whole counts."""
+        """Send a broadcast ping, and return all servos with a valid reply."""
         port.flush_input()
         port.write(protocol2.ping())
         slots = PING_SLOT * protocol2.LAST_ID + 2.0 * port.latency
@@ -123,12 +123,12 @@ class Protocol2(ServoProtocol):
 
 
 class Protocol1(ServoProtocol):
-    """What Dynamixel protocol 1 and Feetech have alike.
+    """Base class of Dynamixel protocol 1 and Feetech.
 
     Args:
-        model_number: Where a servo says what it is.
-        firmware: Where it says which firmware it runs.
-        longest: Bytes of the longest frame a servo takes.
+        model_number: Register of the model number.
+        firmware: Register of the firmware version.
+        longest: Maximum length of a frame that a servo accepts, bytes.
     """
 
     last_id, weak = protocol1.LAST_ID, True
@@ -137,7 +137,7 @@ class Protocol1(ServoProtocol):
         self.model_number, self.firmware, self.longest = model_number, firmware, longest
 
     def read(self, spans: Sequence[Span], fast: bool = False) -> CyclicRead:
-        """Return the common read where all know one and `fast` says so, else single reads."""
+        """Return one common read if `fast` and its request fits into a frame, else single reads."""
         if fast and len(spans) > 1 and self._room_for(len(spans)):
             return self._common(spans)
         return ChainRead(spans)
@@ -151,16 +151,16 @@ class Protocol1(ServoProtocol):
         return protocol1.split_sync_write(data, address, size, self.longest)
 
     def probe(self, id: int) -> Probe:
-        """Return a read of one byte: unlike the answer to a ping, its answer has another length."""
+        """Return a read of one byte: its answer differs in length from its echo, a ping's not."""
         answer = protocol1.status(id, bytes(1))
         request = protocol1.read(id, self.model_number.address, 1)
         return Probe(request, len(answer), answer[:4])
 
     def who(self, port: Port, link: ServoConfigurator) -> list[Answered]:
-        """Ping one id after the other: all who hear a common ping would answer at once.
+        """Ping each id in turn, as answers to a broadcast ping would collide; return who answered.
 
-        Where one answers while another is asked, the adapter is slower than was thought: then all
-        are pinged again. Who talks under strange ids is no reason to.
+        An answer that comes while a later id is pinged shows that the adapter's latency is longer
+        than assumed: it is raised, and all ids are pinged again. Ids not yet pinged do not count.
         """
         found, firmware = [], self.firmware
         asked: dict[int, float] = {}
@@ -171,7 +171,7 @@ class Protocol1(ServoProtocol):
             if port.latency < max(late, default=0.0) < LATEST:
                 port.latency = MARGIN * max(late)
                 return self.who(port, link)
-            # Noise, or two servos with this id, may pass for an answer; they have no model.
+            # Noise, or two servos with this id, may look like an answer, but give no model number.
             if id in pongs:
                 with contextlib.suppress(HardwareError):
                     version = link.read(id, firmware.address, firmware.size)
@@ -180,18 +180,18 @@ class Protocol1(ServoProtocol):
 
     @abstractmethod
     def _common(self, spans: Sequence[Span]) -> CyclicRead:
-        """Return one read for all."""
+        """Return one read of all spans."""
 
     @abstractmethod
     def _room_for(self, servos: int) -> bool:
-        """Does the request of a common read of so many fit into a servo's buffer?"""
+        """Return whether the request of a common read of `servos` servos fits into a frame."""
 
 
 class Dynamixel1(Protocol1):
-    """AX and MX. The common read is the bulk read, which no AX knows."""
+    """Dynamixel AX and MX. The common read is the bulk read, which an AX does not support."""
 
     def link(self, port: Port) -> ServoConfigurator:
-        """Return what speaks to one servo at a time."""
+        """Return a configurator, for access to one servo at a time."""
         return Dynamixel1Configurator(port, self.model_number)
 
     def _common(self, spans: Sequence[Span]) -> CyclicRead:
@@ -202,12 +202,12 @@ class Dynamixel1(Protocol1):
 
 
 class Feetech(Protocol1):
-    """STS, SMS and SCS. The common read is the sync read.
+    """Feetech STS, SMS and SCS. The common read is the sync read.
 
     Args:
-        model_number: Where a servo says what it is.
-        firmware: Where it says which firmware it runs.
-        always_sync: Do all servos of the family know it?
+        model_number: Register of the model number.
+        firmware: Register of the firmware version.
+        always_sync: Whether all servos of the family support the sync read.
     """
 
     def __init__(self, model_number: Register, firmware: Register, always_sync: bool) -> None:
@@ -215,11 +215,11 @@ class Feetech(Protocol1):
         self.always_sync = always_sync
 
     def link(self, port: Port) -> ServoConfigurator:
-        """Return what speaks to one servo at a time."""
+        """Return a configurator, for access to one servo at a time."""
         return FeetechConfigurator(port, self.model_number)
 
     def read(self, spans: Sequence[Span], fast: bool = False) -> CyclicRead:
-        """Return a sync read where all know one, else single reads."""
+        """Return a sync read if `fast` or all servos support it, else single reads."""
         return super().read(spans, fast or self.always_sync)
 
     def _common(self, spans: Sequence[Span]) -> CyclicRead:
@@ -231,7 +231,7 @@ class Feetech(Protocol1):
 
 
 def _pongs(port: Port, id: int) -> set[int]:
-    """Ping one id; return the ids under which an answer came."""
+    """Ping one id; return the ids of all answers received."""
     request = protocol1.ping(id)
     port.flush_input()
     port.write(request)

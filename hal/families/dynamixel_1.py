@@ -1,4 +1,4 @@
-"""Dynamixel AX and MX under protocol 1, mixed on a bus as Poppy and Darwin have them."""
+"""Dynamixel AX and MX with protocol 1, also mixed on one bus, as in Poppy and Darwin."""
 
 from windup.hal.families.dialect import Dynamixel1
 from windup.hal.families.family import Block, Family, Mark, RequiredSetting
@@ -15,9 +15,9 @@ from windup.hal.servos.mx_registers import (
 from windup.hal.servos.servo_model import ServoModel
 
 FULL = 1023
-"""Torque limit that limits nothing."""
+"""Maximum torque limit: no limitation."""
 MARKED = FULL - 1
-"""The same, and it shows a restart, which loads `max_torque`; a shutdown leaves 0."""
+"""Torque limit set by arming, to detect a restart, which loads `max_torque`; a shutdown sets 0."""
 STATE = (
     COMMON["present_position"],
     COMMON["present_velocity"],
@@ -29,7 +29,7 @@ _SLOPES = Gain(mx_registers("AX-12A")["compliance_slopes"], 512, slope_steps, sl
 
 
 def _wanted(model: ServoModel) -> tuple[RequiredSetting, ...]:
-    """Return the settings; those a model does not have are passed over."""
+    """Return the required settings; those that a model does not have are skipped."""
     return (
         RequiredSetting("return_delay", 0),
         RequiredSetting("drive_mode", 0),

@@ -1,4 +1,4 @@
-"""Dynamixel X: protocol 2, little-endian, two's complement, a watchdog."""
+"""Dynamixel X: protocol 2, little-endian, two's complement, with a Bus Watchdog."""
 
 from windup.hal.families.dialect import Protocol2
 from windup.hal.families.family import Block, Family, Mark, RequiredSetting
@@ -18,10 +18,10 @@ EXTENDED_MODE = 4
 PWM_FULL = 885
 NO_SECOND_ID = 255
 GUARDED = 0x34
-"""Errors that have to end torque: overheating, electrical shock, overload (e-Manual, Shutdown)."""
+"""Shutdown bits required: overheating, electrical shock, overload (e-Manual, Shutdown)."""
 REGISTERS = {register.name: register for register in COMMON}
 
-# Current or load, velocity, position: one run of registers, the same in the whole family.
+# Current or load, velocity, position: consecutive registers, the same in the whole family.
 STATE = (
     REGISTERS["present_position"],
     REGISTERS["present_velocity"],
@@ -32,12 +32,12 @@ WANTED = (
     RequiredSetting("return_delay", 0),
     RequiredSetting(
         "drive_mode", 0
-    ),  # counts up, velocity profile, a goal does not switch torque on
+    ),  # normal direction, velocity-based profile, a goal does not switch torque on
     RequiredSetting("operating_mode", POSITION_MODE),
-    RequiredSetting("secondary_id", NO_SECOND_ID),  # with one it obeys what others are told
+    RequiredSetting("secondary_id", NO_SECOND_ID),  # with one it obeys commands to other servos
     RequiredSetting("shutdown", GUARDED, GUARDED),
     RequiredSetting("pwm_limit", PWM_FULL),
-    RequiredSetting("min_position_limit", 0),  # a goal beyond these is ignored without a word
+    RequiredSetting("min_position_limit", 0),  # goals beyond these are ignored
     RequiredSetting("max_position_limit", 4095),
     RequiredSetting("startup_configuration", 0),  # no torque after a brown-out
     RequiredSetting("status_return_level", 2),

@@ -1,7 +1,7 @@
-"""A family of servos: everything in which one make differs from another, as one object.
+"""A family of servos: one object with everything in which one maker differs from another.
 
-Whatever works on servos (bus, line, settings, torque switch, units) asks the family and knows no
-maker by name.
+All code that works on servos (bus, readout, settings, torque, units) uses the family and does not
+depend on a maker.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -22,7 +22,7 @@ from windup.hal.servos.servo_model import ServoModel
 
 
 class RequiredSetting(NamedTuple):
-    """What the stack needs a register to be; `mask` says which bits matter, None all."""
+    """Value that the stack requires in a register; `mask` selects the bits, None means all."""
 
     name: str
     value: int
@@ -30,12 +30,12 @@ class RequiredSetting(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """A register in RAM that shows a restart: arming never leaves in it what a restart does.
+    """A RAM register that detects a restart: arming sets another value than a restart leaves.
 
     Attributes:
         name: The register.
-        restarted: What it holds after a restart.
-        armed: What arming sets it to; None where that is the time of a Bus Watchdog, or nothing.
+        restarted: Its value after a restart.
+        armed: Value that arming writes; None if that is the time of a Bus Watchdog, or nothing.
     """
 
     name: str
@@ -45,12 +45,12 @@ class Mark(NamedTuple):
 
 @dataclass(frozen=True)
 class Block:
-    """A run of registers that is read in one piece.
+    """A range of consecutive registers that is read together.
 
     Attributes:
-        address: Of its first byte.
-        size: Bytes.
-        state: Position, velocity, and current or load.
+        address: Address of its first byte.
+        size: Size, bytes.
+        state: Registers of position, velocity, and current or load.
     """
 
     address: int
@@ -59,7 +59,7 @@ class Block:
 
     @cached_property
     def dtype(self) -> np.dtype[Any]:
-        """The record of one servo: fields "f0", "f1" and "f2" in the order of `state`."""
+        """Record dtype of one servo: fields "f0", "f1" and "f2" in the order of `state`."""
         names = [f"f{index}" for index in range(len(self.state))]
         return np.dtype(
             {
@@ -80,12 +80,12 @@ class Block:
         )
 
     def span(self, id: int) -> Span:
-        """Return the block of one servo."""
+        """Return the span of the block in servo `id`."""
         return Span(id, self.address, self.size)
 
 
 class Cycle(NamedTuple):
-    """What the cycle of a line reads: always, now and then, and to see that torque is still on."""
+    """Blocks that the cycle of a bus reads: each time, periodically, and to check torque."""
 
     state: Block
     health: Block | None
@@ -97,35 +97,35 @@ class Family:
     """Servos that share protocol, register addresses and rules.
 
     Attributes:
-        name: For people.
+        name: Name for messages.
         protocol: Name of its protocol in robot.toml.
-        dialect: How they are spoken to.
-        registers: What all models have at the same place, by name; units are the model's.
-        table: Model name to all of its registers.
-        numbers: Model number to model name.
-        bauds: Baud rate to the value of its register.
-        state: What a cycle reads.
-        current: What a cycle reads where torque is to come from it; None where `state` will do or
-            nothing measures current.
-        health: `state`, read on to voltage and temperature; None where `check` is read instead.
-        check: `health`, and before it the registers of `torque`.
-        check_alone: Can one servo be read further on than the others?
-        torque: Registers each of which, at 0, says that a servo does not drive.
-        torque_bytes: How many bytes hold them, from the first of them on.
-        mark: What shows a restart; None where nothing does.
-        shutdown: The register whose bits say which errors end torque, or weaken it.
-        weakening: Bits of errors that weaken torque instead of ending it.
-        latching: Does an error that has ended torque show until the power goes?
-        wanted: The settings the stack relies on, in the order in which they are written.
-        extended: What is wanted instead where a servo shall count many turns; None where none can.
-        usual: How a model protects itself as its maker delivers it; what is set otherwise is its
-            owner's, and only shown.
-        gain: How stiffness is set on a model.
-        alert: Bits of an answer's error byte that say the servo is unwell.
-        errors: Bit of an error to its meaning.
-        errors_in_answers: Are the bits of the error byte the errors themselves? Else they stand in
-            the register `hardware_error`.
-        goal_wakes: May a goal switch torque on?
+        dialect: Its protocol, as implemented by the maker.
+        registers: Registers common to all models, by name; units may differ by model.
+        table: Returns all registers of a model, by its name.
+        numbers: Maps model number to model name.
+        bauds: Maps baud rate to the value of the baud rate register.
+        state: Block read in each cycle.
+        current: Block read instead if torque is computed from its current; None if `state`
+            contains the current, or current is not measured.
+        health: `state`, extended to voltage and temperature; None if `check` is read instead.
+        check: `health`, extended downwards to the registers of `torque`.
+        check_alone: Whether a read may use a longer span for one servo than for the others.
+        torque: Registers of which a value of 0 means that a servo has no torque.
+        torque_bytes: Number of bytes that contain them, from the first of them on.
+        mark: Register that detects a restart, or None.
+        shutdown: Register whose bits select the errors that end torque, or reduce it.
+        weakening: Bits of errors that reduce torque instead of ending it.
+        latching: Whether an error that ended torque is reported until power-off.
+        wanted: Returns the required settings of a model, in the order of writing.
+        extended: Setting required instead for extended (multi-turn) position mode, or None.
+        usual: Returns the factory defaults of the protection settings of a model; other values
+            are the owner's choice, and only reported.
+        gain: Returns how stiffness is set on a model.
+        alert: Bits of a status packet's error byte that report a hardware error.
+        errors: Maps error bit to its meaning.
+        errors_in_answers: Whether the bits of the error byte are the errors themselves; else the
+            register `hardware_error` contains them.
+        goal_wakes: Whether writing a goal may switch torque on.
     """
 
     name: str
@@ -156,18 +156,18 @@ class Family:
     goal_wakes: bool = True
 
     def model_name(self, number: int) -> str:
-        """Return the name behind a model number, or "model 999"."""
+        """Return the name of a model number, or a text such as "model 999" if it is unknown."""
         return self.numbers.get(number, f"model {number}")
 
     def explain(self, bits: int) -> tuple[str, ...]:
-        """Return what the bits of an error byte or hardware error register mean."""
+        """Return the meanings of the bits of an error byte or hardware error register."""
         return tuple(what for bit, what in self.errors.items() if bits >> bit & 1)
 
     def baud_code(self, baud: int) -> int:
         """Return the register value of a baud rate.
 
         Raises:
-            UsageError: No servo of the family has this rate.
+            UsageError: The family does not support this rate.
         """
         if baud not in self.bauds:
             rates = ", ".join(str(rate) for rate in self.bauds)
@@ -175,16 +175,16 @@ class Family:
         return self.bauds[baud]
 
     def torque_span(self, id: int) -> Span:
-        """Return where the registers of `torque` stand in one servo.
+        """Return the span of the registers of `torque` in one servo.
 
-        It has a size that nothing else has that is read: a late answer to another question cannot
-        pass for torque that is on, or off.
+        No other read has the same size, so that a late answer to another request cannot be taken
+        for a torque state.
         """
         address = self.registers["torque_enable"].address
         return Span(id, address, self.torque_bytes)
 
     def cycle(self, models: Sequence[ServoModel]) -> Cycle:
-        """Return what the cycle of a line of `models` reads."""
+        """Return the blocks that the cycle of a bus with `models` reads."""
         if self.current is not None and all(model.torque_constant for model in models):
             long = self.current
             end = long.address + long.size

@@ -1,7 +1,7 @@
 """Feetech STS (and SMS): little-endian, 4096 counts; SCS: big-endian, 1024 counts.
 
-Gains and limits live in the EEPROM area behind the lock. While the lock is 1 a write there holds
-until the power goes, so the loop may change gains without wearing anything.
+Gains and limits are in the EEPROM area. While the register `lock` is 1, a write there is kept only
+until power-off, so the loop may change gains without wearing the EEPROM.
 """
 
 from windup.hal.families.dialect import Feetech
@@ -22,13 +22,13 @@ from windup.hal.servos.feetech_registers import (
 from windup.hal.servos.servo_model import ServoModel
 
 FULL = 1000
-"""Torque limit that limits nothing."""
+"""Maximum torque limit: no limitation."""
 MARKED = FULL - 1
-"""The same, and it shows a restart, which loads the limit from `max_torque` (memory table, 48)."""
+"""Torque limit set by arming, to detect a restart, which loads `max_torque` (memory table, 48)."""
 OVERLOAD = 1 << 5
-"""Bit of the one error that leaves the torque on, at Protective Torque (memory table, 34)."""
+"""Bit of the only error that reduces torque, to Protective Torque (memory table, 34)."""
 GUARDED = 1 << 2 | OVERLOAD
-"""Errors that have to unload the motor: overheating, overload (memory table, 19)."""
+"""Unloading Condition bits required: overheating, overload (memory table, 19)."""
 LARGEST_P = 254
 _ALERT = sum(1 << bit for bit in HARDWARE_ERRORS)
 
@@ -36,9 +36,9 @@ _ALERT = sum(1 << bit for bit in HARDWARE_ERRORS)
 def _sts_wanted(model: ServoModel) -> tuple[RequiredSetting, ...]:
     return (
         *_wanted(model),
-        RequiredSetting("phase", STEP_SPEED, STEP_SPEED | MULTI_TURN),  # steps a second, one turn
+        RequiredSetting("phase", STEP_SPEED, STEP_SPEED | MULTI_TURN),  # 1 step/s, single turn
         RequiredSetting("operating_mode", 0),
-        RequiredSetting("angular_resolution", 1),  # else a count is several steps
+        RequiredSetting("angular_resolution", 1),  # otherwise a count is several steps
         RequiredSetting("cw_dead_zone", 1),
         RequiredSetting("ccw_dead_zone", 1),
         RequiredSetting("acceleration", 0),  # no profile
@@ -69,7 +69,7 @@ USUAL = (
     Usual("protection_time", 200),
     Usual("overcurrent_time", 200),
 )
-"""What protects a servo, as its maker delivers it (memory table, 28 and 34 to 38)."""
+"""Factory defaults of the protection registers (memory table, 28 and 34 to 38)."""
 
 
 def _usual(model: ServoModel) -> tuple[Usual, ...]:

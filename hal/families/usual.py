@@ -1,7 +1,7 @@
-"""Settings that say when a servo protects itself: its owner's to choose, and shown where odd.
+"""Protection settings of servos: the owner's choice, but reported if they are unusual.
 
-Not among them are Current Limit and Velocity Limit of a Dynamixel X: they bound a goal current and
-a profile velocity (e-Manual, 38 and 44), and in position mode without a profile there is neither.
+Current Limit and Velocity Limit of a Dynamixel X are not included: they limit a goal current and
+a profile velocity (e-Manual, 38 and 44), which position mode without a profile does not use.
 """
 
 from typing import NamedTuple
@@ -10,13 +10,13 @@ from windup.hal.servos.servo_model import ServoModel
 
 
 class Usual(NamedTuple):
-    """What a register holds as its maker delivers the servo.
+    """Factory default of a protection register.
 
     Attributes:
         name: The register.
-        value: Its counts.
-        lower: Is a lower value worth a word?
-        higher: Is a higher one?
+        value: Its factory default, counts.
+        lower: Whether a lower value is reported.
+        higher: Whether a higher value is reported.
     """
 
     name: str
@@ -25,15 +25,15 @@ class Usual(NamedTuple):
     higher: bool = False
 
     def is_odd(self, present: int) -> bool:
-        """Return whether a value is worth a word."""
+        """Return whether a value differs from the default in a way that is reported."""
         return (self.lower and present < self.value) or (self.higher and present > self.value)
 
 
 def protective_limits(model: ServoModel) -> tuple[Usual, ...]:
-    """Return where a model gives up, as it is delivered; nothing where that is not published.
+    """Return the factory default limits of a model; empty if they are not published.
 
-    Below its temperature limit it shuts down early, above it too late. A narrower range of supply
-    has it signal errors, and shut down where its mask says so.
+    With a lower temperature limit the servo shuts down early, with a higher one too late. With a
+    narrower supply range it signals errors, and shuts down if its shutdown mask includes them.
     """
     if model.limits is None:
         return ()

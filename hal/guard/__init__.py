@@ -1,4 +1,4 @@
-"""The guard between every controller and every backend: limits, clamps, health, and how to stop."""
+"""The guard between controllers and backends: limits, clamps, health checks and stop policies."""
 
 from windup.hal.guard.guarded import CROUCH_SECONDS, GuardedBackend
 from windup.hal.guard.levels import HealthLevels, Kind

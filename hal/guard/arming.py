@@ -1,4 +1,4 @@
-"""Before and after torque comes on: is everybody well, and has everybody answered lately?"""
+"""Checks around torque enable: health of all joints before it, fresh observations after it."""
 
 from windup.hal.backend import Backend, HealthReader
 from windup.hal.guard.watch import HealthWatch
@@ -7,12 +7,12 @@ ATTEMPTS = 10
 
 
 def check_health(backend: Backend, watch: HealthWatch | None, max_age: float) -> None:
-    """Look twice at every joint before torque comes on.
+    """Read every joint twice and judge its health before torque enable.
 
     Args:
-        backend: Where they are.
-        watch: Who judges them.
-        max_age: Age of an answer from which on it says nothing, s.
+        backend: The backend of the joints.
+        watch: Judges their health; None skips the check.
+        max_age: Maximum age of an answer that is judged, s.
 
     Raises:
         UnhealthyError: A joint is beyond a stop level.
@@ -28,7 +28,7 @@ def check_health(backend: Backend, watch: HealthWatch | None, max_age: float) ->
 
 
 def read_afresh(backend: Backend, max_age: float) -> None:
-    """Read until everybody has answered lately: arming took its time, and answers get lost."""
+    """Read until all joints have a recent state: arming takes time, and answers may be lost."""
     for _ in range(ATTEMPTS):
         if backend.read().joints.age.max() < 0.5 * max_age:
             return

@@ -1,4 +1,4 @@
-"""How it is said that torque is not off after a stop."""
+"""Errors for a stop after which torque is not, or may not be, off."""
 
 from windup.hal.errors import TorqueOnError, TorqueUnknownError
 from windup.hal.joints import Joints
@@ -6,7 +6,7 @@ from windup.hal.torque_state import TorqueState
 
 
 def check_off(state: TorqueState, joints: Joints) -> None:
-    """Raise unless all torque was read back as off.
+    """Raise unless the torque of all joints was read back as off.
 
     Raises:
         TorqueOnError: A joint read back as on.

@@ -1,4 +1,4 @@
-"""What a watch has found: who is unwell, of what, how badly. One finding a cause."""
+"""Findings of the health and IMU checks: kind, joints, worst value and limit; one per cause."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -7,24 +7,24 @@ from typing import Any, NamedTuple
 from windup.hal.guard.levels import Kind
 
 FEW = 3
-"""So many joints are named; more are counted."""
+"""Maximum number of joints that a message names; more are counted."""
 
 
 CHECK, AGAIN = "check its cable and power", "switch it off and on"
-"""What to do about a part that is silent, and about one that says what is wrong."""
+"""Remedies for a part that is silent, and for one that sends wrong values."""
 
 
 class Saying(NamedTuple):
-    """How a kind of finding is put into words.
+    """Texts of one kind of finding.
 
     Attributes:
-        name: The kind, for programs.
-        state: What the joints are, with their worst value.
-        level: The limit.
-        do: What to do about it.
-        scale: From the value to what is printed.
-        who: Who has it where it is no joint.
-        low: Is less worse?
+        name: Name of the kind, for programs.
+        state: Format of the state, with the worst value.
+        level: Format of the limit.
+        do: Remedy.
+        scale: Factor from the value to the printed number.
+        who: The part concerned if it is not a joint.
+        low: Whether lower values are worse.
     """
 
     name: str
@@ -59,7 +59,7 @@ SAYINGS = {
 
 
 def named(joints: Iterable[str]) -> str:
-    """Return a few names, or how many there are.
+    """Return up to `FEW` names as text, or the number of joints.
 
     >>> named(["l_knee", "r_knee"]), named("abcd")
     ('l_knee and r_knee', '4 joints')
@@ -72,16 +72,16 @@ def named(joints: Iterable[str]) -> str:
 
 @dataclass
 class Finding:
-    """One cause for a warning or a stop, over all joints that had it.
+    """One cause of a warning or a stop, with all joints it was found at.
 
     Attributes:
-        saying: What is wrong, in words.
+        saying: Texts of its kind.
         value: The worst value.
-        limit: The level that was passed, at the joint with the worst value.
-        since: When it was first seen, s on the backend's clock.
-        stop: Is it a reason to stop?
-        joints: Who had it.
-        count: How often one of them began to.
+        limit: The level that was exceeded, at the joint with the worst value.
+        since: Time when it was first found, s on the backend's clock.
+        stop: Whether it is a reason to stop.
+        joints: Names of the joints.
+        count: Number of times that it began at one of the joints.
     """
 
     saying: Saying
@@ -94,7 +94,7 @@ class Finding:
 
     @property
     def what(self) -> str:
-        """What those who have it are, or were, and the level."""
+        """Text of the state and of the level that was exceeded."""
         saying = self.saying
         state = saying.state.format(self.value * saying.scale)
         level = saying.level.format(self.limit * saying.scale)
@@ -107,7 +107,7 @@ class Finding:
         return f"{named(self.joints) or self.saying.who} {verb} {self.what}"
 
     def merge(self, other: "Finding") -> None:
-        """Take in another finding of the same kind, of another run or a later look."""
+        """Merge another finding of the same kind, from another run or a later check."""
         worse = other.value < self.value if self.saying.low else other.value > self.value
         if worse:
             self.value, self.limit = other.value, other.limit
@@ -115,7 +115,7 @@ class Finding:
         self.count += other.count
 
     def record(self) -> dict[str, Any]:
-        """Return it for programs."""
+        """Return the finding as a dict for machine-readable output."""
         return {
             "kind": self.saying.name,
             "joints": list(self.joints),

@@ -1,4 +1,4 @@
-"""The guard: the only holder of a write handle, between every controller and every backend."""
+"""The guard: wraps the backend, so that all commands of controllers are checked and clamped."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -25,23 +25,23 @@ from windup.hal.torque_state import TorqueState
 CROUCH_SECONDS = 1.5
 TICK = 0.008
 REPLUG_TIME = 2.0
-"""What a port that was plugged in again may take until it can be opened, s."""
+"""Maximum time until a replugged port can be opened, s."""
 
 
 @dataclass
 class GuardedBackend:
-    """A backend whose commands are checked, clamped and counted on their way through.
+    """A backend wrapper that checks and clamps all commands, and counts the clamps.
 
     Attributes:
-        backend: The guarded one. Nobody else should hold it.
-        limits: What may pass.
+        backend: The guarded backend. It must not be used except through the guard.
+        limits: Limits of commands, and of the age of states.
         stop_policy: What `stop` does: hold the pose, crouch and go limp, or go limp at once.
         crouch: (n,) pose of the crouch, rad.
         watch: Judges the health of every joint; None for joints without servos.
-        clamps: Clamp name to the number of commands it changed.
+        clamps: Maps each row of a command to the number of commands clamped in it.
         clamped_joints: (n,) number of commands in which each joint was clamped.
-        heartbeat: Called with every command, for whoever watches that commands come.
-        lock: Held while the backend is used: a thread holds an idle robot between two runs.
+        heartbeat: Called with every command; feeds the guardian.
+        lock: Held while the backend is used: between two runs, a thread holds an idle robot.
     """
 
     backend: Backend
@@ -61,10 +61,10 @@ class GuardedBackend:
         self.clamped_joints = np.zeros(len(self.backend.joints))
         self.heartbeat = no_heartbeat
         self._buffer = np.empty_like(self.limits.lower)
-        # Where a limit is infinite, clamping does not show that a value is.
+        # An infinite value is not clamped where the limit is infinite, so it is checked for.
         self._unlimited = not np.isfinite([self.limits.lower, self.limits.upper]).all()
         self._presence = Presence(self.backend)
-        # Bound once: these run on every tick.
+        # Bound methods, looked up once: they are called on every tick.
         self._send: Callable[[JointCommand], JointCommand] = self.backend.write
         self._collect: Callable[[], Observation] = self.backend.collect
 
@@ -80,7 +80,7 @@ class GuardedBackend:
 
     @property
     def last(self) -> tuple[Observation, JointCommand] | None:
-        """What was seen last, and what the joints obey, while somebody drives them."""
+        """The last observation and the command in effect, or None while no command is."""
         return (self._last, self._obeyed) if self._last and self._obeyed else None
 
     def connect(self) -> None:
@@ -88,7 +88,7 @@ class GuardedBackend:
         self.backend.connect()
 
     def configure(self) -> None:
-        """Assert the backend's settings."""
+        """Apply the backend's settings."""
         self.backend.configure()
 
     def disconnect(self) -> None:
@@ -99,7 +99,8 @@ class GuardedBackend:
         """Switch the torque of all joints and return what was read back.
 
         Raises:
-            UnhealthyError: Torque on, and a joint is unwell already; nothing has been switched.
+            UnhealthyError: Torque was to go on, but a joint is beyond a stop level; nothing
+                has been switched.
         """
         with self.lock:
             if on:
@@ -111,11 +112,12 @@ class GuardedBackend:
             return state
 
     def rearm(self) -> TorqueState:
-        """Switch torque on at the present pose after a port was gone; return what was read back.
+        """Switch torque on at the present pose after a port was lost; return what was read back.
 
         Raises:
-            PortError: A port is still gone.
-            HardwareError: Something is not as wired, or a joint is unwell; torque stays off.
+            PortError: A port is still missing.
+            HardwareError: The wiring differs from robot.toml, or a joint is unhealthy; torque
+                stays off.
         """
         if not isinstance(self.backend, Rearmable):
             return self.set_torque(True)
@@ -126,7 +128,7 @@ class GuardedBackend:
         self._last = self._obeyed = None
         until = self.clock.now() + REPLUG_TIME
         while True:
-            self.backend.read()  # which opens what has come back
+            self.backend.read()  # also reopens ports that have come back
             try:
                 self.admit()
                 self._driven = True
@@ -139,7 +141,7 @@ class GuardedBackend:
             self.clock.wait_until(self.clock.now() + TICK)
 
     def request(self) -> None:
-        """Ask every joint for its state."""
+        """Request the state of every joint, without waiting for it."""
         self.backend.request()
 
     def read(self) -> Observation:
@@ -149,18 +151,18 @@ class GuardedBackend:
             return self.collect()
 
     def peek(self) -> Observation:
-        """Return the present state, however old it is and however unwell the joints are."""
+        """Return the present state without checking age, torque or health."""
         with self.lock:
             return self.backend.read()
 
     def collect(self) -> Observation:
-        """Return the state last asked for.
+        """Wait for the state last requested and return it.
 
         Raises:
-            TorqueLostError: A joint has lost its torque since it was armed; said once.
-            PortError: A port is gone; said once.
+            TorqueLostError: A joint has lost its torque since it was armed; raised once.
+            PortError: A port is lost; raised once.
             StaleStateError: A joint has not answered for longer than `limits.max_age`.
-            UnhealthyError: A joint that is driven has been beyond a stop level for long enough.
+            UnhealthyError: A joint under torque has been beyond a stop level for long enough.
         """
         observation = self._collect()
         self._last = observation
@@ -172,11 +174,11 @@ class GuardedBackend:
         return observation
 
     def write(self, command: JointCommand) -> JointCommand:
-        """Clamp `command` into the limits, send it, and return what the joints really got.
+        """Clamp `command` to the limits, send it, and return the command that was really applied.
 
         Raises:
-            GuardianError: The process that would stop the robot is gone; nothing was sent.
-            UnsafeCommandError: A value is not a number, or the shape is wrong.
+            GuardianError: The guardian process has died or hangs; nothing was sent.
+            UnsafeCommandError: A value is not finite, or the shape is wrong; nothing was sent.
         """
         self.heartbeat()
         block = command.block
@@ -198,18 +200,18 @@ class GuardedBackend:
     def stop(
         self, policy: StopPolicy | None = None, hurry: Callable[[], bool] = lambda: False
     ) -> TorqueState:
-        """Carry out the stop policy and return the torque as it was read back.
+        """Carry out the stop policy and return the torque state that was read back.
 
-        A robot with a joint that has no torque, or may have none, goes limp at once: a crouch, or
-        a pose that is held, would be a fall.
+        A robot with a joint that has lost its torque, or may have, goes limp at once: it would
+        fall while crouching or holding its pose.
 
         Args:
-            policy: What to do instead of the robot's own policy.
-            hurry: Asked during a crouch: if true, torque goes off at once.
+            policy: Stop policy to use instead of the robot's own.
+            hurry: Polled during a crouch; if it returns true, torque goes off at once.
 
         Raises:
-            TorqueOnError: Torque was told to go off and a joint read back as on.
-            TorqueUnknownError: A joint could not be read back.
+            TorqueOnError: Torque was switched off, but a joint read back as on.
+            TorqueUnknownError: Torque was switched off, but a joint could not be read back.
         """
         with self.lock:
             return self._stop(policy or self.stop_policy, hurry)
@@ -227,7 +229,7 @@ class GuardedBackend:
         return state
 
     def admit(self) -> None:
-        """Look at every joint before torque comes on.
+        """Check the health of every joint before torque enable.
 
         Raises:
             UnhealthyError: A joint is beyond a stop level; nothing has been switched.
@@ -240,10 +242,10 @@ class GuardedBackend:
         return np.clip(last.joints.position, self.limits.lower[0], self.limits.upper[0])
 
     def _glide(self, start: Array, end: Array, seconds: float, hurry: Callable[[], bool]) -> None:
-        """Move the targets from `start` to `end` (n,) rad along a smooth step."""
+        """Move the targets from `start` to `end` (n,) rad along a smoothstep profile."""
         began = self.clock.now()
         while (now := self.clock.now()) < began + seconds and not hurry():
-            with suppress(GuardianError):  # a stop goes on without a guardian
+            with suppress(GuardianError):  # the stop continues without a guardian
                 self.heartbeat()
             pose = start + (end - start) * smooth_step((now - began) / seconds)
             self._send(JointCommand.hold(self.joints, pose))
@@ -254,7 +256,7 @@ class GuardedBackend:
             return self._send(command)
 
     def _refuse(self, block: Array) -> None:
-        """Say which value is not a number; a sum that overflows is none of them."""
+        """Raise if a value of `block` is not finite; a sum may overflow with finite values."""
         bad = np.argwhere(~np.isfinite(block))
         if bad.size:
             row, joint = bad[0]
@@ -264,7 +266,7 @@ class GuardedBackend:
             )
 
     def _count(self, block: Array) -> None:
-        """Count the clamps of `block`, unless it is to be refused."""
+        """Count the clamps of `block`; raise if a value is not finite."""
         self._refuse(block)
         changed = self._buffer != block
         for row in np.flatnonzero(changed.any(axis=1)):

@@ -1,12 +1,12 @@
-"""Does the body turn as the gyroscope says? Gravity, joints and pushes have to agree.
+"""Detects gyroscope rates that contradict the accelerometer or the joints.
 
-What begins to turn at once has been pushed, which the accelerometer feels: a jump of the rates that
-it does not feel is doubted from the first sample, and wrong if it lasts. What begins slowly is
-found by the vertical that the gyroscope carries along, drawn to the accelerometer, against the
-accelerometer. A fall does not look like that: who tips over feels less than gravity. Only where the
-accelerometer feels nothing but gravity, from another side and for a while, the gyroscope is wrong.
-A turn about the vertical no accelerometer feels: there a robot whose joints stand still does not
-turn on its feet.
+A body that starts to turn suddenly has been pushed, which the accelerometer measures: a jump of the
+rates without an acceleration is doubted from the first sample, and reported if it lasts. A rate
+error that begins slowly is found by comparing the accelerometer with the vertical integrated from
+the gyroscope (slowly corrected by the accelerometer). A fall differs from that: a body that tips
+over measures less than gravity. Only if the accelerometer measures gravity alone, from another
+direction and for `PERSIST`, the gyroscope is wrong. An accelerometer cannot measure a turn about
+the vertical: there, a robot whose joints stand still is taken not to turn on its feet.
 """
 
 from collections.abc import Sequence
@@ -19,36 +19,36 @@ from windup.hal.guard.finding import AGAIN, Saying
 from windup.hal.joints import Array
 
 JUMP = 0.7
-"""From one sample to the next, rates of a body at rest that change by more are doubted, unless the
-accelerometer has felt it, rad/s."""
+"""Minimum change of the rates from one sample to the next that is doubted if the accelerometer
+shows no matching change, for a body at rest, rad/s."""
 BUSY = 1.0
-"""So much is added to that for each rad/s (rms of the last second) at which the body turns: the
-knock of a foot falls between two samples, and turns a walking body as suddenly."""
+"""Increase of `JUMP` per rad/s of body rate (rms of the last second): a foot impact may fall
+between two samples, and changes the rates of a walking body as suddenly."""
 PIVOT = 1.6
-"""A change about the vertical counts as so many times less: a body that begins to turn on one foot,
-below its IMU, shakes it little. Ducks that slip while walking reach 0.8 rad/s."""
+"""Divisor of rate changes about the vertical: a body that begins to turn on one foot, below its
+IMU, accelerates it little. Ducks that slip while walking reach 0.8 rad/s."""
 SHAKE = 1.4
-"""What it then changes by, or differs from gravity, at least: m/s2 for each rad/s. Twins that are
-pushed, fall, roll over and get up show 2.3 or more."""
+"""Minimum change of acceleration, or deviation from gravity, that explains a jump: m/s2 per rad/s.
+Twins that are pushed, fall, roll over and get up show 2.3 or more."""
 NEXT = 0.025
-"""After a longer hole a sample is not the next one: a body may have been shaken meanwhile, s."""
+"""Maximum time between two samples compared for a jump, s: a longer gap may hide a shock."""
 SPUN = 0.5
-"""Angle between the verticals of gyroscope and accelerometer, rad. Twins that fall, roll over and
-get up show it for 0.04 s at most."""
+"""Maximum angle between the verticals of gyroscope and accelerometer, rad. Twins that fall, roll
+over and get up exceed it for 0.04 s at most."""
 PERSIST = 0.1
-"""For how long either has to be seen, s."""
+"""Minimum duration of a jump, or of an excessive angle, before it is reported, s."""
 SAMPLES = 8
-"""New samples that a jump has to last: on a busy machine few come within that time."""
+"""Minimum number of samples of a jump: on a loaded host few arrive within `PERSIST`."""
 AROUND = 1.0
-"""Turn about the vertical while all joints stand still, rad."""
+"""Maximum turn about the vertical while all joints stand still, rad."""
 STANDS = 0.5
-"""A joint slower than this stands still, rad/s."""
+"""Maximum speed of a joint that counts as standing still, rad/s."""
 NEAR = 0.15
-"""How far from gravity what feels nothing else may be, as a share."""
+"""Relative deviation from gravity within which an acceleration counts as gravity."""
 DRAW = 1.0
-"""Time constant with which the accelerometer draws the vertical, s."""
+"""Time constant of the correction of the vertical by the accelerometer, s."""
 LONGEST = 0.1
-"""Longest time between two samples that says anything about turns, s."""
+"""Maximum time step of the integration, s."""
 
 SPIN = Saying(
     "imu spinning", "turning by its gyroscope alone, by {:.0f} degrees", "at {:.0f}", AGAIN,
@@ -58,16 +58,16 @@ LEAP = SPIN._replace(state="turning by its gyroscope alone, from one sample to t
 
 Vector = tuple[float, float, float]
 Verdict = tuple[Saying, float, float]
-"""What is wrong, the value that shows it, and its limit."""
+"""Texts of the fault, the value that shows it, and its limit."""
 NOTHING: Vector = (0.0, 0.0, 0.0)
 
 
 class GyroWatch:
-    """Judges samples: (6,) rates rad/s and acceleration m/s2 in the body.
+    """Judges samples (6,): angular rates, rad/s, and acceleration, m/s2, in the body frame.
 
     Attributes:
-        up: The vertical as the body sees it, a unit vector, the last that could be trusted.
-        doubted: The present rates have jumped, and the accelerometer has not felt it.
+        up: The last trusted vertical in the body frame, a unit vector.
+        doubted: The present rates have jumped without a matching change of acceleration.
     """
 
     def __init__(self) -> None:
@@ -75,7 +75,7 @@ class GyroWatch:
         self.restart()
 
     def restart(self) -> None:
-        """Begin anew with the next sample; the vertical stays known."""
+        """Reset all but `up`; judging starts with the next sample."""
         self.doubted = False
         self._believed: Sequence[float] = NOTHING
         self._jumped, self._lasts, self._busy = 0.0, 0, 0.0
@@ -83,7 +83,7 @@ class GyroWatch:
         self._around = self._apart = 0.0
 
     def compare(self, sample: Sequence[float], last: Sequence[float], now: float) -> None:
-        """Doubt a jump from the last sample, shortly before, or be satisfied that it is over."""
+        """Compare a sample with the previous one: set `doubted` at a jump, clear it at its end."""
         if self.doubted:
             self._lasts += 1
             changed = self._change(self._believed, sample) > 0.5 * JUMP
@@ -91,14 +91,14 @@ class GyroWatch:
             return
         jump = self._change(last, sample)
         if jump < JUMP + BUSY * self._busy or size_of(sample) < size_of(last):
-            return  # who has stopped turning does not spin
+            return  # a decreasing rate is not a fault
         felt = sample[3:]
         shaken = max(abs(size_of(felt) - GRAVITY), distance(felt, last[3:]))
         if shaken < SHAKE * jump:
             self.doubted, self._believed, self._jumped, self._lasts = True, last[:3], now, 0
 
     def _change(self, before: Sequence[float], after: Sequence[float]) -> float:
-        """Return by how much the rates have changed, rad/s; less about the vertical."""
+        """Return the change of the rates, rad/s; the part about the vertical counts less."""
         x, y, z = after[0] - before[0], after[1] - before[1], after[2] - before[2]
         about = x * self.up[0] + y * self.up[1] + z * self.up[2]
         whole = x * x + y * y + z * z
@@ -107,7 +107,10 @@ class GyroWatch:
     def judge(
         self, sample: Sequence[float], now: float, dt: float, velocity: Array
     ) -> Verdict | None:
-        """Let `dt` s pass with a sample; `velocity` (n,) is that of the joints, rad/s."""
+        """Judge a sample after `dt` s; return the fault or None.
+
+        `velocity` (n,) is that of the joints, rad/s.
+        """
         felt = sample[3:]
         if not self.doubted:
             kept = exp(-dt / DRAW)
@@ -120,7 +123,7 @@ class GyroWatch:
     def _turn(
         self, rate: Sequence[float], felt: Sequence[float], dt: float, velocity: Array
     ) -> Verdict | None:
-        """Carry the vertical along, and say so where gravity does not follow."""
+        """Integrate the vertical; return the fault if accelerometer or joints contradict it."""
         size = size_of(felt)
         alone = abs(size - GRAVITY) < NEAR * GRAVITY
         if self._vertical is None:
@@ -144,20 +147,28 @@ class GyroWatch:
 
 
 def distance(a: Sequence[float], b: Sequence[float]) -> float:
-    """Return how far the first three of `a` and `b` are from each other."""
+    """Return the Euclidean distance of the first three elements of `a` and `b`."""
     x, y, z = a[0] - b[0], a[1] - b[1], a[2] - b[2]
     return sqrt(x * x + y * y + z * z)
 
 
 def size_of(a: Sequence[float]) -> float:
-    """Return the length of the first three of `a`."""
+    """Return the Euclidean norm of the first three elements of `a`."""
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
 def carried(
     up: Vector, rate: Sequence[float], felt: Sequence[float], size: float, dt: float
 ) -> Vector:
-    """Return the vertical after `dt` s: turned against the body, drawn to what is felt."""
+    """Return the vertical in the body frame after `dt` s, corrected towards the acceleration.
+
+    Args:
+        up: The vertical before, a unit vector.
+        rate: Angular rates of the body, rad/s.
+        felt: Acceleration, m/s2.
+        size: Norm of `felt`, m/s2.
+        dt: Time step, s.
+    """
     x, y, z = up
     turned_x = x - dt * (rate[1] * z - rate[2] * y)
     turned_y = y - dt * (rate[2] * x - rate[0] * z)
@@ -172,6 +183,6 @@ def carried(
 
 
 def between(up: Vector, felt: Sequence[float], size: float) -> float:
-    """Return the angle between the vertical and what is felt, `size` m/s2, rad."""
+    """Return the angle between the vertical and the acceleration `felt` of norm `size`, rad."""
     cosine = (up[0] * felt[0] + up[1] * felt[1] + up[2] * felt[2]) / size
     return acos(min(max(cosine, -1.0), 1.0))

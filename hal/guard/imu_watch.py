@@ -1,9 +1,9 @@
-"""Is the IMU to be trusted?
+"""Detects faults of the IMU from the observations.
 
-It may be silent, frozen, not a number, spinning (`gyro_watch`), or stuck about one axis
-(`stuck_axis`). A frozen IMU repeats one sample, gyroscope and accelerometer alike. Real ones are
-never that still, but an emulated one is, of a robot that lies or that hands hold: only once the
-joints have moved meanwhile it is a reason to stop.
+The faults are: silent, frozen, NaN, spinning (`gyro_watch`), or stuck about one axis
+(`stuck_axis`). A frozen IMU repeats one sample of gyroscope and accelerometer bit for bit. A real
+IMU at rest is never that still, but an emulated one is, if its robot lies or is held: so it is a
+reason to stop only if the joints have moved meanwhile.
 """
 
 from collections.abc import Sequence
@@ -18,13 +18,13 @@ from windup.hal.joints import Array
 from windup.hal.observation import ImuState, Observation
 
 SILENT = 0.25
-"""Age of the newest sample, s."""
+"""Maximum age of the newest sample, s."""
 FROZEN = 0.5
-"""Time without a new sample while joints move, s."""
+"""Maximum time with the same sample while joints move, s."""
 RIGID = 1.0
-"""The same while none does: only to be warned of, s."""
+"""Maximum time with the same sample while no joint moves, s; longer causes a warning only."""
 MOVED = 0.03
-"""What a joint has to have moved meanwhile, rad."""
+"""Minimum motion of a joint that counts as moved, rad."""
 
 SILENCE = Saying("imu silent", "silent for {:.2f} s", "at {:.2f} s", CHECK, who="the IMU")
 STUCK = Saying(
@@ -34,10 +34,10 @@ NO_NUMBER = Saying("imu not a number", "not a number", "", AGAIN, who="a reading
 
 
 class ImuWatch:
-    """Judges every sample of one IMU by the observations alone.
+    """Judges every sample of one IMU, from the observations only.
 
     Attributes:
-        gyro: Judges its turns.
+        gyro: Judges the angular rates.
     """
 
     def __init__(self) -> None:
@@ -48,14 +48,14 @@ class ImuWatch:
 
     @property
     def warnings(self) -> list[Finding]:
-        """What there was to warn about: one finding a kind, with its worst value and its count."""
+        """All findings so far: one per kind, with its worst value and its count."""
         return list(self._warnings.values())
 
     def update(self, observation: Observation) -> Finding | None:
-        """Return what is wrong with the IMU now, or None."""
+        """Judge an observation; return the present fault of the IMU, or None."""
         now = observation.time
         passed = now - self._time
-        if not 0.0 <= passed < FROZEN:  # another run, or nobody looked for a while
+        if not 0.0 <= passed < FROZEN:  # another run, or a gap between calls
             self._restart(now)
             passed = 0.0
         self._time = now
@@ -77,7 +77,7 @@ class ImuWatch:
     def _judge(
         self, observation: Observation, imu: ImuState | None, dt: float
     ) -> tuple[Verdict | None, bool]:
-        """Return what is wrong, and whether that is a reason to stop."""
+        """Return the fault or None, and whether it is a reason to stop."""
         now, joints = observation.time, observation.joints
         self._heard = self._heard if imu is None else now - imu.age
         if (silence := now - self._heard) > SILENT:
@@ -102,7 +102,7 @@ class ImuWatch:
         return self.gyro.judge(sample, now, dt, joints.velocity), True
 
     def _note(self, found: Finding) -> None:
-        """Take down a warning, and how often it begins."""
+        """Record a finding, its worst value, and how many times it began."""
         name = found.saying.name
         fresh = Finding(found.saying, found.value, found.limit, found.since)
         known = self._warnings.setdefault(name, fresh)

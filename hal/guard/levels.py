@@ -1,4 +1,4 @@
-"""At which values a robot is warned about and at which it is stopped, by joint and kind."""
+"""Warning and stop levels of supply, temperature, load and stall, by joint."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,26 +10,28 @@ from windup.hal.joints import Array
 from windup.hal.servos.servo_model import OwnLimits, ServoModel, ServoMount
 
 COOLER = (15.0, 8.0)
-"""Warning and stop below the temperature at which a servo switches off, degrees C. An XM430 at
-stall (27 W into about 20 J/K) gains 1.4 degrees C/s: between the stop and the servo's own there is
-time to notice, and to crouch."""
+"""Margins of warning and stop below the temperature at which a servo switches off, degrees C. An
+XM430 at stall (27 W into about 20 J/K) gains 1.4 degrees C/s, so there is time to crouch between
+the stop level and the servo's own shutdown."""
 UNKNOWN_HEAT = 70.0
-"""The temperature limit of a servo of which none is published, degrees C: the lowest of all."""
+"""Temperature limit of a servo without a published one, degrees C: the lowest of all servos."""
 LOW = (0.9, 0.8)
-"""Warning and stop as shares of the robot's supply; an empty LiPo has 3.0 of its 3.7 V, 0.81."""
+"""Low supply: warning and stop as fractions of the robot's nominal supply voltage; an empty LiPo
+cell has 3.0 V of its nominal 3.7 V, 0.81."""
 ABOVE_MINIMUM = 1.05
-"""The stop is at least this much of the servo's own minimum."""
+"""Low supply: the stop is at least the servo's minimum voltage times this."""
 HIGH = 1.15
-"""The warning as a share of the robot's supply; a full LiPo has 4.2 of its 3.7 V, 1.135."""
+"""High supply: warning as a fraction of the nominal supply; a full LiPo cell has 4.2 V, 1.135."""
 LOAD = (0.6, 0.75)
-"""Mean over about a second of the torque, as a share of that at stall. Walks and motions that
-get up stay below 0.5; an STS unloads after 2 s above 0.8."""
+"""Warning and stop: mean torque over about 1 s as a fraction of stall torque. Walking and getting
+up stay below 0.5; an STS reduces its torque after 2 s above 0.8."""
 STALL = (0.3, 0.8)
-"""How long a joint may push at its limit without moving, s; an STS unloads after 2 s."""
+"""Warning and stop: time at the torque limit without motion, s; an STS reduces its torque after
+2 s."""
 
 
 class Kind(IntEnum):
-    """What is judged; also the row of `HealthLevels`."""
+    """Monitored quantity; its value is the row in `HealthLevels`."""
 
     SUPPLY_LOW = 0
     SUPPLY_HIGH = 1
@@ -40,12 +42,12 @@ class Kind(IntEnum):
 
 @dataclass(frozen=True)
 class HealthLevels:
-    """When a joint is unwell, in the order of `Kind`: V, V, degrees C, a share of stall torque, s.
+    """Levels in the order of `Kind`: V, V, degrees C, fraction of stall torque, s.
 
     Attributes:
-        warn: (5, n) values from which on a warning is due; nan where nothing is judged.
-        stop: (5, n) values from which on the robot is stopped.
-        torque: (n,) torque at stall, N m; inf for an ideal joint.
+        warn: (5, n) warning levels; NaN where nothing is monitored.
+        stop: (5, n) levels at which the robot is stopped; NaN where nothing is monitored.
+        torque: (n,) stall torque, N m; inf for an ideal joint.
     """
 
     warn: Array
@@ -62,9 +64,9 @@ class HealthLevels:
         """Return the levels of a robot.
 
         Args:
-            servos: The servo of each joint; an ideal joint (None) is never unwell.
-            supply: Voltage of the servos, V.
-            given: Warning and stop of whatever the robot's file states.
+            servos: The servo of each joint; an ideal joint (None) is not monitored.
+            supply: Nominal supply voltage of the servos, V.
+            given: Warning and stop levels from the robot's file, for the kinds it states.
         """
         table = np.full((2, len(Kind), len(servos)), np.nan)
         torque = np.full(len(servos), np.inf)
@@ -78,7 +80,7 @@ class HealthLevels:
 
 
 def defaults(servo: ServoModel, supply: float) -> dict[Kind, tuple[float, float]]:
-    """Return warning and stop of each kind from the servo's own limits.
+    """Return the default warning and stop levels of each kind for a servo.
 
     >>> from windup.hal.servos import servo_model
     >>> defaults(servo_model("XM430-W350"), 12.0)[Kind.TEMPERATURE]

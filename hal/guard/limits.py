@@ -1,4 +1,4 @@
-"""What a command may ask for, and how old a state may be."""
+"""Limits of commands, maximum age of states, and the stop policies."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -8,17 +8,17 @@ import numpy as np
 from windup.hal.joints import Array, Joints
 
 StopPolicy = Literal["hold", "crouch", "limp"]
-"""What "stop" means: hold the present pose, crouch and switch torque off, or switch it off."""
+"""What a stop does: hold the present pose, crouch and switch torque off, or switch it off."""
 
 
 @dataclass(frozen=True)
 class SafetyLimits:
-    """What a command may ask for, and how old a state may be.
+    """Limits of commands, and maximum age of joint states.
 
     Attributes:
         lower: (5, n) smallest values of the rows of a `JointCommand`.
         upper: (5, n) largest values of the same rows.
-        max_age: Age of a joint's state above which the guard refuses to go on, s.
+        max_age: Maximum age of a joint's state before the guard stops the run, s.
     """
 
     lower: Array
@@ -27,7 +27,7 @@ class SafetyLimits:
 
     @classmethod
     def of(cls, joints: Joints, max_age: float = 0.25) -> "SafetyLimits":
-        """Return the limits that the joints themselves state; gains up to four times default."""
+        """Return the limits of the joints; gains may be up to four times their defaults."""
         zero = np.zeros(len(joints))
         lower = np.stack([joints.lower, -joints.velocity, -joints.torque, zero, zero])
         upper = np.stack(

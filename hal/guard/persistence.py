@@ -1,10 +1,10 @@
-"""How long a value has to be beyond its level before that counts.
+"""Time for which a value has to be beyond its level before it causes a warning or a stop.
 
-One wrong byte behind an 8-bit checksum counts for nothing: two readings of a joint, some time
-apart and with none between them that is well, have to be beyond a level. Nor does a supply that
-sags with every step, though a servo may be read so seldom that it does so at each of its readings:
-all joints' readings for half a second have to be. One joint's alone, such as behind a bad
-connector, are only warned of.
+A single wrong byte that passes an 8-bit checksum must not count: two readings of a joint, some time
+apart and with no good one between them, have to be beyond a level. A supply that sags with every
+step must not count either, even if a servo is read so seldom that each reading falls into a sag:
+the readings of all joints have to be beyond the level for 0.5 s. A low or high supply of one joint
+only, such as from a bad connector, causes a warning but no stop.
 """
 
 import numpy as np
@@ -14,24 +14,24 @@ from windup.hal.joints import Array, Mask
 
 DWELL = ({Kind.TEMPERATURE: 1.0, Kind.SUPPLY_LOW: 5.0, Kind.SUPPLY_HIGH: 5.0},
          {Kind.TEMPERATURE: 1.0, Kind.SUPPLY_LOW: np.inf, Kind.SUPPLY_HIGH: np.inf})  # fmt: skip
-"""From a joint's first reading beyond the warning, and the stop, to the one that counts, s; load
-and stall are times by themselves."""
+"""Minimum time from a joint's first reading beyond the warning, and the stop, until it takes
+effect, s; load and stall need none, as they are averaged or timed already."""
 TOGETHER = 0.5
-"""The same for the readings of the supply of all joints, s."""
+"""Minimum time for which the supply readings of all joints have to be beyond a level, s."""
 SAME = 1e-6
-"""Times of one reading differ by rounding, s."""
+"""Rounding tolerance when timestamps of one reading are compared, s."""
 FINE = 0.01
-"""A supply at its level is not yet below or above it; servos tell it in steps of 0.1 V."""
+"""Margin by which the supply has to pass its level, V; servos report it in steps of 0.1 V."""
 SUPPLY = slice(Kind.SUPPLY_LOW, Kind.SUPPLY_HIGH + 1)
 SIGNS = np.where(np.arange(len(Kind)) == Kind.SUPPLY_LOW, -1.0, 1.0)[:, None]
-"""Sign of each kind: of a low supply less is worse."""
+"""Sign of each kind: values are multiplied by it so that larger is worse."""
 
 
 class Persistence:
-    """Watches values (5, n), signed so that more is worse, against their two levels.
+    """Compares values (5, n), signed so that larger is worse, with their two levels over time.
 
     Attributes:
-        quiet: Nothing is beyond a warning.
+        quiet: True while no value is beyond its warning level.
     """
 
     def __init__(self, levels: HealthLevels) -> None:
@@ -44,22 +44,22 @@ class Persistence:
 
     def reset(self) -> None:
         """Forget all readings."""
-        # When the first reading beyond the warning and the stop was, s: of each joint (2, 5, n),
-        # and of all joints' supply, low and high (2, 2), there with the last one.
+        # Times of the first reading beyond warning and stop, s: of each joint (2, 5, n), and of
+        # the supply of all joints, low and high (2, 2); for the latter also of the last one.
         self._since: Array = np.full(self._levels.shape, np.inf)
         self._first, self._last = np.full((2, 2), np.inf), np.full((2, 2), -np.inf)
         self._measured: Array = np.full(self._levels.shape[-1], -np.inf)
         self.quiet = True
 
     def due(self, values: Array, now: float, age: Array | None) -> Mask | None:
-        """Return (2, 5, n) bool: what is beyond a warning, and a stop, for long enough.
+        """Return (2, 5, n) bool: values beyond warning, and stop, for long enough.
 
-        None stands for nothing at all.
+        Returns None if there are none.
 
         Args:
             values: (5, n) in the order of `Kind`, signed.
-            now: s.
-            age: (n,) of the readings of supply and temperature, s; None: they are of now.
+            now: Present time, s.
+            age: (n,) age of the supply and temperature readings, s; None for 0.
         """
         before = self._measured
         self._measured = np.full(len(before), now) if age is None else now - age
@@ -77,11 +77,11 @@ class Persistence:
         return due
 
     def beyond(self, values: Array) -> Mask:
-        """Return (5, n) bool: which values are beyond their stop now."""
+        """Return (5, n) bool: values that are beyond their stop level now."""
         return values >= self._levels[1]
 
     def _together(self, beyond: Mask, supply: Array, fresh: Mask, now: float) -> Mask:
-        """Return (2, 2, 1) bool: all readings of the supply for long enough were `beyond`."""
+        """Return (2, 2, 1) bool: all supply readings for `TOGETHER` s or longer were `beyond`."""
         well = ((supply < self._levels[:, SUPPLY]) & fresh).any(axis=2)
         unwell = (beyond & fresh).any(axis=2)
         self._first = np.where(unwell, np.minimum(self._first, now), self._first)

@@ -1,4 +1,4 @@
-"""Whether every joint of a robot is there: it answers, and it has the torque it was given."""
+"""Checks that every joint of a robot answers and still has its torque."""
 
 import numpy as np
 
@@ -8,11 +8,11 @@ from windup.hal.joints import Array
 from windup.hal.torque_loss import SILENT, torque_lost
 
 LOOKS = 5
-"""Times that a joint that was silent is read again before a stop takes it for dead."""
+"""Maximum number of re-reads of a silent joint before a stop treats its torque as lost."""
 
 
 class Presence:
-    """Looks at every observation for joints that are not there any more.
+    """Checks every observation for joints that no longer answer or have lost their torque.
 
     Args:
         backend: The robot.
@@ -21,15 +21,15 @@ class Presence:
     def __init__(self, backend: Backend) -> None:
         self._backend = backend
         self._watched = backend if isinstance(backend, TorqueWatched) else None
-        self._told = False  # of joints without torque, and of ports
+        self._told = False  # a loss of torque or ports has been reported
 
     def check(self, age: Array, max_age: float) -> None:
-        """Look at joints that last answered (n,) `age` s ago, which may be `max_age` s.
+        """Check torque, ports, and the ages (n,) s of the joint states against `max_age` s.
 
         Raises:
-            TorqueLostError: A joint has lost its torque since it was armed; said once.
-            PortError: A port is gone, and with it the goals of its joints; said once.
-            StaleStateError: A joint has not answered for too long.
+            TorqueLostError: A joint has lost its torque since it was armed; raised once.
+            PortError: A port is lost, so its joints get no goals; raised once.
+            StaleStateError: A joint has not answered for longer than `max_age`.
         """
         if self._watched is not None:
             self._check_torque(self._watched)
@@ -37,7 +37,7 @@ class Presence:
             raise self._stale(age, max_age)
 
     def crippled(self) -> bool:
-        """Return whether a joint has lost its torque, or may have: a lost answer is no reason."""
+        """Return whether a joint has lost its torque, or may have; reads again if in doubt."""
         watched = self._watched
         if watched is None:
             return False
@@ -53,14 +53,14 @@ class Presence:
             return
         if watched.lost_joints:
             raise torque_lost(watched.lost_joints)
-        # Whatever comes back has to be armed again: there is nothing to wait for.
+        # A port that comes back has to be armed again, so waiting for it is useless.
         names, all_names = watched.doubtful_joints, self._backend.joints.names
         nobody = len(names) == len(all_names) > 1
         what = "no joint can" if nobody else f"{', '.join(names)} cannot"
         raise PortError(f"{what} be reached: {'; '.join(watched.lost.values())}")
 
     def _stale(self, age: Array, max_age: float) -> StaleStateError:
-        """Return the error that names the joint with the oldest state, and what to do about it."""
+        """Return the error that names the joint with the oldest state and the remedy."""
         worst = int(np.argmax(age))
         name = self._backend.joints.names[worst]
         others = int((age > max_age).sum()) - 1

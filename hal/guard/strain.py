@@ -1,4 +1,4 @@
-"""How hard the servos work: the mean torque of each joint, and how long it pushes in vain."""
+"""Load of the servos: mean torque of each joint, and time at the torque limit without motion."""
 
 from math import exp
 
@@ -11,19 +11,19 @@ from windup.hal.observation import JointState
 MEMORY = 1.0
 """Time constant of the mean torque, s."""
 FULL, PUSHES = 0.8, 0.6
-"""Shares of the torque at stall: what the goal has to ask for, and what has to be measured where it
-is, for a joint to be at its limit."""
+"""Fractions of stall torque from which a joint counts as at its torque limit: of the torque that
+its goal commands, and of the measured torque if that is available."""
 STANDS = 0.1
-"""A joint slower than this does not move, rad/s."""
+"""Maximum speed of a joint that counts as standing still, rad/s."""
 
 
 class Strain:
     """The mean load and the stall time of n joints.
 
     Args:
-        torque: (n,) torque at stall, N m; inf for an ideal joint, which is never strained.
-        load: (n,) where the mean share of it goes.
-        stall: (n,) where the time of pushing at the limit without moving goes, s.
+        torque: (n,) stall torque, N m; inf for an ideal joint, whose load is always 0.
+        load: (n,) output: mean torque as a fraction of stall torque.
+        stall: (n,) output: time at the torque limit without motion, s.
     """
 
     def __init__(self, torque: Array, load: Array, stall: Array) -> None:
@@ -31,15 +31,15 @@ class Strain:
         self.reset()
 
     def reset(self) -> None:
-        """Begin anew, with joints that rest."""
+        """Reset load and stall time of all joints to 0."""
         self.load.fill(0.0)
         self.stall.fill(0.0)
 
     def update(self, joints: JointState, command: JointCommand | None, dt: float) -> None:
-        """Let `dt` s pass with a state, and what the joints were told; None where nobody drives.
+        """Update load and stall time after `dt` s; `command` is the one in effect, or None.
 
-        A torque that is not measured does not count as a load; whether a joint is blocked, the
-        torque that its goal asks for says as well.
+        A torque that is not measured (NaN) counts as no load; a stall is then found by the torque
+        that the goal commands.
         """
         measured = np.abs(joints.torque) * self._share
         self.load += (1.0 - exp(-dt / MEMORY)) * (np.fmax(measured, 0.0) - self.load)
@@ -51,6 +51,6 @@ class Strain:
         if not asked.any():
             self.stall.fill(0.0)
             return
-        weak = measured < PUSHES  # never true where nothing is measured
+        weak = measured < PUSHES  # never true where torque is not measured
         held = asked & (np.abs(joints.velocity) < STANDS) & ~weak
         np.copyto(self.stall, np.where(held, self.stall + dt, 0.0))

@@ -1,8 +1,8 @@
-"""Is one axis of a gyroscope stuck at a high rate while the rest of the IMU goes on?
+"""Detects a gyroscope axis that is stuck at a high rate while the rest of the IMU still changes.
 
-A body that turns fast never turns at exactly the same rate for long: a rate that is repeated bit
-for bit, beside other values that change, is a number that the sensor is stuck at, such as the end
-of its range.
+A body that turns fast never turns at exactly the same rate for long: if a rate is repeated bit
+for bit while other values change, the sensor is stuck at that value, such as the end of its
+range.
 """
 
 from collections.abc import Sequence
@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from windup.hal.guard.finding import AGAIN, Saying
 
 FAST = 0.7
-"""A slower rate may be repeated: a body at rest reads zero again and again, rad/s."""
+"""Minimum rate that counts as stuck, rad/s: a body at rest repeats zero."""
 PERSIST = 0.1
-"""For how long it has to be repeated, s; with 1 degree/s to a count, a walk does so for 0.03 s."""
+"""Minimum time for which a rate is repeated, s; at 1 degree/s per count a walk reaches 0.03 s."""
 SAMPLES = 8
-"""By so many new samples: on a busy machine few come within that time."""
+"""Minimum number of samples that repeat a rate: on a loaded host few arrive within `PERSIST`."""
 
 ONE_AXIS = Saying(
     "imu spinning", "stuck about one axis, at {:.1f} rad/s", "above {:.1f}", AGAIN, 1.0, "the IMU"
@@ -22,18 +22,21 @@ ONE_AXIS = Saying(
 
 
 class StuckAxis:
-    """Counts how often each of the three rates of new samples has been repeated."""
+    """Counts how often each of the three angular rates is repeated in new samples."""
 
     def __init__(self) -> None:
         self.restart()
 
     def restart(self) -> None:
-        """Begin anew with the next sample."""
+        """Reset; counting starts with the next sample."""
         self._last: Sequence[float] = ()
         self._since, self._count = [0.0] * 3, [0] * 3
 
     def update(self, sample: Sequence[float], now: float) -> tuple[Saying, float, float] | None:
-        """Return what is wrong with a new sample: (6,), its rates come first, rad/s."""
+        """Return (saying, rate, limit) if an axis is stuck in a new (6,) sample, else None.
+
+        The first three values are the angular rates, rad/s.
+        """
         for axis in range(3):
             rate = sample[axis]
             if not self._last or rate != self._last[axis] or abs(rate) < FAST:

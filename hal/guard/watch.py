@@ -1,7 +1,7 @@
-"""Is every joint well? Each observation against a warning and a stop level, by joint and kind.
+"""Health check of the joints: compares each observation with warning and stop levels.
 
-What a joint does not measure is neither well nor unwell. A verdict depends on the observations and
-the commands alone: the same ones give the same verdict.
+A quantity that a joint does not measure is not judged. The result depends on the observations and
+the commands only: the same inputs give the same result.
 """
 
 from collections.abc import Sequence
@@ -18,18 +18,18 @@ from windup.hal.joints import Array, Joints, Mask
 from windup.hal.observation import JointState, Observation
 
 PERIOD = 0.03
-"""From one look to the next, s: nothing that is judged is faster, and a look costs some 30 us."""
+"""Period of the checks, s: no monitored quantity changes faster, and a check takes some 30 us."""
 LONGEST = 0.1
-"""What a single look may count for, s: between two calls of a program nobody looked."""
+"""Maximum time step of one check, s: a program may not call for a while between runs."""
 
 
 class HealthWatch:
-    """Watches the n joints of one robot.
+    """Monitors the health of the n joints of one robot.
 
     Args:
         joints: The joints.
-        levels: When they are unwell.
-        look: What a message ends with: the command that shows more.
+        levels: Warning and stop levels.
+        look: Text appended to messages: the command that shows details.
     """
 
     def __init__(self, joints: Joints, levels: HealthLevels, look: str = "") -> None:
@@ -39,7 +39,7 @@ class HealthWatch:
         self._strain = Strain(levels.torque, self._values[Kind.LOAD], self._values[Kind.STALL])
         self._persistence = Persistence(levels)
         self._time = -np.inf
-        # What has been warned of: by kind how often and since when, s; the worst values.
+        # Warnings so far: by kind their number and first time, s; and the worst values.
         self._warned: Mask = np.zeros_like(self._values, dtype=bool)
         self._counts = np.zeros(len(Kind), dtype=np.int64)
         self._first = np.full(len(Kind), np.nan)
@@ -48,17 +48,17 @@ class HealthWatch:
     def update(
         self, observation: Observation, command: JointCommand | None = None
     ) -> Finding | None:
-        """Judge an observation; collect warnings, and return the reason to stop, if there is one.
+        """Judge an observation; record warnings and return the reason to stop, or None.
 
         Args:
-            observation: What was seen.
-            command: What the joints were told last and obey, or None where nobody drives them.
+            observation: The observation.
+            command: The command in effect, or None if there is none.
         """
         now, joints = observation.time, observation.joints
         passed = now - self._time
         if 0.0 <= passed < PERIOD:
             return None
-        if passed < 0.0:  # the clock begins again
+        if passed < 0.0:  # the clock was reset
             self._strain.reset()
             self._persistence.reset()
         self._time = now
@@ -73,13 +73,13 @@ class HealthWatch:
         return self._reason(due[1], self._values)
 
     def error(self, found: Finding) -> UnhealthyError:
-        """Return what to raise because of a finding of `look`."""
+        """Return the error to raise for a finding of `update`."""
         return UnhealthyError(f"{found}: {found.saying.do}{self._look}", found.saying.name)
 
     def refuse(self, observations: Sequence[Observation], max_age: float) -> UnhealthyError | None:
-        """Return why torque may not come on: who is beyond a stop level in all `observations`.
+        """Return an error if a joint is beyond a stop level in all `observations`, else None.
 
-        What has not been answered for longer than `max_age` s is not judged.
+        States older than `max_age` s are not judged.
         """
         due, values = np.ones_like(self._warned), np.full_like(self._values, np.nan)
         for observation in observations:
@@ -93,7 +93,7 @@ class HealthWatch:
 
     @property
     def warnings(self) -> list[Finding]:
-        """What there was to warn about: one finding a kind, with its worst value and its count."""
+        """All warnings so far: one finding per kind, with its worst value and its count."""
         found = []
         for row in np.flatnonzero(self._counts).tolist():
             worst = self._worst[row]
@@ -103,7 +103,7 @@ class HealthWatch:
         return found
 
     def _note(self, due: Mask, now: float) -> None:
-        """Take down the warnings that are `due` (5, n)."""
+        """Record the warnings that are `due` (5, n)."""
         begun = due & ~self._warned
         if begun.any():
             counts = np.count_nonzero(begun, axis=1)
@@ -113,14 +113,14 @@ class HealthWatch:
         np.fmax(self._worst, self._values, where=due, out=self._worst)
 
     def _reason(self, due: Mask, values: Array) -> Finding:
-        """Return the finding of the first kind of which somebody is `due` (5, n) to be stopped."""
+        """Return the finding for the first kind in `due` (5, n), the reasons to stop."""
         kind = Kind(int(np.argmax(due.any(axis=1))))
         found = self._finding(kind, values[kind], due[kind], self.levels.stop)
         found.stop = True
         return found
 
     def _finding(self, kind: Kind, values: Array, which: Mask, levels: Array) -> Finding:
-        """Return what is wrong with the joints `which` (n,), whose `values` are signed."""
+        """Return the finding for the joints `which` (n,) bool; `values` (n,) are signed."""
         rows = np.flatnonzero(which)
         worst = int(rows[int(np.argmax(values[rows]))])
         return Finding(
@@ -133,7 +133,7 @@ class HealthWatch:
 
 
 def _health(joints: JointState, values: Array) -> None:
-    """Put supply and temperature into their rows of `values` (5, n)."""
+    """Write supply and temperature into their rows of `values` (5, n), signed."""
     np.negative(joints.voltage, out=values[Kind.SUPPLY_LOW])
     values[Kind.SUPPLY_HIGH] = joints.voltage
     values[Kind.TEMPERATURE] = joints.temperature

@@ -1,1 +1,1 @@
-"""The guardian: a process beside every armed robot that stops it when its program dies or hangs."""
+"""The guardian: a separate process that stops an armed robot if its program dies or hangs."""

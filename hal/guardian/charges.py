@@ -1,4 +1,4 @@
-"""What a guardian is told of a robot's buses: those that another process can reach."""
+"""Builds the guardian's records of the robot's buses that another process can open."""
 
 import numpy as np
 
@@ -16,15 +16,15 @@ from windup.hal.servo_bus.servo_backend import ServoBackend
 def charges_of(
     backend: ServoBackend, crouch: Array | None, levels: HealthLevels | None
 ) -> list[Charge]:
-    """Return what a guardian has to know of the buses that are outside of this process.
+    """Return the guardian's records of the buses that are not emulated in this process.
 
     Args:
         backend: The backend, whose ports are open.
         crouch: (n,) pose of the robot's crouch, rad.
-        levels: Of the robot's joints.
+        levels: Health levels of the robot's joints.
 
     Raises:
-        UsageError: Servos without a bus watchdog behind a network.
+        UsageError: Servos without a bus watchdog are reached through a network.
     """
     links = [link for link in backend.links if _outside(link)]
     for link in links:
@@ -34,7 +34,7 @@ def charges_of(
 
 
 def charge_of(link: BusConnection, goals: Array | None, levels: HealthLevels | None) -> Charge:
-    """Return what a guardian has to know of a bus; `goals` are (n,) counts of the crouch."""
+    """Return the guardian's record of a bus; `goals` (n,) are those of the crouch, counts."""
     port, line = link.bus.port, link.line
     counts = {} if goals is None else dict(zip(line.ids, goals[line.rows].tolist(), strict=True))
     hot_and_low = {}
@@ -49,7 +49,7 @@ def charge_of(link: BusConnection, goals: Array | None, levels: HealthLevels | N
         servos={mount.id: mount.model.name for mount in line.mounts},
         crouch={id: int(np.rint(count)) for id, count in counts.items()},
         levels=hot_and_low,
-        names=dict(zip(line.ids, line.names, strict=False)),  # of joints, where they are known
+        names=dict(zip(line.ids, line.names, strict=False)),  # joint names, if known
         extended=tuple(mount.id for mount in line.mounts if mount.extended),
         latency=port.latency,
         echoes=port.echoes,
@@ -57,16 +57,16 @@ def charge_of(link: BusConnection, goals: Array | None, levels: HealthLevels | N
 
 
 def _outside(link: BusConnection) -> bool:
-    """Return whether another process can reach the servos of a bus."""
+    """Return whether another process can open the port of a bus."""
     port = link.bus.port
     return isinstance(port, DevicePort) or port.url.startswith(NETWORK)
 
 
 def _check_network(link: BusConnection) -> None:
-    """Refuse a network where its loss would leave nobody who can stop the servos.
+    """Refuse a network port if nothing could stop the servos after a network failure.
 
     Raises:
-        UsageError: The servos have no bus watchdog of their own.
+        UsageError: The servos have no bus watchdog.
     """
     url, registers = link.bus.port.url, link.bus.family.registers
     if url.startswith(NETWORK) and "bus_watchdog" not in registers:

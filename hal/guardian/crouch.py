@@ -1,4 +1,4 @@
-"""The guardian's crouch: only where every joint of the robot can be read and still has torque."""
+"""The guardian's crouch, for robots of which every joint can be read and still has torque."""
 
 import time
 from collections.abc import Sequence
@@ -10,14 +10,14 @@ from windup.hal.guard.guarded import CROUCH_SECONDS
 from windup.hal.guardian.remote_bus import RemoteBus
 
 PERIOD = 0.02
-"""Between two goals, s."""
+"""Time between two goals, s."""
 
 
 def crouch(buses: Sequence[RemoteBus]) -> None:
-    """Move the servos of a robot from where they are to its crouch along a smooth step.
+    """Move the servos of a robot from their present positions to its crouch along a smoothstep.
 
     Raises:
-        HardwareError: A servo cannot be read or has lost its torque, before or on the way.
+        HardwareError: A servo cannot be read or has lost its torque, before or during the motion.
     """
     starts = [bus.stay() for bus in buses]
     ends = [np.array([bus.charge.crouch[id] for id in bus.charge.servos]) for bus in buses]

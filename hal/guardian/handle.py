@@ -1,4 +1,4 @@
-"""The guardian as its host sees it: started before torque, fed each tick, released at the end."""
+"""Host side of the guardian: starts it before torque enable, sends heartbeats, releases it."""
 
 import fcntl
 import os
@@ -31,30 +31,30 @@ NOT_STARTED = (
     "the guardian that stops this robot when its program dies does not start{}; torque stays off"
 )
 START_TIME = 20.0
-"""What the process may take to start, s."""
+"""Maximum time for the process to start, s."""
 END_TIME = 1.0
-"""What it may take to end once it was released, s."""
+"""Maximum time for the process to end after its release, s."""
 UNREAD_TIME = 0.25
-"""How long heartbeats may lie unread before the guardian counts as stopped, s."""
+"""Maximum time for which heartbeats may stay unread before the guardian counts as hung, s."""
 
 
 class Guardian:
-    """The process that stops a robot when this one dies or hangs.
+    """Handle of the guardian process, which stops the robot if this process dies or hangs.
 
     Args:
         charges: The robot's buses.
-        policy: What "stop" means for it.
-        hold: How long "hold" lasts before torque goes off, s.
+        policy: Stop policy to carry out.
+        hold: Duration of the policy "hold" before torque goes off, s.
 
     Raises:
-        PortError: Another armed run has one of the adapters.
+        PortError: Another armed run holds the lock of an adapter.
         HardwareError: The process does not start.
     """
 
     def __init__(self, charges: Sequence[Charge], policy: StopPolicy, hold: float = 60.0) -> None:
         self._locks: list[AdapterLock] = []
         try:
-            with ExitStack() as undo:  # also of Ctrl-C, which the program may catch
+            with ExitStack() as undo:  # also on Ctrl-C, which the program may catch
                 told = tuple(self._lock(charge, undo) for charge in charges)
                 show_traceback_on_signal()
                 with held_back():
@@ -71,54 +71,55 @@ class Guardian:
 
     @property
     def pid(self) -> int:
-        """Its process number."""
+        """Process id of the guardian."""
         return self._process.pid
 
     @property
     def alive(self) -> bool:
-        """True while it is watching."""
+        """True while the guardian process runs."""
         return self._process.poll() is None
 
     def tick(self, first: bool = False) -> None:
-        """Say that the loop has done a tick; from now on the next one is due within 0.15 s.
+        """Send the heartbeat of a tick of the loop; the next one is due within 0.15 s.
 
         Args:
-            first: The robot has not made its first motion: no crouch, it is to go limp.
+            first: The first motion after torque enable is not complete: on a stop the robot goes
+                limp instead of crouching.
 
         Raises:
-            GuardianError: The guardian has died, or does not read.
+            GuardianError: The guardian has died, or does not read its heartbeats.
         """
         self._say(FIRST if first else TICK)
 
     def idle(self) -> None:
-        """Say that this process is alive though no loop runs; more is due within 1 s.
+        """Send a heartbeat while no loop runs; the next one is due within 1 s.
 
         Raises:
-            GuardianError: The guardian has died, or does not read.
+            GuardianError: The guardian has died, or does not read its heartbeats.
         """
         self._say(IDLE)
 
     def release(self) -> None:
-        """End it: torque has been read back as off."""
+        """End the guardian after torque has been read back as off."""
         self._end(RELEASE)
         try:
             self._process.wait(END_TIME)
-        except subprocess.TimeoutExpired:  # stopped by somebody; there is nothing left to guard
+        except subprocess.TimeoutExpired:  # suspended; it is no longer needed
             self._process.kill()
             self._process.wait()
         finally:
             self._unlock()
 
     def hand_over(self) -> None:
-        """Leave the robot to it: torque could not be read back as off, and the ports are closed."""
+        """Let the guardian stop the robot: torque did not read back as off; ports are closed."""
         self._end(HAND_OVER)
         self._unlock()
 
     def _lock(self, charge: Charge, undo: ExitStack) -> Charge:
-        """Return a charge with its adapter locked.
+        """Lock the adapter of a charge; return the charge with the lock's descriptor.
 
         Raises:
-            PortError: Another armed run has it.
+            PortError: Another armed run holds the lock.
         """
         lock = AdapterLock(charge.url)
         undo.callback(lock.close)
@@ -126,7 +127,7 @@ class Guardian:
         return msgspec.structs.replace(charge, lock=lock.take())
 
     def _start(self, order: Order) -> None:
-        """Give the order and a first heartbeat, and wait until both have arrived."""
+        """Send the order and a first heartbeat, and wait until the guardian confirms both."""
         with suppress(BrokenPipeError):
             self._pipe.write(msgspec.json.encode(order) + b"\n" + IDLE)
             self._pipe.flush()
@@ -141,7 +142,7 @@ class Guardian:
             raise HardwareError(NOT_STARTED.format(""))
 
     def _give_up(self) -> None:
-        """End a process that has not begun to watch: torque is off."""
+        """Kill a guardian that has not begun to watch; torque is still off."""
         with held_back():
             self._process.kill()
             self._process.wait()
@@ -189,18 +190,18 @@ def guardian_for(
     hold: float = 60.0,
     levels: HealthLevels | None = None,
 ) -> Guardian | None:
-    """Return a running guardian of the buses of `backend`; None where no bus is outside of here.
+    """Start and return a guardian of the buses of `backend`, or None if all of them are emulated.
 
     Args:
         backend: The backend. Buses that are emulated in this process need no guardian.
-        policy: What "stop" means for the robot.
+        policy: Stop policy of the robot.
         crouch: (n,) pose of its crouch, rad.
-        hold: How long "hold" lasts before torque goes off, s.
-        levels: Of the robot's joints: one beyond a stop level is not held.
+        hold: Duration of the policy "hold" before torque goes off, s.
+        levels: Health levels of the joints: beyond a stop level, a pose is not held.
 
     Raises:
-        UsageError: Servos without a bus watchdog behind a network.
-        HardwareError: It does not start.
+        UsageError: Servos without a bus watchdog are reached through a network.
+        HardwareError: The guardian does not start.
     """
     if not isinstance(backend, ServoBackend):
         return None

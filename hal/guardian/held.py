@@ -1,4 +1,4 @@
-"""Servos that the guardian holds where they are, and the reasons to let go of them."""
+"""Holds the servos at their pose for the guardian, and finds reasons to end the hold."""
 
 import time
 from collections.abc import Sequence
@@ -6,20 +6,20 @@ from collections.abc import Sequence
 from windup.hal.guardian.remote_bus import RemoteBus
 
 PERIOD = 0.2
-"""Between two looks at heat and supply, s."""
+"""Period of the checks of temperature and supply, s."""
 AGAIN = 3
-"""Looks in a row that have to agree: a weak checksum passes a wrong byte now and then."""
+"""Consecutive checks that have to fail: a weak checksum sometimes passes a wrong byte."""
 
 
 def hold(buses: Sequence[RemoteBus], seconds: float) -> str | None:
-    """Hold servos that have been told to stay; return what asks for their torque to go off.
+    """Monitor servos that hold their pose; return the reason to switch torque off.
 
     Args:
         buses: The robot's buses.
-        seconds: How long at most, s; None is returned then.
+        seconds: Maximum time, s; after it, None is returned.
 
     Raises:
-        HardwareError: A port is gone.
+        HardwareError: A port is lost.
     """
     until, doubts = time.monotonic() + seconds, 0
     while time.monotonic() < until:

@@ -1,4 +1,4 @@
-"""The process that a guardian watches: is it gone, where does it hang, and its end by force."""
+"""The host process as watched by the guardian: detects its end, prints its stacks, kills it."""
 
 import os
 import select
@@ -8,20 +8,20 @@ from contextlib import suppress
 from windup.hal.guardian.traceback_signal import WHERE
 
 TRACEBACK_TIME = 0.02
-"""What the host gets for printing where it hangs, s."""
+"""Time granted to the host to print its stacks, s."""
 
 
 class Host:
-    """A process, by a descriptor that no other process can inherit the number of.
+    """The host process, held by a pidfd, so that a reused process id is never mistaken for it.
 
     Args:
-        number: Its process number.
+        number: Its process id.
 
     Raises:
-        OSError: It cannot be watched, though it is there.
+        OSError: It exists but cannot be watched.
 
     Attributes:
-        descriptors: What becomes readable when it has ended; empty if it had ended before.
+        descriptors: Its pidfd, which becomes readable when it ends; empty if it has ended before.
     """
 
     def __init__(self, number: int) -> None:
@@ -35,19 +35,19 @@ class Host:
 
     @property
     def gone(self) -> bool:
-        """True when it has ended."""
+        """True if the process has ended."""
         return self.wait(0.0)
 
     def wait(self, seconds: float) -> bool:
-        """Wait for its end for some time, s, and return whether it has ended."""
+        """Wait at most `seconds` s for its end, and return whether it has ended."""
         if not self.descriptors:
             return True
         return bool(self._poll.poll(seconds * 1e3))
 
     def kill(self) -> None:
-        """Let it print where it hangs, then end it by force and wait for that a moment.
+        """Make it print its stacks, then kill it, and wait `TRACEBACK_TIME` for its end.
 
-        It has its time for the print whether somebody reads that or not.
+        The time for printing is limited, because its output may not be read by anything.
         """
         self._send(WHERE)
         self.wait(TRACEBACK_TIME)

@@ -1,4 +1,4 @@
-"""The guardian's process as it is started: what it inherits, and what not."""
+"""Starts the guardian process: what it inherits from its host, and what not."""
 
 import os
 import subprocess
@@ -10,9 +10,9 @@ STANDARD_ERROR = 2
 
 
 def launch(locks: Sequence[int]) -> "subprocess.Popen[bytes]":
-    """Start a guardian that hears on its standard input and answers on its standard output.
+    """Start a guardian, which reads its standard input and answers on its standard output.
 
-    Signals that this thread holds back wait for it too, until it ignores them.
+    It inherits the signal mask of this thread: blocked signals stay pending until it ignores them.
 
     Args:
         locks: Descriptors that it inherits, under the same numbers.
@@ -27,15 +27,15 @@ def launch(locks: Sequence[int]) -> "subprocess.Popen[bytes]":
         stderr=None if _has_standard_error() else subprocess.DEVNULL,
         pass_fds=locks,
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
-        start_new_session=True,  # signals of the terminal are for the host
+        start_new_session=True,  # signals of the terminal go to the host only
     )
 
 
 def _has_standard_error() -> bool:
-    """Return whether the second descriptor is what it should be.
+    """Return whether descriptor 2 is really standard error.
 
-    Where it was closed, the next file that was opened has its number: maybe a servo port. Files
-    that Python opens are not inherited.
+    If it was closed, the next file opened got its number, maybe a servo port. Files that Python
+    opens are not inheritable.
     """
     try:
         return os.get_inheritable(STANDARD_ERROR)

@@ -1,36 +1,36 @@
-"""What a guardian is told when it starts, and the bytes that it hears from then on."""
+"""Messages between host and guardian: the order at the start, and the heartbeat bytes."""
 
 import msgspec
 
 from windup.hal.guard.limits import StopPolicy
 
 READY = b"r"
-"""Guardian to host: the first heartbeat has arrived; torque may come on."""
+"""Guardian to host: order and first heartbeat have arrived, so torque may be enabled."""
 TICK, FIRST, IDLE, RELEASE, HAND_OVER = b"t", b"f", b"i", b"x", b"h"
-"""Host to guardian: a tick of the loop, and one of the first motion after torque came on; alive
-between two runs, or switching torque; torque was read back as off; the host has given up its ports
-with torque that it could not read."""
+"""Host to guardian, in this order: a tick of the loop; a tick of the first motion after torque
+enable; alive without a loop (between two runs, or switching torque); torque was read back as off;
+the host has closed its ports but torque could not be read back as off."""
 
 SILENCE = {TICK: 0.15, FIRST: 0.15, IDLE: 1.0}
-"""How long the guardian waits for the next byte after one of these, s. A robot that only holds its
-pose may wait longer: a program between two runs may load a file, or import a package."""
+"""Maximum time from each byte to the next one, s. It is longer while the robot only holds its
+pose: a program between two runs may load a file, or import a package."""
 
 
 class Charge(msgspec.Struct, frozen=True, kw_only=True):
-    """One bus that is looked after.
+    """One guarded bus.
 
     Attributes:
-        url: Of its port.
-        baud: Bits a second.
-        servos: Id to model name.
-        crouch: Id to the goal position of the robot's crouch, counts; empty without one.
-        levels: Id to the temperature, degrees C, and the supply, V, at which a servo that is held
-            has to be let go; one without is held whatever it reads.
-        names: Id to joint name, for people; empty where nobody knows them.
-        extended: Ids of the servos that count many turns.
-        latency: How long its adapter holds bytes back, s.
-        echoes: Does its adapter give back what it is sent?
-        lock: Descriptor of the lock on its adapter, held by host and guardian together.
+        url: URL of its port.
+        baud: Baud rate, bit/s.
+        servos: Maps id to model name.
+        crouch: Maps id to the goal position of the robot's crouch, counts; empty without one.
+        levels: Maps id to the temperature, degrees C, and the supply, V, at which a hold ends; a
+            servo without an entry is held whatever it reads.
+        names: Maps id to joint name, for messages; empty if unknown.
+        extended: Ids of the servos in extended (multi-turn) position mode.
+        latency: Latency of its adapter, s.
+        echoes: Whether its adapter echoes the bytes sent.
+        lock: Descriptor of the lock on its adapter, shared by host and guardian; -1 for none.
     """
 
     url: str
@@ -46,13 +46,13 @@ class Charge(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Order(msgspec.Struct, frozen=True, kw_only=True):
-    """What to look after, and what to do when the host dies or is silent.
+    """The guarded buses, and what to do when the host dies or is silent.
 
     Attributes:
-        host: Process number of the host.
-        policy: What "stop" means for this robot.
-        charges: Its buses.
-        hold: How long "hold" lasts before torque goes off, s.
+        host: Process id of the host.
+        policy: Stop policy of the robot.
+        charges: The guarded buses.
+        hold: Duration of the policy "hold" before torque goes off, s.
     """
 
     host: int

@@ -1,8 +1,9 @@
-"""The guardian process: wait for the host's end or its silence, then stop the robot.
+"""The guardian process: watches the heartbeats of its host, and stops the robot if they end.
 
-A heartbeat is due 0.15 s after a tick of the loop. On silence the host prints where it hangs and is
-killed; only then does the stop policy run, so that two programs never talk on one bus. The process
-ends when the host has released it, or when the torque of every servo has been read as off.
+After a tick of the loop, the next heartbeat is due within 0.15 s. If it is missing, the host is
+made to print its stacks and is killed; only then the stop policy runs, so that two programs never
+use one bus. The process ends when the host has released it, or when the torque of every servo has
+been read back as off.
 """
 
 import os
@@ -24,18 +25,18 @@ from windup.hal.guardian.words import Words, standard_error
 from windup.hal.in_words import in_words
 
 ABOVE = 5
-"""By how much it precedes the loop among real-time processes."""
+"""Amount by which its real-time priority exceeds that of the loop."""
 NICENESS = -15
-"""Where it may not be one."""
+"""Niceness if real-time scheduling is not permitted."""
 OVERSLEPT = 0.02
-"""A wait that ends so much late shows that the whole machine stood still, s."""
+"""Lateness of a wait that shows that the whole machine was stalled, s."""
 SECOND_CHANCE = 0.05
-"""What the host gets for its heartbeat then, s."""
+"""Time granted to the host for its next heartbeat after such a stall, s."""
 
 LAST_WORDS = 0.2
-"""How long it waits in the end for who reads what it says, s."""
+"""Maximum time to wait at the end until all messages are written, s."""
 DYING = 0.02
-"""From a process letting go of its pipe to its end, where it dies, s."""
+"""Maximum time from a dying process closing its pipe to its end, s."""
 
 
 class Ending(Enum):
@@ -50,7 +51,7 @@ class Ending(Enum):
 
 
 def main() -> None:
-    """Be the guardian: the order comes on standard input, then heartbeats."""
+    """Run the guardian: read the order from standard input, then heartbeats."""
     ignore_signals()
     _allow_files()
     words, orders = Words(standard_error()), sys.stdin.fileno()
@@ -62,14 +63,14 @@ def main() -> None:
 
 
 def _guard(order: Order, orders: int, words: Words) -> None:
-    """Watch the host, and stop its robot unless it has done so itself."""
+    """Watch the host, and stop the robot unless the host has released the guardian."""
     host, takeover = Host(order.host), Takeover(order, words.say)
     _go_first()
     os.write(sys.stdout.fileno(), READY)
     os.close(sys.stdout.fileno())
     try:
         ending, moved = watch(orders, host)
-    except Exception as error:  # nobody else is left to stop the robot
+    except Exception as error:  # only the guardian can stop the robot now
         words.say(in_words(error))
         ending, moved = Ending.DEAF, False
     if ending is Ending.RELEASED:
@@ -86,7 +87,7 @@ def watch(orders: int, host: Host) -> tuple[Ending, bool]:
     """Read heartbeats from a descriptor until there is a reason to stop watching.
 
     Returns:
-        The reason, and whether the robot has made its first motion: before, it may be anywhere.
+        The reason, and whether the first motion was complete; before it, the pose is arbitrary.
     """
     heard, patience, moved = time.monotonic(), SILENCE[IDLE], False
     poller = select.poll()
@@ -112,7 +113,7 @@ def watch(orders: int, host: Host) -> tuple[Ending, bool]:
 
 
 def _ending(data: bytes, host: Host) -> Ending | None:
-    """Return what the host's bytes end, or None for heartbeats."""
+    """Return the reason to stop watching that the host's bytes give, or None for heartbeats."""
     if RELEASE in data:
         return Ending.RELEASED
     if HAND_OVER in data:
@@ -123,9 +124,9 @@ def _ending(data: bytes, host: Host) -> Ending | None:
 
 
 def _first_line(orders: int) -> bytes | None:
-    """Return the order, and swallow the heartbeat behind it: reading it shows that they arrive.
+    """Read the order and the heartbeat after it; return the order.
 
-    None if the host ends before that.
+    Returns None if the host ends before that.
     """
     text = b""
     while not text.endswith(b"\n" + IDLE):
@@ -137,14 +138,14 @@ def _first_line(orders: int) -> bytes | None:
 
 
 def _allow_files() -> None:
-    """Have as many open files as may be: a host with a low limit must not limit this process."""
+    """Raise the limit of open files to its maximum: the host may have lowered the soft limit."""
     with suppress(OSError, ValueError):
         most = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
         resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
 
 
 def _go_first() -> None:
-    """Run before the loop: one that spins must not keep this process from the processor."""
+    """Set a higher priority than the loop: a loop that spins must not starve this process."""
     with suppress(OSError, AttributeError):
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(PRIORITY + ABOVE))
         return

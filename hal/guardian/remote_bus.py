@@ -1,4 +1,4 @@
-"""A bus as the guardian reaches it: opened when needed, again and again, and switched off."""
+"""A bus as used by the guardian: opened when needed, retried, and switched off."""
 
 from contextlib import suppress
 
@@ -17,19 +17,20 @@ from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
 
 UNLIMITED = (np.inf, -np.inf)
-"""Levels of a servo that has none."""
+"""Levels (temperature, supply) of a servo without an entry in `Charge.levels`."""
 
 
 class RemoteBus:
-    """The servos of one bus whose program is gone.
+    """The servos of one bus whose host has died.
 
-    No port is open before it is needed: an adapter may come and go, and nobody finds it busy.
+    The port is opened only when needed: an adapter may be replugged, and the port is not busy for
+    other programs before that.
 
     Args:
-        charge: Which bus, and which servos.
+        charge: The bus and its servos.
 
     Attributes:
-        trouble: Why the last attempt failed, "" before any.
+        trouble: Why the last attempt to switch off failed; "" before any.
     """
 
     def __init__(self, charge: Charge) -> None:
@@ -41,13 +42,13 @@ class RemoteBus:
         self._torque: ServoTorque | None = None
 
     def torque(self) -> ServoTorque:
-        """Return the torque switch of the servos; opens the port if it is not open.
+        """Return the torque control of the servos; opens the port if it is not open.
 
         Raises:
             HardwareError: The port cannot be opened.
         """
         if self._torque is None:
-            # A child of the dead host may still have it open.
+            # Not exclusive: a child of the dead host may still have the port open.
             port = open_port(self.charge.url, self.charge.baud, exclusive=False)
             port.latency = max(port.latency, self.charge.latency)
             port.echoes = self.charge.echoes
@@ -59,7 +60,7 @@ class RemoteBus:
         return self._torque
 
     def stay(self) -> Array:
-        """Have the servos stay where they are and return (servos,) counts.
+        """Make the servos hold their present positions; return those (servos,), counts.
 
         Raises:
             HardwareError: A servo has no torque, or cannot be read.
@@ -67,10 +68,10 @@ class RemoteBus:
         return self.torque().stay()
 
     def send_goals(self, goals: Array) -> None:
-        """Send (servos,) counts if all servos have torque: a goal may switch on one that has not.
+        """Send goals (servos,), counts, if all servos have torque: a goal may switch torque on.
 
         Raises:
-            HardwareError: A servo has no torque any more, or cannot be read.
+            HardwareError: A servo has lost its torque, or cannot be read.
         """
         torque = self.torque()
         if not torque.state().all_on:
@@ -79,10 +80,10 @@ class RemoteBus:
         torque.line.bus.exchange.send(torque.line.goals.frames())
 
     def complaint(self) -> str | None:
-        """Return whose heat, supply or silence asks for the torque to go off, or None.
+        """Return the servos whose temperature or supply requires torque off, as text, or None.
 
         Raises:
-            HardwareError: The port is gone.
+            HardwareError: The port is lost.
         """
         levels = [self.charge.levels.get(id, UNLIMITED) for id in self.charge.servos]
         hottest, lowest = np.transpose(levels)
@@ -94,21 +95,21 @@ class RemoteBus:
         return None
 
     def _read(self, name: str) -> Array:
-        """Return (servos,) values of a register in its unit; not a number where nobody answers."""
+        """Return (servos,) values of a register in its unit; NaN if a servo does not answer."""
         bus = self.torque().line.bus
         register = bus.family.registers[name]
         counts, valid = bus.sync_read(list(self.charge.servos), register)
         return np.where(valid, counts * register.unit, np.nan)
 
     def switch_off(self) -> bool:
-        """Switch torque off once, and return whether all of it has been read as off."""
+        """Switch torque off once, and return whether it is read back as off at all servos."""
         try:
             state = self.torque().off(attempts=1)
             if not state.all_off:
                 verb = "is still on at" if state.on.any() else "cannot be read at"
                 self.trouble = f"torque {verb} {self._who(~state.off)}"
                 return False
-        except Exception as error:  # whatever it is, the other buses have to be switched off too
+        except Exception as error:  # after any error the other buses have to be switched off too
             self.trouble = in_words(error)
             self.close()
             return False
@@ -116,14 +117,14 @@ class RemoteBus:
         return True
 
     def close(self) -> None:
-        """Give the port back."""
+        """Close the port."""
         torque, self._torque = self._torque, None
         if torque is not None:
             with suppress(Exception):
                 torque.line.bus.port.close()
 
     def _who(self, which: Mask) -> str:
-        """Return how people call some of the (servos,) servos."""
+        """Return the names of the servos `which` (servos,) bool, for messages."""
         return self.torque().line.who(np.flatnonzero(which))
 
 

@@ -1,7 +1,7 @@
-"""Signals that would end or stop a guardian: it ignores them, and lets the end of its host decide.
+"""Makes the guardian ignore signals that would end or suspend it; it ends after its host.
 
-Whoever ends a whole service or a terminal sends them to everybody, `systemctl stop` for one. A
-guardian that ended would leave the robot to a host that is just being ended too.
+Stopping a service (`systemctl stop`) or closing a terminal signals all processes. A guardian that
+ended then could not stop the robot, while its host is being ended too.
 """
 
 import signal
@@ -12,16 +12,16 @@ FAULTS = {
     signal.SIGILL, signal.SIGTRAP, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGSEGV,
     signal.SIGSYS,
 }  # fmt: skip
-"""Errors of the process itself, after which it cannot go on."""
+"""Signals of faults of the process itself, after which it cannot continue."""
 IGNORED = signal.valid_signals() - FAULTS - {signal.SIGKILL, signal.SIGSTOP, signal.SIGCHLD}
-"""All that can be ignored and has no use here."""
+"""All other signals that can be ignored and are not needed here."""
 
 
 @contextmanager
 def held_back() -> Iterator[None]:
-    """Have the signals wait that come to this thread, and to a process that is started meanwhile.
+    """Block the signals in this thread, and in processes started inside the `with` block.
 
-    Such a process gets none of them before it says so itself, also while it is only starting.
+    In such a process they stay blocked until it unblocks them itself, also during its start.
     """
     before = signal.pthread_sigmask(signal.SIG_BLOCK, IGNORED)
     try:
@@ -31,7 +31,7 @@ def held_back() -> Iterator[None]:
 
 
 def ignore_signals() -> None:
-    """Ignore the signals in this process, those too that wait already."""
+    """Ignore the signals in this process, including pending ones."""
     for number in IGNORED:
         signal.signal(number, signal.SIG_IGN)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, IGNORED)

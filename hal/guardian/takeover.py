@@ -1,4 +1,4 @@
-"""Stopping a robot whose program is gone: the policy on each bus until torque is read as off."""
+"""Takeover: carries out the stop policy after the host died, until torque is read back as off."""
 
 import os
 import time
@@ -14,35 +14,37 @@ from windup.hal.in_words import in_words
 from windup.hal.port.lock import Note, write_note
 
 PAUSES = 2e-3, 1.0
-"""Between two attempts, s: the first, and the longest."""
+"""Pause between two attempts to switch torque off, s: initial and maximum."""
 QUICK, SLOWER = 0.5, 0.03
-"""How long attempts follow each other at the shortest pause, s, and how it grows then, s/s."""
+"""Time for which attempts use the initial pause, s, and the growth of the pause after that, s/s."""
 SAY_AGAIN = 5.0
-"""Between two lines about servos that do not obey, s."""
+"""Time between two messages about servos whose torque is not off, s."""
 
 
 class Takeover:
-    """What a guardian does once its host is gone.
+    """Stops the robot after its host died or was killed.
 
     Args:
-        order: What it was told.
-        say: Tells people, and never waits for them.
+        order: The guardian's order.
+        say: Writes a message without blocking.
     """
 
     def __init__(self, order: Order, say: Say) -> None:
         self._order, self._tell = order, say
-        # What cannot be has to come out now, not when it matters.
+        # Built now, so that an invalid order fails at the start and not during a takeover.
         self._buses = [RemoteBus(charge) for charge in order.charges]
         self._said = time.monotonic()
         self._trouble = ""
         self._note("")
 
     def carry_out(self, why: str, moved: bool = True) -> None:
-        """Stop the servos; return when torque has been read as off, whatever goes wrong before.
+        """Carry out the stop policy; return when torque has been read back as off.
+
+        Any failure of the policy leads to torque off.
 
         Args:
-            why: That the host does not do it; new runs that wait for the adapters are told too.
-            moved: The robot has made its first motion. Before, it does not crouch.
+            why: Why the host does not stop the robot itself, for messages.
+            moved: The first motion after torque enable is complete; else it does not crouch.
         """
         self._said, policy = time.monotonic(), self._order.policy
         self._say(f"{why} (process {self._order.host}); stopping its servos")
@@ -57,13 +59,13 @@ class Takeover:
         self.switch_off()
 
     def wait_for(self, host: Host) -> None:
-        """Return when the host is gone, which might switch torque on until then."""
+        """Wait until the host has ended, and keep torque off: the host might switch it on."""
         while not host.wait(1.0):
             self._say(f"process {host.number} does not die; waiting for that")
             self.switch_off()
 
     def _hold(self) -> None:
-        """Hold where the servos are for the order's time, as long as heat and supply allow."""
+        """Hold the present pose for `Order.hold` s, as long as temperature and supply allow."""
         seconds = self._order.hold
         for bus in self._buses:
             bus.stay()
@@ -73,28 +75,28 @@ class Takeover:
         self._say(f"{why}; torque goes off")
 
     def _crouch(self) -> None:
-        """Crouch if every joint can be read."""
+        """Crouch; fails if a joint cannot be read."""
         crouch(self._buses)
         self._say("it has crouched")
 
     def switch_off_once(self) -> list[str]:
-        """Switch all torque off once; return the URLs of buses where it is not read as off."""
+        """Switch torque off once; return the URLs of the buses where it is not read as off."""
         left = [bus for bus in self._buses if not bus.switch_off()]
         self._trouble = "; ".join(f"{bus.charge.url}: {bus.trouble}" for bus in left)
         return [bus.charge.url for bus in left]
 
     def switch_off(self) -> None:
-        """Switch torque off until all of it has been read as off, however long that takes."""
+        """Switch torque off repeatedly until it is read back as off at all servos."""
         began = time.monotonic()
         while self.switch_off_once():
             now = time.monotonic()
-            with suppress(Exception):  # nothing ends this but torque that was read as off
+            with suppress(Exception):  # a failing message must not end the attempts
                 self._complain(now)
             time.sleep(min(PAUSES[0] + SLOWER * max(now - began - QUICK, 0.0), PAUSES[1]))
         self._say("torque is off at all servos, read back")
 
     def _complain(self, now: float) -> None:
-        """Say now and then what is still not known to be off."""
+        """Report every `SAY_AGAIN` s which torque is not known to be off."""
         if now - self._said < SAY_AGAIN:
             return
         self._said = now
@@ -104,7 +106,7 @@ class Takeover:
         self._say(what)
 
     def _say(self, text: str) -> None:
-        """Tell people what becomes of their robot, if that can be done."""
+        """Write a message; a failure to write is ignored."""
         with suppress(Exception):
             self._tell(text)
 

@@ -1,4 +1,4 @@
-"""A signal on which this process prints where each of its threads is, even in the middle of C."""
+"""Signal handler that prints the stacks of all threads, even while they run C code."""
 
 import faulthandler
 import signal
@@ -6,13 +6,13 @@ import sys
 from contextlib import suppress
 
 WHERE = signal.SIGRTMIN + 3
-"""The signal. Nobody else uses it, and without a handler it would end the process."""
+"""The signal: a real-time signal that is otherwise unused; unhandled, it ends the process."""
 
 
 def show_traceback_on_signal() -> None:
-    """From now on print the stacks of all threads to standard error on `WHERE`."""
+    """Install the handler: on `WHERE`, the stacks of all threads are printed to standard error."""
     stream = sys.__stderr__
     if stream is None:
         return
-    with suppress(OSError, ValueError):  # standard error is closed, or no file
+    with suppress(OSError, ValueError):  # standard error is closed, or not a file
         faulthandler.register(WHERE, file=stream, all_threads=True, chain=False)

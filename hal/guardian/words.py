@@ -1,4 +1,4 @@
-"""What a guardian says: on standard error, where nobody may be reading."""
+"""Messages of the guardian on standard error, written without ever blocking the guardian."""
 
 import os
 import select
@@ -9,18 +9,19 @@ from queue import Empty, Full, Queue
 from threading import Thread
 
 LINES = 100
-"""That wait for a reader at most; the oldest are lost."""
+"""Maximum number of queued lines; beyond it the oldest are dropped."""
 
 Say = Callable[[str], None]
 
 
 class Words:
-    """Lines that are written by a thread of their own: saying one never waits for a reader.
+    """Writes lines in a thread of its own, so that the caller never waits for a reader.
 
-    A descriptor that is shared must not be made non-blocking: it would be so for everybody.
+    The descriptor is shared with other processes and must not be made non-blocking: that would
+    affect all of them.
 
     Args:
-        descriptor: Where to; None where there is nothing to write to.
+        descriptor: Descriptor to write to; None discards the lines.
     """
 
     def __init__(self, descriptor: int | None) -> None:
@@ -31,11 +32,11 @@ class Words:
             self._thread.start()
 
     def say(self, text: str) -> None:
-        """Have one line written soon."""
+        """Queue one line for writing."""
         self._put(f"windup guardian: {text}\n".encode(errors="replace"))
 
     def finish(self, seconds: float) -> None:
-        """Wait until all has been written, so many s at most; nothing is written after that."""
+        """Wait until all lines are written, at most `seconds` s; further lines are not written."""
         if self._thread.is_alive():
             self._put(b"")
             self._thread.join(seconds)
@@ -49,7 +50,7 @@ class Words:
 
     def _write_all(self) -> None:
         while line := self._lines.get():
-            with suppress(OSError):  # the reader has gone
+            with suppress(OSError):  # the reader has closed
                 self._write(line)
 
     def _write(self, line: bytes) -> None:
@@ -57,14 +58,14 @@ class Words:
         while line:
             try:
                 line = line[os.write(self._descriptor, line) :]
-            except BlockingIOError:  # somebody else has made it so
+            except BlockingIOError:  # another process made it non-blocking
                 writable = select.poll()
                 writable.register(self._descriptor, select.POLLOUT)
                 writable.poll()
 
 
 def standard_error() -> int | None:
-    """Return the descriptor of standard error, or None where it was closed."""
+    """Return the descriptor of standard error, or None if it is closed."""
     if sys.stderr is None:
         return None
     with suppress(OSError, ValueError):

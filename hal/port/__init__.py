@@ -1,1 +1,1 @@
-"""Serial ports, by device, by network, in a simulation: opening, losing and finding them again."""
+"""Serial ports (device, network, or simulated): opening, locking, measuring and reopening them."""

@@ -1,7 +1,7 @@
-"""What an adapter does to the bytes: it may hold answers back, or give back what it is sent.
+"""Measures the latency of a serial adapter, and whether it echoes what it is sent.
 
-Neither can be asked of a driver in general (a pseudo-terminal, a network bridge and a CH340 say
-nothing), so both are measured with a few requests whose answers cannot be taken for their echo.
+Drivers do not report these in general (pseudo-terminals, network bridges and CH340s do not), so
+both are measured with a few requests whose answers cannot be mistaken for their echo.
 """
 
 from collections.abc import Iterable
@@ -11,17 +11,17 @@ from windup.hal.heartbeat import Heartbeat, no_heartbeat
 from windup.hal.port.port import BITS, LATENCY, Port
 
 PATIENCE = 0.06
-"""How long an answer is waited for while nothing is known of the adapter, s."""
+"""Timeout of an answer while the latency of the adapter is unknown, s."""
 REQUESTS = 8
-"""How often who answers is asked: the latency timer of an adapter may be anywhere."""
+"""Number of requests to a servo that answers: the phase of the latency timer is arbitrary."""
 SILENT = 3
-"""So many silent servos in a row mean that there is no power."""
+"""Number of silent servos in a row after which the servos are taken to have no power."""
 ECHOES = 3
-"""An adapter that gives back so many requests, one behind the other, gives back all."""
+"""Number of consecutive echoed requests after which the adapter is taken to echo all bytes."""
 MARGIN = 1.25
-"""How much longer than it was seen to be a latency may be."""
+"""Safety factor on the measured latency."""
 SETUP = 0.6e-3
-"""What a servo with its factory's return delay takes to answer, s."""
+"""Time that a servo with the factory default return delay takes to answer, s."""
 
 
 class Probe(NamedTuple):
@@ -29,8 +29,8 @@ class Probe(NamedTuple):
 
     Attributes:
         request: The frame.
-        length: Bytes of its answer, which begins with `head`.
-        head: The bytes an answer begins with and a request does not.
+        length: Length of its answer, bytes.
+        head: First bytes of the answer, which no request begins with.
     """
 
     request: bytes
@@ -39,19 +39,19 @@ class Probe(NamedTuple):
 
 
 class Heard(NamedTuple):
-    """What came of a request: did it come back, and after how many s was its answer there?"""
+    """Result of a probe: whether it was echoed, and the time to its answer, s, or None."""
 
     echoed: bool
     seconds: float | None
 
 
 def get_to_know(port: Port, probes: Iterable[Probe], heartbeat: Heartbeat = no_heartbeat) -> None:
-    """Measure the adapter of a port, once, and note in the port what it does.
+    """Measure latency and echo of the adapter of a port, once, and store them in the port.
 
     Args:
         port: The port; `echoes` and `latency` are set.
-        probes: A request to each servo that may be there. Where all are silent the latency stays
-            what it was said to be.
+        probes: A request to each servo that may be present. If none answers, the latency is left
+            unchanged.
         heartbeat: Called before each request.
     """
     if port.known:
@@ -75,7 +75,7 @@ def get_to_know(port: Port, probes: Iterable[Probe], heartbeat: Heartbeat = no_h
 
 
 def _note(port: Port, times: list[float]) -> None:
-    """Take the second longest time, so that one mishap does not count, for the latency."""
+    """Set the latency from the second longest time, so that one outlier is ignored."""
     port.known = True
     longest = sorted(times)[-2:][0]
     if longest > LATENCY + SETUP:
@@ -83,7 +83,7 @@ def _note(port: Port, times: list[float]) -> None:
 
 
 def _ask(port: Port, probe: Probe) -> Heard:
-    """Send a request and wait for its answer."""
+    """Send a probe and wait for its answer."""
     request, length, head = probe
     port.flush_input()
     began = port.clock.now()

@@ -1,7 +1,7 @@
-"""One armed run an adapter: a lock that host and guardian hold together.
+"""Lock files that allow one armed run per adapter; host and guardian hold the lock together.
 
 The guardian keeps it until torque has been read back as off, so a new run waits for that. The file
-says who holds it and what he does.
+contains the holder's process id and its present activity.
 """
 
 import fcntl
@@ -20,21 +20,21 @@ from windup.hal.port.open_port import stable_url
 from windup.hal.telemetry.layout import runtime_folder
 
 LOOK_AGAIN = 0.05
-"""Between two looks at a lock that somebody holds, s."""
+"""Time between two attempts to take a lock that is held, s."""
 SAY_AGAIN = 10.0
-"""Between two lines that say what is waited for, s."""
+"""Time between two log messages while waiting, s."""
 EMULATED = "twin://"
-"""Ports in this process, which no guardian looks after."""
+"""URL prefix of ports emulated in this process, which need no guardian."""
 RESERVED = 3
-"""Numbers below are those of standard input, output and error, open or not."""
+"""First usable descriptor number; those below are reserved for standard input, output and error."""
 
 
 class Note(msgspec.Struct, frozen=True):
-    """Who holds a lock.
+    """Contents of a lock file.
 
     Attributes:
-        pid: The guardian, or the host before there is one.
-        doing: What the guardian does about servos whose program is gone; "" while it watches.
+        pid: Process id of the guardian, or of the host before the guardian has started.
+        doing: What the guardian does during a takeover, for messages; "" while it only watches.
     """
 
     pid: int = 0
@@ -45,7 +45,7 @@ class AdapterLock:
     """The lock on the adapter of one bus.
 
     Args:
-        url: Of its port; a path has to be absolute where it is used after a change of folders.
+        url: URL of its port; a path has to be absolute if the working folder may change.
 
     Raises:
         PortError: The file of the lock cannot be opened.
@@ -60,7 +60,7 @@ class AdapterLock:
         """Take the lock and return its descriptor, for the guardian to inherit.
 
         Raises:
-            PortError: Somebody else has it.
+            PortError: Another process holds it.
         """
         if not self.free():
             note = self.note()
@@ -72,7 +72,7 @@ class AdapterLock:
         return self._descriptor
 
     def free(self) -> bool:
-        """Take the lock if nobody has it, and return whether it is ours."""
+        """Take the lock if it is free, and return whether this process holds it now."""
         while True:
             try:
                 fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -80,34 +80,34 @@ class AdapterLock:
                 return False
             if os.fstat(self._descriptor).st_nlink:
                 return True
-            self.close()  # it was removed as a leftover before it was ours
+            self.close()  # the file was removed as a leftover before it was locked
             self._descriptor = _open(self.url)
 
     def note(self) -> Note:
-        """Return what its holder says."""
+        """Return the note of its holder."""
         try:
             size = os.fstat(self._descriptor).st_size
             return msgspec.json.decode(os.pread(self._descriptor, size, 0), type=Note)
-        except msgspec.DecodeError:  # nobody has written yet
+        except msgspec.DecodeError:  # not written yet
             return Note()
 
     def close(self) -> None:
-        """Let it go, if it is not yet; a guardian that has inherited it keeps it."""
+        """Close the descriptor, if it is open; a guardian that has inherited it keeps the lock."""
         descriptor, self._descriptor = self._descriptor, -1
         if descriptor >= 0:
             os.close(descriptor)
 
 
 def write_note(descriptor: int, note: Note) -> None:
-    """Say in a lock's file who holds it and what he does."""
+    """Write the note of the present holder into a lock file."""
     with suppress(OSError):
         text = msgspec.json.encode(note)
-        # At once, with blanks over the rest of a longer note: somebody may be reading.
+        # In one write, padded to overwrite a longer note: another process may be reading.
         os.pwrite(descriptor, text.ljust(os.fstat(descriptor).st_size), 0)
 
 
 def wait_while_guarded(url: str) -> None:
-    """Return when no guardian is busy stopping the servos on a port; say what is waited for."""
+    """Wait until no guardian is stopping the servos on a port; log what is waited for."""
     if url.startswith(EMULATED) or not _path(url).exists():
         return
     lock, said = AdapterLock(url), -SAY_AGAIN
@@ -115,7 +115,7 @@ def wait_while_guarded(url: str) -> None:
         while not lock.free():
             note = lock.note()
             if not note.doing:
-                return  # an armed run; opening the port will say so
+                return  # an armed run; opening the port will report it
             if (now := time.monotonic()) - said >= SAY_AGAIN:
                 said = now
                 logging.getLogger(__name__).warning(
@@ -128,9 +128,9 @@ def wait_while_guarded(url: str) -> None:
 
 
 def _open(url: str) -> int:
-    """Return an open lock file, whose number is none of standard input, output and error.
+    """Open a lock file; return its descriptor, which is not one of the standard streams (0 to 2).
 
-    Those are other files in a guardian, that inherits it under its number.
+    The guardian inherits the lock under the same number, and has its own standard streams.
     """
     try:
         number = os.open(_path(url), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
@@ -145,9 +145,9 @@ def _open(url: str) -> int:
 
 
 def _path(url: str) -> Path:
-    """Return the file of the lock on the adapter behind a URL."""
+    """Return the path of the lock file for the adapter of a URL."""
     if "://" not in url and not url.startswith("usb:"):
         real = os.path.realpath(url)
-        # A pseudo-terminal that is served again has another number, but the link to it stays.
+        # A restarted pseudo-terminal has another number, but the link to it keeps its path.
         url = os.path.abspath(url) if real.startswith("/dev/pts/") else stable_url(real)
     return runtime_folder() / f"adapter-{zlib.crc32(url.encode()):08x}.lock"

@@ -1,4 +1,4 @@
-"""A serial port behind a TCP connection that passes baud rates too: RFC 2217, as of ser2net."""
+"""A serial port over TCP that also transmits the baud rate: RFC 2217, as served by ser2net."""
 
 import contextlib
 import socket
@@ -8,16 +8,16 @@ from windup.hal.port.port import Port
 from windup.hal.port.socket_port import RAW
 
 RFC2217 = "rfc2217://"
-"""How the URLs of such ports begin."""
+"""URL prefix of such ports."""
 NETWORK = (RAW, RFC2217)
-"""The same, of all ports behind a TCP connection."""
+"""URL prefixes of all ports over TCP."""
 
 
 class NetworkPort(Port):
-    """A port of pyserial's `rfc2217://`, made fit for a control loop.
+    """A port of pyserial's `rfc2217://`, adapted for a control loop.
 
-    pyserial leaves Nagle's algorithm on: a request behind a goal that nobody answers would wait for
-    the other side's delayed acknowledgement, 40 ms. And it sleeps for 0.3 s when it closes.
+    pyserial leaves Nagle's algorithm on: a request after an unanswered goal write would wait for
+    the delayed acknowledgement of the peer, 40 ms. And it sleeps for 0.3 s when it closes.
     """
 
     def __init__(self, serial: Any, url: str, latency: float | None = None) -> None:
@@ -33,6 +33,6 @@ class NetworkPort(Port):
         if self._connection is None:
             super().close()
             return
-        self._serial.is_open = False  # or pyserial closes it again, and sleeps, when it is freed
+        self._serial.is_open = False  # else pyserial's destructor closes it again, and sleeps
         with contextlib.suppress(OSError):
             self._connection.close()

@@ -1,4 +1,4 @@
-"""`open_port(url)`: from what a person writes to a `Port`, or to a message that helps."""
+"""`open_port(url)`: opens the port that a user names, or raises an error that states the remedy."""
 
 import contextlib
 import errno
@@ -20,18 +20,17 @@ from windup.hal.port.socket_port import RAW, Connection, SocketPort
 
 BAUD = 1_000_000
 MEMORY_DEVICES = 1
-"""Major number of /dev/null, /dev/zero and their like (Linux, admin-guide/devices.txt)."""
+"""Major number of /dev/null, /dev/zero and similar devices (Linux, admin-guide/devices.txt)."""
 
 
 def open_port(url: str, baud: int = BAUD, *, exclusive: bool = True) -> Port:
     """Open a device path, ``usb:SERIAL``, ``twin://...`` or any URL of pyserial.
 
-    Devices are opened exclusively, unless told otherwise, and with low latency where their driver
-    knows such a thing.
+    Devices are opened exclusively by default, and with low latency mode if the driver supports it.
 
     Raises:
         PortError: It cannot be opened; the message says what to do.
-        UsageError: No handler for this kind of URL.
+        UsageError: There is no handler for this kind of URL.
     """
     if "://" in url:
         _check_handler(url)
@@ -44,7 +43,7 @@ def open_port(url: str, baud: int = BAUD, *, exclusive: bool = True) -> Port:
     if exclusive:
         _check_holder(device)
     opened = _open(device, url, baud, exclusive)
-    # Pseudo-terminals and some drivers do not know the call; they have no such latency either.
+    # Pseudo-terminals and some drivers do not support the call, but have no such latency either.
     with contextlib.suppress(ValueError, OSError, NotImplementedError):
         opened.set_low_latency_mode(True)
     return DevicePort(opened, url, _latency(device))
@@ -64,7 +63,7 @@ def _open(target: str, url: str, baud: int, exclusive: bool) -> Any:
 
 
 def _check_handler(url: str) -> None:
-    """Find what pyserial hides: a handler that is missing, or whose import fails."""
+    """Raise UsageError if the URL's handler is missing or fails to import; pyserial hides why."""
     scheme = url.split("://", 1)[0].lower()
     try:
         _ = urlsplit(url).port
@@ -98,9 +97,9 @@ def _by_serial_number(number: str) -> str:
 
 
 def stable_url(url: str) -> str:
-    """Return a URL that finds the same adapter after it was unplugged.
+    """Return a URL that identifies the same adapter after it is replugged.
 
-    That is "usb:SERIAL" for a device with a serial number that no other adapter has, else `url`.
+    That is "usb:SERIAL" for a device with a unique serial number, else `url`.
     """
     if "://" in url or url.startswith("usb:"):
         return url
@@ -127,7 +126,7 @@ def _explain(device: str, url: str, error: Exception) -> str:
 
 
 def _busy(url: str, held_by: dict[int, str]) -> str:
-    """Return who has a port, and how to get it."""
+    """Return the message that names the processes that use a port, and how to end them."""
     if os.getpid() in held_by:
         return f"port {url} is in use by this program; close what it has opened there first"
     if not held_by:
@@ -138,8 +137,8 @@ def _busy(url: str, held_by: dict[int, str]) -> str:
 
 
 def _check_kind(device: str, url: str) -> None:
-    """Refuse what is there and cannot be a serial port: a file, a folder, a disk, /dev/null."""
-    with contextlib.suppress(OSError):  # it is not there, or not ours to see: opening says so
+    """Raise PortError if a path exists but is no serial port: file, folder, disk, /dev/null."""
+    with contextlib.suppress(OSError):  # missing or not accessible: opening reports it
         found = os.stat(device)
         if not stat.S_ISCHR(found.st_mode) or os.major(found.st_rdev) == MEMORY_DEVICES:
             raise PortError(f"{url} is no serial port; those that are there: {_ports()}")
@@ -150,9 +149,9 @@ def _ports() -> str:
 
 
 def _check_holder(device: str) -> None:
-    """Refuse a device that somebody holds without a lock, as the makers' packages do.
+    """Raise PortError if another process has a device open without a lock, as makers' tools do.
 
-    The far side of a pseudo-terminal may well be held open by who serves it: only locks count.
+    Pseudo-terminals are exempt, because their server may hold them open; there only locks count.
     """
     real = os.path.realpath(device)
     if real.startswith("/dev/pts/") or not os.path.exists(real):
@@ -162,10 +161,10 @@ def _check_holder(device: str) -> None:
 
 
 def holders(device: str) -> dict[int, str]:
-    """Return pid to name of the processes that have `device` open, as far as we may see."""
+    """Map pid to name of the processes that have `device` open, as far as permissions allow."""
     real = os.path.realpath(device)
     found = {}
-    with contextlib.suppress(OSError):  # there may be too many open files to look
+    with contextlib.suppress(OSError):  # too many files may be open to list /proc
         for pid in sorted(int(name) for name in os.listdir("/proc") if name.isdigit()):
             process = Path(f"/proc/{pid}")
             with contextlib.suppress(OSError):
@@ -175,7 +174,7 @@ def holders(device: str) -> dict[int, str]:
 
 
 def _latency(device: str) -> float | None:
-    """Return the latency timer of an FTDI adapter, s; None where there is none."""
+    """Return the latency timer of an FTDI adapter, s; None for other devices."""
     name = os.path.basename(os.path.realpath(device))
     try:
         return int(Path(f"/sys/class/tty/{name}/device/latency_timer").read_text()) * 1e-3

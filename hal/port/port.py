@@ -1,4 +1,4 @@
-"""A serial port with its own clock: bytes, deadlines and nothing about servos."""
+"""A serial port with its own clock: reads and writes bytes with deadlines."""
 
 import contextlib
 import os
@@ -14,17 +14,17 @@ from windup.hal.clock import WallClock
 from windup.hal.errors import PortError
 
 GONE = (SerialException, OSError, termios.error)
-"""What an adapter that is pulled out raises, depending on what was going on."""
+"""Exceptions raised by a port whose adapter is unplugged, depending on the operation."""
 SELECTABLE = 1024
-"""Descriptors that `select` takes are less than this (FD_SETSIZE of the C library)."""
+"""Descriptors have to be less than this for `select` (FD_SETSIZE of the C library)."""
 ROOM = 100
-"""How long a write waits for room before it tries again, ms."""
+"""Maximum time that a write waits for buffer space before it retries, ms."""
 LATENCY = 1e-3
-"""What an adapter may hold back when its driver does not say, s."""
+"""Assumed latency of an adapter whose driver does not report one, s."""
 BITS = 10.0
-"""A byte on the wire: start, eight, stop."""
+"""Bits per byte on the wire: start, eight data bits, stop."""
 PLENTY = 65_536
-"""More bytes than a driver keeps."""
+"""Read size that exceeds the input buffer of any driver, bytes."""
 
 
 class SerialLike(Protocol):
@@ -42,30 +42,30 @@ class SerialLike(Protocol):
         ...
 
     def reset_input_buffer(self) -> None:
-        """Forget what came in."""
+        """Discard received bytes."""
         ...
 
     def close(self) -> None:
-        """Give the device back."""
+        """Close the device."""
         ...
 
 
 class Port:
     """One open port.
 
-    A virtual world passes time only while somebody waits for it, so reads block until their
-    deadline and never poll.
+    A virtual clock advances only while a call waits for it, so reads block until their deadline
+    and never poll.
 
     Attributes:
-        url: What was opened, as the user wrote it.
-        place: The same, as it is found from every working folder.
-        clock: The wall, or the clock of the world behind the port.
-        latency: How long the adapter may hold back bytes that have arrived, s.
-        echoes: Does the adapter give back all that is sent? Then reads leave that out.
-        known: Have latency and echo been measured? See `windup.hal.port.adapter`.
-        sent: Bytes written so far.
-        received: Bytes read so far.
-        has_baud: Does its baud rate reach the wire? A plain TCP bridge has one of its own.
+        url: URL as the user wrote it.
+        place: The same URL, independent of the working folder.
+        clock: Wall clock, or virtual clock of a simulated port.
+        latency: Maximum time for which the adapter delays received bytes, s.
+        echoes: Whether the adapter echoes all bytes sent; reads then remove the echo.
+        known: Whether latency and echo have been measured; see `windup.hal.port.adapter`.
+        sent: Number of bytes written so far.
+        received: Number of bytes read so far, without the echo.
+        has_baud: Whether its baud rate applies to the wire; a raw TCP bridge sets its own.
     """
 
     has_baud = True
@@ -77,12 +77,12 @@ class Port:
         self.latency: float = getattr(serial, "latency", LATENCY) if latency is None else latency
         self.sent = self.received = 0
         self.echoes = self.known = False
-        self._echo = 0  # bytes that were sent and have not been given back
-        self._echo_end = 0.0  # when the last of them has been on the wire, s
+        self._echo = 0  # number of bytes sent whose echo has not been read
+        self._echo_end = 0.0  # when the last of them has left the wire, s
 
     @property
     def baud(self) -> int:
-        """Bits a second; assign to change it in place."""
+        """Baud rate, bit/s; assign to change it on the open port."""
         return self._serial.baudrate
 
     @baud.setter
@@ -94,7 +94,7 @@ class Port:
                 raise PortError(f"port {self.url} cannot run at {rate} baud: {error}") from None
 
     def read(self, count: int, deadline: float) -> bytes:
-        """Return `count` bytes, or what has come when the clock says `deadline` s."""
+        """Return `count` bytes, or those received when the clock reaches `deadline` s."""
         while self._echo:
             echo = self._take(self._echo, deadline)
             self._echo -= len(echo)
@@ -105,7 +105,7 @@ class Port:
         return data
 
     def write(self, data: bytes) -> None:
-        """Send `data`; returns when the driver has it, not when the wire has."""
+        """Send `data`; returns when the driver has taken it, before it is on the wire."""
         if self.echoes:
             start = max(self._echo_end, self.clock.now())
             self._echo_end = start + len(data) * BITS / self.baud
@@ -114,18 +114,18 @@ class Port:
         self.sent += len(data)
 
     def flush_input(self) -> None:
-        """Forget bytes that have arrived: a late answer must not pass for the next one."""
+        """Discard received bytes, so that a late answer is not taken for the next one."""
         now = self.clock.now()
         if self._echo:
             self._echo -= min(self._echo, len(self._take(PLENTY, now)))
             if now > self._echo_end + self.latency + LATENCY:
-                self._echo = 0  # what has not come back by now is lost
+                self._echo = 0  # an echo that has not come by now is lost
         self._discard()
 
     def settle(self, silence: float, longest: float) -> None:
-        """Read and forget what comes until nothing has come for `silence` s.
+        """Read and discard bytes until none has come for `silence` s.
 
-        Gives up after `longest` s on a line that is never quiet.
+        Gives up after `longest` s if the line is never quiet.
         """
         end = self.clock.now() + longest
         while (now := self.clock.now()) < end and self._take(1, min(now + silence, end)):
@@ -133,7 +133,7 @@ class Port:
         self.flush_input()
 
     def _take(self, count: int, deadline: float) -> bytes:
-        """Return what has come, as of `read`, with whatever the adapter has given back."""
+        """Return bytes as `read` does, but including the echo."""
         wait = deadline - self.clock.now()
         try:
             self._serial.timeout = wait if wait > 0.0 else 0.0
@@ -154,7 +154,7 @@ class Port:
             raise self._gone(error) from None
 
     def close(self) -> None:
-        """Give the device back. Closing twice is no error."""
+        """Close the device. Closing twice is not an error."""
         with contextlib.suppress(*GONE):
             self._serial.close()
 
@@ -171,20 +171,20 @@ class Port:
 
 
 def _selected(descriptor: int) -> Callable[[float], object]:
-    """Return what waits some s for a descriptor to become readable, and says whether it has."""
+    """Return a function that waits up to some s until a descriptor is readable; truthy if so."""
     wait, watched = select.select, [descriptor]
     return lambda seconds: wait(watched, (), (), seconds)[0]
 
 
 def _polled(descriptor: int) -> Callable[[float], object]:
-    """The same for any descriptor; but it rounds the wait up to whole milliseconds."""
+    """Like `_selected`, for any descriptor; but it rounds the wait up to whole milliseconds."""
     poller = select.poll()
     poller.register(descriptor, select.POLLIN)
     return lambda seconds: poller.poll(seconds * 1e3)
 
 
 class DevicePort(Port):
-    """A port of the operating system: reads its descriptor itself, which costs half of pyserial."""
+    """A device file: reads its descriptor directly, which takes half the time of pyserial."""
 
     def __init__(self, serial: Any, url: str, latency: float | None = None) -> None:
         super().__init__(serial, url, latency)

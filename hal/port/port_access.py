@@ -1,4 +1,4 @@
-"""Why a device may not be opened, and what would help: its mode against who asks."""
+"""Explains why a user may not open a device, and gives the remedy, from its mode and groups."""
 
 import grp
 import os
@@ -12,12 +12,12 @@ RULE = 'SUBSYSTEM=="tty", GROUP="dialout", MODE="0660"'
 
 
 class Person(NamedTuple):
-    """Who asks.
+    """A user and the groups that count for access.
 
     Attributes:
         uid: User id.
-        groups: Groups that this process has; a login gives them.
-        member: Groups that the user is a member of by now.
+        groups: Group ids of this process, set at login.
+        member: Group ids that the user is a member of now.
     """
 
     uid: int
@@ -26,7 +26,7 @@ class Person(NamedTuple):
 
     @classmethod
     def present(cls) -> Self:
-        """Return who runs this process."""
+        """Return the user of this process."""
         uid = os.geteuid()
         groups = frozenset([os.getegid(), *os.getgroups()])
         member = groups
@@ -37,12 +37,12 @@ class Person(NamedTuple):
 
 
 def access_remedy(device: str) -> str:
-    """Return why this process may not read and write `device`, and what would help."""
+    """Return why this process may not read and write `device`, with the remedy."""
     return remedy(os.stat(device), Person.present())
 
 
 def remedy(device: os.stat_result, person: Person) -> str:
-    """Return the same for a device with this `stat`."""
+    """Return why `person` may not read and write a device with this `stat`, with the remedy."""
     mode, owner, group = device.st_mode, _user(device.st_uid), _group(device.st_gid)
     shown = f"it is {stat.filemode(mode)} {owner} {group}"
     if person.uid == 0 or _allowed(device, person):
@@ -62,7 +62,7 @@ def remedy(device: os.stat_result, person: Person) -> str:
 
 
 def _allowed(device: os.stat_result, person: Person) -> bool:
-    """Return whether the mode alone lets a person read and write."""
+    """Return whether the mode bits allow a person to read and write."""
     if person.uid == device.st_uid:
         return _has(device.st_mode >> 6)
     return _has(device.st_mode >> 3 if device.st_gid in person.groups else device.st_mode)

@@ -1,4 +1,4 @@
-"""A port that was unplugged is opened again when it is back."""
+"""Reopens a port after its adapter was unplugged and plugged in again."""
 
 from collections.abc import Callable
 
@@ -14,19 +14,19 @@ Opener = Callable[[str, int], Port]
 
 
 class Replug:
-    """Opens one port as often as it takes, never more than one at a time.
+    """Opens one port, and reopens it after each loss; at most one port is open at a time.
 
-    A device is looked for by the serial number it had, since its path may change; a board that
-    has none, by its path.
+    A device is found again by its serial number, since its path may change; a device without a
+    serial number, by its path.
 
     Args:
-        url: What was opened first.
-        baud: Bits a second.
+        url: URL to open first.
+        baud: Baud rate, bit/s.
         opener: Opens a port.
 
     Attributes:
         opened: The port that was opened last.
-        port: The same, or None while it is gone.
+        port: The same, or None while the port is lost or closed.
     """
 
     def __init__(self, url: str, baud: int, opener: Opener) -> None:
@@ -38,22 +38,22 @@ class Replug:
 
     @property
     def returns(self) -> bool:
-        """False for a network: connecting may take seconds, in which a loop would stand still."""
+        """Whether it is reopened; False for a network: connecting may block a loop for seconds."""
         return not self._url.startswith(NETWORK)
 
     def lose(self, now: float) -> None:
-        """Close the port, which has failed."""
+        """Close the port after a failure, and schedule the first attempt to reopen it."""
         self.close()
         self._next = now + RETRY
 
     def hurry(self) -> None:
-        """Try at the next moment: somebody waits."""
+        """Allow the next attempt at once, without waiting for `RETRY`."""
         self._next = 0.0
 
     def again(self, now: float) -> Port | None:
-        """Return the port opened anew, or None if it is not back or was tried a moment ago.
+        """Reopen and return the port; None if it is missing or was tried less than `RETRY` ago.
 
-        A port that does not return is not tried.
+        Network ports are not tried (see `returns`).
         """
         if now < self._next or not self.returns:
             return None
@@ -66,7 +66,7 @@ class Replug:
         return self.port
 
     def close(self) -> None:
-        """Give the port back, if it is open."""
+        """Close the port, if it is open."""
         port, self.port = self.port, None
         if port is not None:
             port.close()

@@ -1,7 +1,7 @@
-"""A serial port behind a TCP connection that passes bytes and no baud rate, as ser2net's raw mode.
+"""A serial port over TCP that transmits bytes but no baud rate, such as ser2net's raw mode.
 
-pyserial's own `socket://` waits with `select`, which takes no descriptor beyond 1023; it leaves
-Nagle's algorithm on, behind which a request waits for 40 ms, and sleeps for 0.3 s when it closes.
+pyserial's own `socket://` waits with `select`, which fails for descriptors above 1023; it leaves
+Nagle's algorithm on, which delays a request by 40 ms, and sleeps for 0.3 s when it closes.
 """
 
 import contextlib
@@ -12,21 +12,21 @@ from windup.hal.errors import UsageError
 from windup.hal.port.port import DevicePort
 
 RAW = "socket://"
-"""How the URLs of such ports begin."""
+"""URL prefix of such ports."""
 CONNECT_TIME = 5.0
-"""How long a connection may take, s."""
+"""Maximum time to connect, s."""
 CHUNK = 4096
 
 
 class Connection:
-    """A connection with what `Port` asks of a pyserial object.
+    """A TCP connection with the part of the pyserial interface that `SocketPort` uses.
 
     Args:
         url: ``socket://HOST:PORT``.
-        baud: What its other side is taken to be set to.
+        baud: Baud rate that the remote port is assumed to be set to, bit/s.
 
     Raises:
-        OSError: Nobody answers there.
+        OSError: The connection cannot be made.
         UsageError: The URL has no host or no port.
     """
 
@@ -40,22 +40,22 @@ class Connection:
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def fileno(self) -> int:
-        """Return its descriptor."""
+        """Return the descriptor of the socket."""
         return self._socket.fileno()
 
     def reset_input_buffer(self) -> None:
-        """Forget what came in."""
+        """Discard received bytes."""
         with contextlib.suppress(BlockingIOError):
             while self._socket.recv(CHUNK):
                 pass
 
     def close(self) -> None:
-        """End it."""
+        """Close the connection."""
         self._socket.close()
 
 
 class SocketPort(DevicePort):
-    """Such a port."""
+    """A port over a raw TCP connection."""
 
     has_baud = False
 

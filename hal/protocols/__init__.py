@@ -1,1 +1,1 @@
-"""Frames of the servo protocols: pure functions on bytes, no port and no clock."""
+"""Encoding and decoding of servo protocol frames: pure functions on bytes, without I/O."""

@@ -1,10 +1,10 @@
-"""The cyclic codec of protocol 2: a cycle's answers checked at once, its goals in one frame.
+"""Vectorised cyclic codec of protocol 2: checks all replies at once, writes goals in one frame.
 
-A read is laid out once: which bytes of the expected stream are constant, which vary, how far each
-stands from the end of its frame. A cycle then costs a handful of numpy calls whatever the number
-of servos. Anything that does not fit the layout to the byte (a stuffed, missing or broken reply)
-goes to the resynchronising parser of `windup.hal.protocols.protocol2`, which keeps the good
-replies.
+The layout of an answer is computed once: which bytes of the expected stream are constant, which
+vary, and the distance of each from the end of its frame. Each cycle then takes a few numpy calls,
+whatever the number of servos. An answer that does not fit the layout exactly (a stuffed, missing
+or corrupt reply) is passed to the resynchronising parser of `windup.hal.protocols.protocol2`,
+which extracts the valid replies.
 """
 
 from collections.abc import Sequence
@@ -18,19 +18,19 @@ from windup.hal.protocols.cyclic import Bytes, CyclicRead, Index
 from windup.hal.protocols.protocol2 import Span, Status
 
 FAST_HEAD = protocol2.HEADER + bytes([protocol2.BROADCAST])
-"""How the answer to a fast sync read begins."""
+"""First bytes of the answer to a fast sync read."""
 
 
 class BlockRead(CyclicRead):
-    """A sync read, plain or fast, or where the spans differ a bulk read.
+    """A sync read, plain or fast; if the spans differ, a bulk read.
 
-    `length` is without stuffing; `longest` has all that stuffing can add.
+    `length` is without byte stuffing; `longest` includes the maximum that stuffing can add.
     """
 
     def __init__(self, spans: Sequence[Span], fast: bool = False) -> None:
         super().__init__(spans)
         self.fast = fast
-        self.confusable = not fast  # no other answer has its shape
+        self.confusable = not fast  # no other answer has this format
         uniform = len({(span.address, span.size) for span in self.spans}) == 1
         ids = [span.id for span in self.spans]
         if uniform:
@@ -41,7 +41,7 @@ class BlockRead(CyclicRead):
         self._lay_out(_fast_answer(self.spans) if fast else _answers(self.spans))
 
     def answered(self) -> int:
-        """Return how many bytes the good replies to the last request had, without stuffing."""
+        """Return the number of bytes of the valid replies to the last request, unstuffed."""
         sizes = np.array([span.size for span in self.spans])
         each = sizes + (4 if self.fast else protocol2.OVERHEAD)
         return int(each[self.valid].sum()) + (8 if self.fast else 0)
@@ -56,12 +56,12 @@ class BlockRead(CyclicRead):
     def _statuses(self, stream: bytes) -> Sequence[Status]:
         if self.fast:
             if stream.count(FAST_HEAD) > 1:
-                return []  # an earlier answer is among them
+                return []  # the stream contains an earlier answer
             return list(protocol2.salvage_fast(stream, self.spans[0].size, self._rows))
         return list(protocol2.salvage(stream, self.longest))
 
     def _lay_out(self, answer: bytes) -> None:
-        """Index the bytes of an `answer` whose error bytes, parameters and CRCs are all 0."""
+        """Compute the layout from an `answer` whose error bytes, parameters and CRCs are 0."""
         self.length = len(answer)
         sizes = [span.size for span in self.spans]
         self.longest = self.length + sum((size + 1) // 3 for size in sizes)
@@ -72,7 +72,7 @@ class BlockRead(CyclicRead):
         params = [np.arange(at + skip, at + skip + size) for at, size in where]
         self._payload_at: Index = np.concatenate(params)
         self._error_at: Index = starts if self.fast else starts + 8
-        # Whether a frame is sound depends on its bytes from the error byte to the CRC.
+        # The varying bytes of a frame are those from the error byte to the CRC.
         first = self._error_at
         last = [at + skip + size + tail for at, size in where]
         varies = np.zeros(self.length, dtype=bool)
@@ -89,7 +89,7 @@ class BlockRead(CyclicRead):
         self._checks(answer, frames)
 
     def _checks(self, answer: bytes, frames: list[tuple[int, int]]) -> None:
-        """Prepare the tables with which each frame of `answer` XORs to 0."""
+        """Prepare the tables with which the terms of each valid frame XOR to 0."""
         longest = max(end - start for start, end in frames) - 2
         table = distance_table(longest)
         plain = np.stack([np.arange(256), np.arange(256) << 8]).astype(np.uint16)
@@ -109,7 +109,7 @@ class BlockRead(CyclicRead):
 
 
 class BlockWrite:
-    """A sync write of the same register to n servos, built once and patched each time.
+    """A sync write of one register to n servos; the frame is built once, then only patched.
 
     Attributes:
         values: (n,) integers, a view into the frame: assign to it, then call `frame`.
@@ -133,7 +133,7 @@ class BlockWrite:
         self._empty_crc = int.from_bytes(self._frame[-2:], "little")
 
     def frame(self) -> bytes:
-        """Return the frame for the present `values`, stuffed where that is needed."""
+        """Return the frame for the present `values`, with byte stuffing if needed."""
         frame = self._frame
         if frame.find(b"\xff\xff\xfd", 7, len(frame) - 2) >= 0:
             return self._stuffed()
@@ -144,7 +144,7 @@ class BlockWrite:
         return bytes(frame)
 
     def frames(self) -> list[bytes]:
-        """Return all frames to send: one."""
+        """Return the list of frames to send, which has one element."""
         return [self.frame()]
 
     def _stuffed(self) -> bytes:
@@ -157,7 +157,7 @@ class BlockWrite:
 
 
 def _answers(spans: Sequence[Span]) -> bytes:
-    """Return all replies with error, parameters and CRC 0."""
+    """Return the replies to a sync or bulk read, with error, parameters and CRC 0."""
     frames = []
     for span in spans:
         length = (span.size + 4).to_bytes(2, "little")
@@ -167,7 +167,7 @@ def _answers(spans: Sequence[Span]) -> bytes:
 
 
 def _fast_answer(spans: Sequence[Span]) -> bytes:
-    """Return the one reply to a fast sync read with error, parameters and CRCs 0."""
+    """Return the single reply to a fast sync read, with error, parameters and CRCs 0."""
     blocks = b"".join(bytes([0, span.id]) + bytes(span.size + 2) for span in spans)
     length = (len(blocks) + 1).to_bytes(2, "little")
     head = protocol2.HEADER + bytes([protocol2.BROADCAST]) + length

@@ -1,7 +1,7 @@
-"""The cyclic codec of protocol 1: all checksums of a cycle at once, all goals in one frame.
+"""Vectorised cyclic codec of protocol 1: checks all replies at once, writes goals in one frame.
 
-In the manner of `windup.hal.protocols.batched`. A whole frame, header and checksum included, sums
-to 0xFD modulo 256, so one `add.reduceat` over bytes checks every reply.
+It works like `windup.hal.protocols.batched`. The bytes of a whole frame, header and checksum
+included, sum to 0xFD modulo 256, so one `add.reduceat` over the bytes checks every reply.
 """
 
 from collections.abc import Sequence
@@ -15,21 +15,21 @@ from windup.hal.protocols.protocol2 import Span, Status
 from windup.hal.registers import Register
 
 FRAME_SUM = 0xFD
-"""Sum of the bytes of any whole frame, modulo 256."""
+"""Sum of the bytes of any valid frame, modulo 256."""
 _ID, _ERROR, _PARAMS = 2, 4, 5
-"""Places in a status frame."""
+"""Byte offsets in a status packet."""
 _FIRST = 8
-"""Place of the first value in a sync write."""
+"""Byte offset of the first value in a sync write."""
 
 
 class StatusRead(CyclicRead):
-    """One request that several servos, or one, answer with frames of protocol 1."""
+    """One request that one or several servos answer with status packets of protocol 1."""
 
     def __init__(self, spans: Sequence[Span], request: bytes) -> None:
         super().__init__(spans)
         self.request = request
         self._sizes = {span.id: span.size for span in self.spans}
-        # Under another id than the one that was asked alone it could only be a late answer.
+        # If one servo was asked, a reply with another id can only be a late answer.
         self._others = frozenset(self._sizes.values()) if len(self.spans) > 1 else frozenset()
         sizes = np.array([span.size for span in self.spans])
         self._widths = sizes + protocol1.OVERHEAD
@@ -46,7 +46,7 @@ class StatusRead(CyclicRead):
         )
 
     def answered(self) -> int:
-        """Return how many bytes the good replies to the last request had."""
+        """Return the number of bytes of the valid replies to the last request."""
         return int(self._widths[self.valid].sum())
 
     def _sound(self, data: Bytes) -> bool:
@@ -60,13 +60,13 @@ class StatusRead(CyclicRead):
 
 
 class ChainRead(CyclicRead):
-    """Reads of one servo each, the next asked as soon as the one before has answered.
+    """Single reads of one servo each; each is requested when the one before has been answered.
 
-    What is left where servos know no common read (AX-12, SCS), or where a servo is missing and
-    those behind it would wait for it.
+    Used for servos that support no sync or bulk read (AX-12, SCS), and if a servo is missing, for
+    whose reply the later ones would wait.
 
     Attributes:
-        parts: The reads, in the order of `spans`.
+        parts: The single reads, in the order of `spans`.
     """
 
     def __init__(self, spans: Sequence[Span]) -> None:
@@ -76,23 +76,23 @@ class ChainRead(CyclicRead):
         self.length = self.longest = sum(part.length for part in self.parts)
 
     def begin(self) -> None:
-        """Forget who has answered."""
+        """Mark all replies as missing, before a new cycle."""
         self.valid.fill(False)
         self.complete = False
 
     def collected(self, row: int) -> None:
-        """Take over what the part at `row` has got."""
+        """Copy the reply of the part at `row`, if it is complete."""
         part = self.parts[row]
         if part.complete:
             self._take(row, Status(part.spans[0].id, int(part.error[0]), part.payload.tobytes()))
         self.complete = bool(self.valid.all())
 
     def answered(self) -> int:
-        """Return how many bytes the good replies to the last request had."""
+        """Return the number of bytes of the valid replies to the last request."""
         return sum(part.answered() for part in self.parts)
 
     def _sound(self, data: Bytes) -> bool:
-        """Only parts are decoded at full length."""
+        """Return False: only the parts are decoded by layout."""
         return False
 
     def _statuses(self, stream: bytes) -> list[Status]:
@@ -101,7 +101,7 @@ class ChainRead(CyclicRead):
 
 
 def sync_read(spans: Sequence[Span]) -> StatusRead:
-    """Return Feetech's sync read; the spans must be alike but for the id."""
+    """Return Feetech's sync read; all spans must have the same address and size."""
     first = spans[0]
     request = protocol1.sync_read([span.id for span in spans], first.address, first.size)
     return StatusRead(spans, request)
@@ -113,10 +113,10 @@ def bulk_read(spans: Sequence[Span]) -> StatusRead:
 
 
 class GoalWrite:
-    """Sync writes of one register to n servos, built once and patched each time.
+    """Sync writes of one register to n servos; the frames are built once, then only patched.
 
     Attributes:
-        values: (n,) integers as the register spells them: assign, then call `frames`.
+        values: (n,) values of the register, counts: assign to it, then call `frames`.
     """
 
     def __init__(self, ids: Sequence[int], register: Register, longest: int) -> None:

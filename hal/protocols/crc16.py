@@ -1,8 +1,8 @@
-"""CRC-16 of Dynamixel protocol 2: polynomial 0x8005, start 0, nothing reflected.
+"""CRC-16 of Dynamixel protocol 2: polynomial 0x8005, initial value 0, not reflected.
 
-With a start of 0 the checksum is linear: the CRC of a frame is the XOR of one number for each
-byte, and that number depends only on the byte and on its distance from the end. `distance_table`
-holds those numbers, so that numpy checks a block of frames without a loop.
+With an initial value of 0 the CRC is linear: the CRC of a frame is the XOR of one term per byte,
+and each term depends only on the byte and on its distance from the end. `distance_table` contains
+those terms, so that numpy checks a block of frames without a loop.
 """
 
 from functools import lru_cache
@@ -24,7 +24,7 @@ TABLE = tuple(_byte(value) for value in range(256))
 
 
 def crc16(data: bytes | bytearray | memoryview, crc: int = 0) -> int:
-    """Return the CRC of `data`, going on from `crc`.
+    """Return the CRC of `data`, continuing from `crc`.
 
     >>> hex(crc16(bytes.fromhex("fffffd00010300 01")))
     '0x4e19'
@@ -37,7 +37,7 @@ def crc16(data: bytes | bytearray | memoryview, crc: int = 0) -> int:
 
 @lru_cache(maxsize=8)
 def distance_table(length: int) -> npt.NDArray[np.uint16]:
-    """Return (length, 256): what a byte adds to the CRC when so many bytes follow it."""
+    """Return (length, 256) CRC terms: row d has those of a byte that d more bytes follow."""
     table = np.array(TABLE, dtype=np.uint16)
     rows = np.empty((length, 256), dtype=np.uint16)
     row = table

@@ -1,4 +1,4 @@
-"""What all cyclic reads are: one request, n replies, and the last good bytes of each."""
+"""Base class of cyclic reads: one request, n replies, and the last valid bytes of each."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
@@ -12,7 +12,7 @@ from windup.hal.protocols.protocol2 import Span, Status
 from windup.hal.protocols.turns import in_turn, newest
 
 NOBODY = -1
-"""The id of a reply that is not what anybody was asked for."""
+"""Id given to a reply that does not match any requested span."""
 
 Bytes = npt.NDArray[np.uint8]
 Index = npt.NDArray[np.intp]
@@ -21,23 +21,22 @@ Index = npt.NDArray[np.intp]
 class CyclicRead(ABC):
     """One request and the n replies to it.
 
-    An answer that fits the expected layout to the byte is checked at once; anything else goes to
-    the resynchronising parser of the protocol, which keeps the replies that are good.
+    An answer that fits the expected layout exactly is checked in one step; any other is passed to
+    the resynchronising parser of the protocol, which extracts the valid replies.
 
     Attributes:
-        spans: What is read of whom, in the order of the replies.
+        spans: The registers to read of each servo, in the order of the replies.
         request: The frame to send.
-        length: Bytes of a complete answer.
-        longest: Bytes of the longest answer there can be.
-        valid: (n,) bool: who answered the last request.
-        complete: Did all?
-        owed: Ids that earlier requests may still be answered by, to the number of those; who asks
-            keeps it.
-        doubted: Ids whose replies may have been to an earlier request.
-        confusable: Could a late answer pass for that to another request?
-        error: (n,) error bytes, and what the properties below show: as of each servo's last
-            good answer.
-        payload: The parameters of all replies, one behind the other.
+        length: Length of a complete answer, bytes.
+        longest: Maximum length of an answer, bytes.
+        valid: (n,) bool: servos that answered the last request.
+        complete: Whether all servos answered the last request.
+        owed: Maps id to the number of earlier requests that it may still answer; set by
+            `BusTransactions`.
+        doubted: Ids whose replies may belong to an earlier request.
+        confusable: Whether a late answer could be taken for the answer to another request.
+        error: (n,) error bytes of each servo's last valid reply.
+        payload: Parameters of each servo's last valid reply, concatenated.
     """
 
     request: bytes
@@ -59,7 +58,7 @@ class CyclicRead(ABC):
         self.payload: Bytes = np.zeros(self._ends[-1], dtype=np.uint8)
 
     def column(self, offset: int, dtype: str, rows: slice = slice(None)) -> npt.NDArray[np.int64]:
-        """Return a live view of one field of the chosen rows, which must be of equal size.
+        """Return a live view of one field of the chosen rows, whose spans must have equal size.
 
         `offset` counts bytes from the start of each span; the view is updated by `decode`.
         """
@@ -69,11 +68,11 @@ class CyclicRead(ABC):
         return np.ndarray((len(chosen),), dtype, self.payload.data, start, (size,))
 
     def params(self, row: int) -> bytes:
-        """Return the last good parameters of one row."""
+        """Return the parameters of the last valid reply of one row."""
         return self.payload[self._ends[row] - self.spans[row].size : self._ends[row]].tobytes()
 
     def decode(self, stream: bytes) -> Mask:
-        """Take in an answer and return (n,) bool: whose reply was in it and good."""
+        """Decode an answer and return (n,) bool: servos with a valid reply in it."""
         if len(stream) == self.length and not stream.startswith(self.request):
             data = np.frombuffer(stream, dtype=np.uint8)
             if self._sound(data):
@@ -88,18 +87,18 @@ class CyclicRead(ABC):
 
     @abstractmethod
     def answered(self) -> int:
-        """Return how many bytes the good replies to the last request had."""
+        """Return the number of bytes of the valid replies to the last request."""
 
     @abstractmethod
     def _sound(self, data: Bytes) -> bool:
-        """Return whether an answer of the full length is what it should be, all of it."""
+        """Return whether an answer of length `length` fits the layout and its checksums."""
 
     @abstractmethod
     def _statuses(self, stream: bytes) -> Iterable[Status]:
-        """Return the good replies in a dirty stream."""
+        """Return the valid replies in a stream that may contain other bytes."""
 
     def _salvage(self, stream: bytes) -> None:
-        """Take in the good replies of a stream in which our own request may have come back."""
+        """Decode the valid replies of a stream that may contain an echo of the request."""
         self.valid.fill(False)
         stream = stream.replace(self.request, b"")
         found = self._told_apart(self._statuses(stream))
@@ -120,9 +119,9 @@ class CyclicRead(ABC):
         self.valid[row] = True
 
     def _told_apart(self, items: Iterable[Status]) -> list[Status]:
-        """Return the frames that are as long as was asked; others lose their id, and keep a turn.
+        """Return the replies; one with an unexpected id or length gets the id `NOBODY`.
 
-        Where one servo was asked they are left out: they can only be somebody's late answer.
+        If only one servo was asked, such replies are dropped: they can only be late answers.
         """
         found = []
         for item in items:
@@ -135,7 +134,7 @@ class CyclicRead(ABC):
 
 
 class CyclicWrite(Protocol):
-    """A sync write of one register, built once and patched each time.
+    """A sync write of one register; the frames are built once, then only patched.
 
     Attributes:
         values: (n,) integers: assign to it, then call `frames`.

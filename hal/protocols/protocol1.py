@@ -1,12 +1,12 @@
-"""Protocol 1 of Dynamixel and of Feetech: frames to bytes, and status frames out of a dirty stream.
+"""Protocol 1 of Dynamixel and Feetech: encodes frames, and finds status packets in a stream.
 
 A frame, with a checksum that makes its bytes from the id on sum to 255::
 
     FF FF | id | length | instruction | parameters ... | checksum
 
-`length` counts from the instruction to the end. A status frame has an error byte in the place of
-the instruction. Nothing is stuffed, so FF FF may stand inside a frame, and one wrong frame in 256
-has a good checksum: whoever knows what he asked for should say so (`sizes`).
+`length` counts from the instruction to the end. A status packet has an error byte in the place of
+the instruction. There is no byte stuffing, so FF FF may occur inside a frame, and one corrupt frame
+in 256 has a valid checksum: callers should pass the expected ids and sizes (`sizes`).
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -18,11 +18,11 @@ HEADER = b"\xff\xff"
 BROADCAST = 0xFE
 LAST_ID = 0xFD
 OVERHEAD = 6
-"""Bytes of a status frame without parameters."""
+"""Length of a status packet without parameters, bytes."""
 LONGEST_FEETECH = 250
-"""Bytes of the longest frame that feetech-servo-sdk sends."""
+"""Maximum length of a frame that feetech-servo-sdk sends, bytes."""
 LONGEST_DYNAMIXEL = 143
-"""Bytes of the receive buffer of an AX-12."""
+"""Size of the receive buffer of an AX-12, bytes."""
 
 
 class Instruction(IntEnum):
@@ -34,18 +34,18 @@ class Instruction(IntEnum):
     REG_WRITE = 0x04
     ACTION = 0x05
     FACTORY_RESET = 0x06
-    """Feetech calls it recovery."""
+    """Called "recovery" by Feetech."""
     RESET_TURNS = 0x0A
-    """Feetech: forget whole turns."""
+    """Feetech only: resets the multi-turn count."""
     SYNC_READ = 0x82
-    """Feetech."""
+    """Feetech only."""
     SYNC_WRITE = 0x83
     BULK_READ = 0x92
-    """Dynamixel MX."""
+    """Dynamixel MX only."""
 
 
 def frame(id: int, instruction: int, params: bytes = b"") -> bytes:
-    """Return a whole frame; a status frame has its error byte for `instruction`.
+    """Return a complete frame; for a status packet, `instruction` is the error byte.
 
     >>> frame(1, Instruction.PING).hex(" ")
     'ff ff 01 02 01 fb'
@@ -55,12 +55,12 @@ def frame(id: int, instruction: int, params: bytes = b"") -> bytes:
 
 
 def status(id: int, params: bytes = b"", error: int = 0) -> bytes:
-    """Return the frame that servo `id` answers with."""
+    """Return a status packet of servo `id`."""
     return frame(id, error, params)
 
 
 def ping(id: int) -> bytes:
-    """Return the frame that asks one servo whether it is there."""
+    """Return the frame that pings one servo."""
     return frame(id, Instruction.PING)
 
 
@@ -80,17 +80,17 @@ def reg_write(id: int, address: int, data: bytes) -> bytes:
 
 
 def action(id: int = BROADCAST) -> bytes:
-    """Return the frame that carries out stored writes."""
+    """Return the frame that executes stored writes."""
     return frame(id, Instruction.ACTION)
 
 
 def factory_reset(id: int) -> bytes:
-    """Return the frame that puts all registers back (Feetech: recovery)."""
+    """Return the frame that resets all registers to the factory defaults (Feetech: recovery)."""
     return frame(id, Instruction.FACTORY_RESET)
 
 
 def reset_turns(id: int) -> bytes:
-    """Return Feetech's frame that makes a servo forget whole turns."""
+    """Return Feetech's frame that resets the multi-turn count of a servo."""
     return frame(id, Instruction.RESET_TURNS)
 
 
@@ -108,7 +108,7 @@ def sync_write(data: Mapping[int, bytes], address: int, size: int) -> bytes:
 def split_sync_write(
     data: Mapping[int, bytes], address: int, size: int, longest: int
 ) -> list[bytes]:
-    """Return as many sync writes as it takes for none to have more than `longest` bytes."""
+    """Return sync writes for `data`, split so that each has at most `longest` bytes."""
     items = list(data.items())
     each = (longest - OVERHEAD - 2) // (size + 1)
     return [
@@ -117,7 +117,7 @@ def split_sync_write(
 
 
 def bulk_read(spans: Iterable[Span]) -> bytes:
-    """Return Dynamixel's frame that reads other registers of each servo. No id may come twice."""
+    """Return Dynamixel's bulk read: different registers per servo. Ids must be unique."""
     body = b"".join(bytes([span.size, span.id, span.address]) for span in spans)
     return frame(BROADCAST, Instruction.BULK_READ, b"\x00" + body)
 
@@ -125,16 +125,16 @@ def bulk_read(spans: Iterable[Span]) -> bytes:
 def salvage(
     stream: bytes, sizes: Mapping[int, int] | None = None, others: Collection[int] = ()
 ) -> Iterator[Status]:
-    """Yield every good status frame of `stream`, whatever lies between them.
+    """Yield every valid status packet in `stream`, whatever bytes lie between them.
 
-    Never raises. What is no frame costs its header only: the search goes on one byte behind it, so
-    a corrupt length swallows nothing.
+    Never raises. After bytes that are not a valid packet the search continues one byte after their
+    header, so a corrupt length does not skip valid packets.
 
     Args:
         stream: The bytes.
-        sizes: Id to the bytes of parameters it was asked for; anything else is no frame. By
-            default every id and every length may be.
-        others: The bytes of parameters that a reply under any other id may have.
+        sizes: Maps id to the number of parameter bytes requested; packets that differ are not
+            accepted. By default every id and length is accepted.
+        others: Numbers of parameter bytes that are accepted with any other id.
     """
     at = stream.find(HEADER)
     while 0 <= at <= len(stream) - OVERHEAD:

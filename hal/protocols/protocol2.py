@@ -1,12 +1,12 @@
-"""Dynamixel protocol 2: instruction frames to bytes, and status frames out of a dirty stream.
+"""Dynamixel protocol 2: encodes instruction frames, and finds status packets in a stream.
 
 A frame, with the checksum over everything before it::
 
     FF FF FD 00 | id | length (2) | instruction | parameters ... | CRC (2)
 
-`length` counts from the instruction to the end. A status frame has instruction 0x55 and an error
+`length` counts from the instruction to the end. A status packet has instruction 0x55 and an error
 byte before its parameters. Inside instruction and parameters every FF FF FD is followed by one
-more FD ("stuffing"), so that no payload looks like a header. All numbers are little-endian.
+more FD (byte stuffing), so that no payload looks like a header. All numbers are little-endian.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -19,9 +19,9 @@ HEADER = b"\xff\xff\xfd\x00"
 BROADCAST = 0xFE
 LAST_ID = 0xFC
 OVERHEAD = 11
-"""Bytes of a status frame without parameters."""
+"""Length of a status packet without parameters, bytes."""
 LONGEST = 1024
-"""No servo of the family sends a longer frame; a length above it is noise."""
+"""Maximum length of a frame from a servo, bytes; a larger length field is noise."""
 ALERT = 0x80
 """Bit of the error byte: the servo's hardware error register is not 0."""
 
@@ -49,7 +49,7 @@ class Instruction(IntEnum):
 
 
 class Status(NamedTuple):
-    """One answer: who, the error byte, and the parameters without stuffing."""
+    """One status packet: id, error byte, and the unstuffed parameters."""
 
     id: int
     error: int
@@ -57,7 +57,7 @@ class Status(NamedTuple):
 
 
 class Span(NamedTuple):
-    """A run of registers of one servo."""
+    """A range of consecutive registers of one servo; `size` is in bytes."""
 
     id: int
     address: int
@@ -65,17 +65,17 @@ class Span(NamedTuple):
 
 
 def stuff(payload: bytes) -> bytes:
-    """Return `payload` with an FD behind every FF FF FD."""
+    """Return `payload` with an FD inserted after every FF FF FD."""
     return payload.replace(_PATTERN, _STUFFED)
 
 
 def unstuff(payload: bytes) -> bytes:
-    """Return the inverse of `stuff`."""
+    """Return `payload` without the bytes that `stuff` inserts."""
     return payload.replace(_STUFFED, _PATTERN)
 
 
 def frame(id: int, instruction: int, params: bytes = b"") -> bytes:
-    """Return a whole frame, stuffed and with its CRC.
+    """Return a complete frame, stuffed and with its CRC.
 
     >>> frame(1, Instruction.PING).hex(" ")
     'ff ff fd 00 01 03 00 01 19 4e'
@@ -86,12 +86,12 @@ def frame(id: int, instruction: int, params: bytes = b"") -> bytes:
 
 
 def status(id: int, params: bytes = b"", error: int = 0) -> bytes:
-    """Return the frame that servo `id` answers with."""
+    """Return a status packet of servo `id`."""
     return frame(id, Instruction.STATUS, bytes([error]) + params)
 
 
 def ping(id: int = BROADCAST) -> bytes:
-    """Return the frame that asks one servo, or all, who is there."""
+    """Return the frame that pings one servo, or all with a broadcast."""
     return frame(id, Instruction.PING)
 
 
@@ -111,17 +111,17 @@ def reg_write(id: int, address: int, data: bytes) -> bytes:
 
 
 def action(id: int = BROADCAST) -> bytes:
-    """Return the frame that carries out stored writes."""
+    """Return the frame that executes stored writes."""
     return frame(id, Instruction.ACTION)
 
 
 def reboot(id: int) -> bytes:
-    """Return the frame that restarts a servo."""
+    """Return the frame that reboots a servo."""
     return frame(id, Instruction.REBOOT)
 
 
 def factory_reset(id: int, keep: int = 0x02) -> bytes:
-    """Return the reset frame; `keep` 0xFF nothing, 0x01 the id, 0x02 id and baud rate."""
+    """Return the reset frame; `keep`: 0xFF keeps nothing, 0x01 the id, 0x02 id and baud rate."""
     return frame(id, Instruction.FACTORY_RESET, bytes([keep]))
 
 
@@ -138,16 +138,16 @@ def sync_write(data: Mapping[int, bytes], address: int, size: int) -> bytes:
 
 
 def bulk_read(spans: Iterable[Span]) -> bytes:
-    """Return the frame that reads other registers of each servo. No id may come twice."""
+    """Return the bulk read frame: different registers per servo. Ids must be unique."""
     body = b"".join(bytes([span.id]) + _range(span.address, span.size) for span in spans)
     return frame(BROADCAST, Instruction.BULK_READ, body)
 
 
 def salvage(stream: bytes, longest: int = LONGEST) -> Iterator[Status]:
-    """Yield every good status frame of `stream`, whatever lies between them.
+    """Yield every valid status packet in `stream`, whatever bytes lie between them.
 
-    Never raises. A length that cannot be, a cut frame or a bad CRC costs that frame only: the
-    search goes on behind its header, so a corrupt length swallows nothing.
+    Never raises. After an impossible length, a truncated frame or a wrong CRC the search continues
+    after that header, so a corrupt length does not skip valid packets.
     """
     at = stream.find(HEADER)
     while at >= 0:
@@ -169,11 +169,11 @@ def _is_status(stream: bytes, at: int, end: int, longest: int) -> bool:
 
 
 def salvage_fast(stream: bytes, size: int, ids: Iterable[int]) -> Iterator[Status]:
-    """Yield the good blocks of an answer to a fast sync read of `size` bytes a servo.
+    """Yield the valid blocks of an answer to a fast sync read of `size` bytes per servo.
 
-    All servos answer in one frame without stuffing; each block ends in the CRC of the frame so
-    far. Going on from the CRC that the block before it sent checks every block by itself, so one
-    bad block costs one servo. A block under an id that is not the next of `ids` is not believed.
+    All servos answer in one frame without stuffing; each block ends with the CRC of the frame so
+    far. Each CRC is computed from the one that the previous block sent, so that one corrupt block
+    loses only one servo. A block whose id is not the next of `ids` is rejected.
     """
     width = size + 4
     at = stream.find(HEADER + bytes([BROADCAST]))

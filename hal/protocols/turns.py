@@ -1,11 +1,11 @@
-"""Which good replies answer the last request, and not another one or nobody's.
+"""Selects the replies that belong to the last request, and rejects stale or wrong ones.
 
-A servo answers once, in its turn. Two frames with one id, or one out of its turn, mean that a wrong
-id has passed the checksum. What an earlier request is still owed comes first, since adapters keep
-the order of bytes: a run of such replies before the order begins anew is stale.
+Each servo answers once, in the order of the request. Two replies with the same id, or a reply out
+of order, show that a wrong id has passed the checksum. Late replies to an earlier request come
+first, since adapters keep the order of bytes: a run of them before the order restarts is stale.
 
-Replies of ids that were not asked are among `items` wherever a protocol can tell them from noise:
-somebody has sent each of them in a turn of his own.
+Replies with ids that were not asked are among `items` if the protocol can tell them from noise:
+each of them was sent by a servo in a position of the order of its own.
 """
 
 from collections import Counter
@@ -17,19 +17,19 @@ from windup.hal.protocols.protocol2 import Status
 def newest(
     items: Sequence[Status], rows: Mapping[int, int], owed: Mapping[int, int]
 ) -> list[Status]:
-    """Return the replies that are certainly not those to an earlier request.
+    """Return the replies that certainly do not belong to an earlier request.
 
-    Behind a stale reply come those that waited for it, to the last. With a newer one among them
-    the order would have begun anew; without any, nobody may have heard the new request. And where
-    fewer answers came than are owed, the last one is no newer than the others.
+    A stale reply is followed by all the replies that waited for it, up to the last. If newer
+    replies were among them, the order would have restarted; if there are none, the servos may not
+    have received the new request. If fewer answers came than are owed, the last may be stale too.
 
     Args:
-        items: Good frames, in the order in which they came.
-        rows: The ids that were asked, to their turns.
-        owed: Ids that have not answered earlier requests, to the number of those.
+        items: Valid status packets, in the order of arrival.
+        rows: Maps each requested id to its position in the request.
+        owed: Maps id to the number of earlier requests that it has not answered.
 
     Returns:
-        The last answer, or what there is of it; nothing where all of it may be an earlier one.
+        The replies of the last answer; empty if all of them may belong to an earlier one.
     """
     runs = _runs(items, rows)
     stale = 0
@@ -44,7 +44,7 @@ def newest(
 
 
 def _runs(items: Sequence[Status], rows: Mapping[int, int]) -> list[list[Status]]:
-    """Return the items in runs of rising turns; who was not asked has none."""
+    """Split the items into runs of rising position; ids that were not asked have no position."""
     runs: list[list[Status]] = [[]]
     last = -1
     for item in items:
@@ -58,16 +58,16 @@ def _runs(items: Sequence[Status], rows: Mapping[int, int]) -> list[list[Status]
 
 
 def _asked(items: Sequence[Status], rows: Mapping[int, int]) -> list[int]:
-    """Return the ids of those who were asked."""
+    """Return the ids of the items that were asked."""
     return [item.id for item in items if item.id in rows]
 
 
 def in_turn(items: Sequence[Status], rows: Mapping[int, int]) -> list[Status]:
-    """Return the replies that came once and in their turn; for the arguments see `newest`.
+    """Return the replies that came once and in order; for the arguments see `newest`.
 
-    A reply has its turn where at least as many ids were asked before it as frames came before it,
-    and as many behind it, and between it and the others that have theirs. What two longest choices
-    of such replies do not agree on is left out.
+    A reply is in order if at least as many ids were asked before it as frames came before it, the
+    same holds after it, and between it and the other accepted replies. If there are several longest
+    selections of such replies, only those common to all are returned.
     """
     frames = [item for at, item in enumerate(items) if at == 0 or item != items[at - 1]]
     often = Counter(item.id for item in frames)
@@ -82,7 +82,7 @@ def in_turn(items: Sequence[Status], rows: Mapping[int, int]) -> list[Status]:
 
 
 def _longest(places: list[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Return what all longest runs of (frame, turn) share in which turns keep up with frames."""
+    """Return the elements common to all longest chains of (frame, position) under `_follows`."""
     before = [0] * len(places)
     behind = [0] * len(places)
     for here, place in enumerate(places):

@@ -1,1 +1,1 @@
-"""Joints on servo buses: readings, torque, settings and errors of the servos behind them."""
+"""Joints on servo buses: readings, torque, settings and errors of their servos."""

@@ -1,4 +1,4 @@
-"""One bus of a robot as it comes and goes: its port may be unplugged and plugged in again."""
+"""Connection to one bus of a robot, which survives unplugging and replugging of its port."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,27 +22,27 @@ from windup.hal.torque_state import TorqueState
 
 @dataclass(frozen=True)
 class BusPort:
-    """Where a bus is plugged in: a URL for `open_port`, and its bits a second."""
+    """The port of a bus: a URL for `open_port`, and its baud rate, bit/s."""
 
     url: str
     baud: int
 
 
 class BusConnection:
-    """A line of servos, its torque switch and its port.
+    """The servos of a bus, their torque control and their port.
 
-    While the port is gone nothing raises and nothing is sent. When it is back, torque is switched
-    off until that has been read back, and goals are withheld until `rearmed`.
+    While the port is lost, nothing raises and nothing is sent. When it is back, torque is switched
+    off until it is read back as off, and goals are withheld until `rearmed`.
 
     Attributes:
-        line: The servos.
-        torque: Their torque.
-        check: Who of them still has it, while it should be on.
-        lost: What was seen when the port went, or None while it is there.
-        losses: How often it went.
-        heard: When the last answers were in, s.
-        calm: Is there nothing to see to, as of the last `collect`?
-        barred: Are goals withheld because the port was gone and nobody has armed the robot again?
+        line: Readout of the servos.
+        torque: Torque control of the servos.
+        check: Finds servos that have lost their torque, while it should be on.
+        lost: Description of the failure of the port, or None while it is open.
+        losses: Number of times that the port was lost.
+        heard: Time when the last answers were collected, s.
+        calm: Whether the last `collect` found all servos well, so that nothing has to be handled.
+        barred: Whether goals are withheld because the port was lost and `rearmed` not yet called.
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class BusConnection:
         self.heard, self.calm = -np.inf, False
         self.barred = self._unsure = self._dropped = False
         self._look_again = 0.0
-        # These may switch torque on by themselves.
+        # Goals to such servos may switch torque on.
         self._goal_wakes = self.line.bus.family.goal_wakes
 
     @property
@@ -68,11 +68,11 @@ class BusConnection:
 
     @property
     def clock(self) -> Clock:
-        """The clock of the port, also while that is gone."""
+        """The clock of the port, also while that is lost."""
         return self.bus.port.clock
 
     def request(self) -> None:
-        """Ask all servos; open the port again if it is gone and has come back."""
+        """Request the state of all servos; reopen a lost port if it has come back."""
         if self.lost is not None or self._unsure:
             self._revive()
         if self.lost is None:
@@ -82,7 +82,7 @@ class BusConnection:
                 self._lose(error)
 
     def collect(self, counts: Array, health: Array, error: npt.NDArray[np.uint8]) -> Mask:
-        """Return (servos,) bool: whose answers came; see `BusReadout.collect`."""
+        """Return (servos,) bool: valid and plausible answers; see `BusReadout.collect`."""
         if self.lost is None:
             try:
                 valid = self.line.collect(counts, health, error)
@@ -98,7 +98,7 @@ class BusConnection:
         return np.zeros(len(self.line.ids), dtype=bool)
 
     def read_health(self, health: Array) -> None:
-        """Read voltage and temperature of the servos into (3, n), if the port is there."""
+        """Read voltage and temperature of the servos into `health` (3, n), if the port is open."""
         if self.lost is None:
             try:
                 self.line.read_health(health)
@@ -106,7 +106,7 @@ class BusConnection:
                 self._lose(error)
 
     def send_goals(self, counts: Array) -> str | None:
-        """Send goals, (servos,) counts, to all that have their torque.
+        """Send goals (servos,), counts, to all servos from which goals are not withheld.
 
         Returns the name of the clamp that withheld some, or None.
         """
@@ -136,7 +136,7 @@ class BusConnection:
         return self.torque.on(gains)
 
     def send_off(self) -> None:
-        """Tell all servos to go off, and wait for nobody."""
+        """Send torque off to all servos, without waiting or reading back."""
         if self.lost is None:
             try:
                 self.torque.send_off()
@@ -144,8 +144,8 @@ class BusConnection:
                 self._lose(error)
 
     def switch_off(self) -> TorqueState:
-        """Switch torque off and return what was read back of the servos."""
-        self._dropped = False  # from now on it is not lost, but off
+        """Switch torque off and return the state that was read back."""
+        self._dropped = False  # torque is switched off now, not lost
         if self.lost is None:
             try:
                 return self.torque.off()
@@ -155,11 +155,11 @@ class BusConnection:
 
     @property
     def gone_for_good(self) -> bool:
-        """True when the port is gone and this process does not open it again."""
+        """Whether the port is lost and this process does not reopen it."""
         return self.lost is not None and not self._replug.returns
 
     def insist_off(self, state: TorqueState) -> TorqueState:
-        """Switch off once more who was not read as off; open a port that is back for that."""
+        """Switch off again the servos not read back as off; first try to reopen a lost port."""
         if state.all_off:
             return state
         try:
@@ -172,7 +172,7 @@ class BusConnection:
             return state
 
     def clear_watchdogs(self) -> int:
-        """Clear watchdogs that have fired; return how many had."""
+        """Clear Bus Watchdogs that have fired; return their number."""
         try:
             return self.torque.revive() if self.lost is None else 0
         except PortError as error:
@@ -180,16 +180,16 @@ class BusConnection:
             return 0
 
     def rearmed(self) -> None:
-        """Let goals through again."""
+        """Stop withholding goals after the robot was checked and configured again."""
         self.barred = self._unsure = False
         self.check.clear()
 
     def close(self) -> None:
-        """Give the port back."""
+        """Close the port."""
         self._replug.close()
 
     def _goals_but(self, withheld: Mask) -> CyclicWrite:
-        """Return what sends goals to all but some servos (servos,)."""
+        """Return the sync write of goals to all servos that are not `withheld` (servos,) bool."""
         key = withheld.tobytes()
         if self._some[0] != key:
             ids = [id for id, held in zip(self.line.ids, withheld, strict=True) if not held]
@@ -214,7 +214,7 @@ class BusConnection:
         self._replug.lose(self.clock.now())
 
     def _revive(self) -> None:
-        """Open the port, if it is back, and make sure that torque is off."""
+        """Reopen the port, if it is back, and switch torque off until it is read back as off."""
         now = self.clock.now()
         self._open(now)
         if self.lost is None and now >= self._look_again:
@@ -226,14 +226,14 @@ class BusConnection:
                 self._lose(error)
 
     def _open(self, now: float) -> None:
-        """Open the port if it is gone and has come back."""
+        """Reopen the port if it was lost and has come back."""
         port = self._replug.again(now) if self.lost is not None else None
         if port is not None:
             self.line.bus.move_to(port)
             self.lost, self._look_again = None, now
 
     def _tell_dropped(self) -> None:
-        """Once torque has read as off again, say that it was lost with the port."""
+        """Once torque is read back as off, report that it was lost with the port."""
         if self._dropped and not self._unsure:
             self._dropped = False
             self.check.lose_all(UNPLUGGED)

@@ -1,4 +1,4 @@
-"""The joints on one bus: what their answers mean, and where in the arrays they go."""
+"""Readout of the servos of one bus: decodes their answers into the arrays of all joints."""
 
 from collections import deque
 from collections.abc import Iterable, Sequence
@@ -16,9 +16,9 @@ from windup.hal.servo_bus.units import gain_groups
 from windup.hal.servos.servo_model import ServoMount
 
 LOWEST_OF = 2.0
-"""How far back `lowest_supply` looks, s."""
+"""Time window of `lowest_supply`, s."""
 ATTEMPTS = 5
-"""How often voltage and temperature are read until all have answered."""
+"""Maximum number of reads of voltage and temperature until all servos have answered."""
 
 Rows = slice | npt.NDArray[np.intp]
 
@@ -28,21 +28,21 @@ class BusReadout:
 
     Attributes:
         bus: The bus.
-        ids: Their ids.
-        rows: Their joints' indices.
-        where: The same, as a slice where they are one.
-        mounts: How they sit.
-        names: Their joints' names; () where nobody knows them.
-        reads: What a cycle asks.
-        check: The plausibility of readings; None where nobody reads them.
-        imu: The last bytes of the OpenCR, or None while there are none.
-        imu_fresh: Did they come with the last answers?
-        answered: (servos,) bool: who answered the last cycle, believably or not.
-        calm: Did all servos answer, believably, and does none signal an error or lack torque?
-        slack: (servos,) bool: whose registers said that it does not drive, or has restarted; who
-            sees to it clears it.
-        goals: Goal positions, counts.
-        gains: How stiffness is set, on which rows, and the frames that do it.
+        ids: Ids of the servos.
+        rows: Indices of their joints in the robot.
+        where: The same as an index, a slice if possible.
+        mounts: Mounts of the servos.
+        names: Names of their joints; () if unknown.
+        reads: Selects the read of each cycle.
+        check: Plausibility check of the readings; None if readings are not collected.
+        imu: The last bytes read from the OpenCR, or None before any.
+        imu_fresh: Whether they came with the last answers.
+        answered: (servos,) bool: servos that answered the last cycle, plausibly or not.
+        calm: Whether all servos answered plausibly, and none signals an error or lacks torque.
+        slack: (servos,) bool: servos whose registers showed no torque, or a restart; cleared by
+            `TorqueCheck`.
+        goals: Sync write of goal positions, counts.
+        gains: Gain register, rows of its servos, and the sync write, for each gain register.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class BusReadout:
         self.bus, self.mounts, self.check = bus, tuple(mounts), check
         self.ids = tuple(mount.id for mount in mounts)
         self.rows: npt.NDArray[np.intp] = np.array(rows, dtype=np.intp)
-        # One bus in joint order is the rule, and a slice costs less than an index.
+        # Usually there is one bus in joint order; a slice is faster than an index array.
         whole = self.rows.tolist() == list(range(len(self.ids)))
         self.where: Rows = slice(len(self.ids)) if whole else self.rows
         self.names, self.board = tuple(names), board
@@ -77,28 +77,28 @@ class BusReadout:
         self._asked = self.reads.next()
 
     def who(self, rows: Iterable[int]) -> str:
-        """Return the names of some servos, as "l_knee (id 13)" or "id 13"."""
+        """Return the names of the servos at `rows`, such as "l_knee (id 13)" or "id 13"."""
         if not self.names:
             return ", ".join(f"id {self.ids[row]}" for row in rows)
         return ", ".join(f"{self.names[row]} (id {self.ids[row]})" for row in rows)
 
     def goals_of(self, ids: Sequence[int]) -> CyclicWrite:
-        """Return what sends goals, counts, to some of the servos."""
+        """Return a sync write of goal positions, counts, to some of the servos."""
         family = self.bus.family
         return family.dialect.write(ids, family.registers["goal_position"])
 
     def request(self) -> None:
-        """Ask all servos of the line, and the board."""
+        """Request the state of all servos of the bus, and of the board."""
         self._asked = self.reads.next()
         self.bus.exchange.request(self._asked.read, rest=True)
 
     def collect(self, counts: Array, health: Array, error: npt.NDArray[np.uint8]) -> Mask:
-        """Take in the answers and return whose came, in the order of `rows`.
+        """Collect the answers; return (servos,) bool: valid and plausible ones, in order of `rows`.
 
         Args:
-            counts: (3, n) position, velocity and current of all joints; fresh ones are put there.
-            health: (3, n) voltage V, temperature degrees C, and when they were read, s; the same.
-            error: (n,) error bytes; the same.
+            counts: (3, n) position, velocity and current of all joints; updated by new readings.
+            health: (3, n) voltage V, temperature degrees C, and their time, s; updated likewise.
+            error: (n,) error bytes; updated likewise.
         """
         asked, servos = self._asked, len(self.ids)
         answered = self.bus.exchange.collect()
@@ -119,16 +119,16 @@ class BusReadout:
         return believed
 
     def errors(self, error: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
-        """Return the (servos,) error bytes of the line out of those of all joints (n,)."""
+        """Return the (servos,) error bytes of this bus from those of all joints (n,)."""
         return error[self.where]
 
     def lowest_supply(self) -> float:
-        """Return the lowest voltage that any servo read a moment ago, V; nan without a reading."""
+        """Return the lowest supply read in the last `LOWEST_OF` s, V; NaN without a reading."""
         since = self.bus.port.clock.now() - LOWEST_OF
         return min((volts for time, volts in self._volts if time >= since), default=np.nan)
 
     def read_health(self, health: Array) -> None:
-        """Read voltage and temperature of all servos into (3, n), as of `collect`, out of turn."""
+        """Read voltage and temperature of all servos into `health` (3, n), outside the cycle."""
         asked = self.reads.health()
         for _ in range(ATTEMPTS):
             self.bus.exchange.request(asked.read)
@@ -139,7 +139,7 @@ class BusReadout:
                 break
 
     def forget(self) -> None:
-        """Take nothing for granted: servos may have been turned by hand, or be missing."""
+        """Reset the plausibility check and the fast read: servos may have moved, or be missing."""
         self.reads.broken_chain = True
         self.calm = self.imu_fresh = False
         if self.check is not None:
@@ -168,14 +168,14 @@ class BusReadout:
         return valid
 
     def _records(self, asked: Asked) -> npt.NDArray[np.void]:
-        """Return (servos,) records of the block."""
+        """Return the (servos,) records of the block in the last answers."""
         payload, block = asked.read.payload, asked.block
         if asked.state_at is not None:
             payload = payload.take(asked.state_at)
         return payload[: len(self.ids) * block.size].view(block.dtype)
 
     def _take_health(self, longer: Longer, fresh: Mask, health: Array) -> None:
-        """Put voltage and temperature where they belong."""
+        """Store voltage and temperature of the servos that are `fresh`."""
         rows = self.rows[longer.rows][fresh]
         volts = longer.volts[fresh] * self._volt
         health[0, rows] = volts
@@ -184,7 +184,7 @@ class BusReadout:
         self._volts.append((now, float(volts.min())))
 
     def _look_at_torque(self, longer: Longer, fresh: Mask) -> None:
-        """Note who does not drive, or has restarted, where that was read."""
+        """Mark servos as slack whose torque registers show no torque, or a restart."""
         for counts, restarted in longer.torque:
             gone = fresh & ((counts == 0) | (counts == restarted))
             if gone.any():

@@ -1,4 +1,4 @@
-"""What the servos of a robot last said, and the observation that it makes."""
+"""Last readings of the servos of a robot, and the observation computed from them."""
 
 from collections.abc import Sequence
 
@@ -14,16 +14,16 @@ from windup.hal.servo_bus.units import Units
 
 
 class JointReadings:
-    """The last answers of n servos, of which each bus fills in its own.
+    """The last readings of n servos; each bus fills in those of its own servos.
 
     Args:
-        units: Of the servos.
-        couplings: Which joints two servos move together.
-        imu: An IMU on a port of its own; else it is a board's on one of the buses, or none.
-        contacts: Number of contact sensors that observations have room for; none is measured.
+        units: Unit conversion of the servos.
+        couplings: Joints that are driven by two servos together.
+        imu: An IMU on its own port; if None, that of an OpenCR on one of the buses, if any.
+        contacts: Number of contact sensors in observations; their forces are always 0.
 
     Attributes:
-        answered: (n,) when each servo last answered, s.
+        answered: (n,) time when each servo last answered, s.
     """
 
     def __init__(
@@ -38,7 +38,7 @@ class JointReadings:
         self.answered: Array = np.full(n, -np.inf)
 
     def collect(self, link: BusConnection, error: npt.NDArray[np.uint8]) -> None:
-        """Take in the answers on one bus, error bytes into `error` (n,), and date them."""
+        """Collect and timestamp the answers on one bus; error bytes are stored in `error` (n,)."""
         valid: Mask = link.collect(self._counts, self._health, error)
         line = link.line
         self.answered[line.where if line.calm else line.rows[valid]] = link.heard
@@ -46,12 +46,12 @@ class JointReadings:
             self._imu_at = link.heard
 
     def read_health(self, links: Sequence[BusConnection]) -> None:
-        """Read voltage and temperature of all servos at once; the cycle refreshes them."""
+        """Read voltage and temperature of all servos now; later the cycle refreshes them."""
         for link in links:
             link.read_health(self._health)
 
     def observe(self, now: float, links: Sequence[BusConnection]) -> Observation:
-        """Return the state of the joints as of `now` s."""
+        """Return the observation for the time `now`, s."""
         position, velocity, torque = self._units.si(self._counts)
         voltage, temperature, measured = self._health.copy()
         answered = self.answered
@@ -64,7 +64,7 @@ class JointReadings:
         return Observation(now, state, self.imu_state(now, links), self._contacts, None)
 
     def imu_state(self, now: float, links: Sequence[BusConnection]) -> ImuState | None:
-        """Return what the IMU last said as of `now` s, or None where there is none."""
+        """Return the last IMU sample with its age at `now` s, or None without an IMU."""
         if self._imu is not None:
             return self._imu.state(now)
         for link in links:

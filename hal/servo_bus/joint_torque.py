@@ -1,4 +1,4 @@
-"""The torque of a robot's joints, over all of its buses and through their linkages."""
+"""Torque of a robot's joints, over all of its buses and couplings."""
 
 from collections.abc import Sequence
 
@@ -13,29 +13,29 @@ from windup.hal.torque_loss import SILENT, Loss
 from windup.hal.torque_state import TorqueState
 
 BOOT_TIME = 0.5
-"""How long a servo that is silent may boot until it can be read as off, s (assumed)."""
+"""Maximum boot time of a silent servo until it can be read back as off, s (assumed)."""
 PAUSE = 20e-3
-"""Between two attempts to switch off who was silent, s."""
+"""Time between two attempts to switch off silent servos, s."""
 
 
 class JointTorque:
-    """What the torque switches of some buses mean for the joints; two servos may move one.
+    """Switches and reports the torque of the joints; a coupled joint depends on two servos.
 
     Args:
         joints: The joints.
-        couplings: Which of them two servos move together.
+        couplings: Joints that are driven by two servos together.
     """
 
     def __init__(self, joints: Joints, couplings: Couplings) -> None:
         self._joints, self._couplings = joints, couplings
 
     def on(self, links: Sequence[BusConnection], gains: Array, heartbeat: Heartbeat) -> TorqueState:
-        """Switch torque on at the present pose, P registers (n,) `gains`.
+        """Switch torque on at the present pose, with P registers `gains` (n,).
 
         Raises:
-            HardwareError: A servo cannot be read or does not take it, or the robot has to be armed
-                again, because a port was gone or a joint has lost its torque. Torque has been
-                switched off everywhere; the message says whether that could be read back.
+            HardwareError: A servo cannot be read or switched on, or the robot has to be rearmed,
+                because a port or the torque of a joint was lost. Torque has been switched off
+                everywhere; the message says whether that could be read back.
         """
         try:
             self._check_armable(links)
@@ -47,9 +47,10 @@ class JointTorque:
             raise type(error)(f"{error}; torque {now}") from None
 
     def off(self, links: Sequence[BusConnection], heartbeat: Heartbeat) -> TorqueState:
-        """Switch torque off and return what was read back.
+        """Switch torque off and return the state that was read back.
 
-        Whoever answers is off and read at once; then the silent ones are given time to boot.
+        Servos that answer are switched off and read back first; then silent ones are retried for
+        `BOOT_TIME`, as they may be booting.
         """
         for link in links:
             link.send_off()
@@ -72,7 +73,7 @@ class JointTorque:
             )
 
     def losses(self, links: Sequence[BusConnection]) -> dict[str, Loss]:
-        """Return joint name to how it has lost its torque since the robot was armed."""
+        """Map joint name to how it lost its torque since the robot was armed."""
         lost: dict[str, Loss] = {}
         for link in links:
             for row, loss in link.check.losses.items():
@@ -80,7 +81,7 @@ class JointTorque:
         return lost
 
     def doubts(self, links: Sequence[BusConnection]) -> dict[str, str]:
-        """Return the joints of which nobody knows whether they have torque, and what to do."""
+        """Map joint name to the remedy, for joints whose torque state is unknown."""
         doubts: dict[str, str] = {}
         for link in links:
             if link.lost is not None:
@@ -92,15 +93,15 @@ class JointTorque:
         return doubts
 
     def _moved_by(self, link: BusConnection, rows: Sequence[int]) -> list[str]:
-        """Return the names of the joints that the servos in some `rows` of a line move."""
+        """Return the names of the joints that are driven by the servos at `rows` of a bus."""
         servos: Mask = np.zeros(len(self._joints), dtype=bool)
         servos[link.line.rows[list(rows)]] = True
         return np.array(self._joints.names)[self._couplings.any(servos)].tolist()
 
     def _joined(self, links: Sequence[BusConnection], states: Sequence[TorqueState]) -> TorqueState:
-        """Return the torque of the joints from that of the servos of each bus.
+        """Return the torque state of the joints from those of the servos of each bus.
 
-        A joint that two servos move is on, or unknown, if one of them is.
+        A coupled joint is on if one of its servos is on, and else unknown if one is unknown.
         """
         on: Mask = np.zeros(len(self._joints), dtype=bool)
         unknown: Mask = np.zeros_like(on)
@@ -111,6 +112,6 @@ class JointTorque:
 
 
 def _worth_waiting(links: Sequence[BusConnection], states: Sequence[TorqueState]) -> bool:
-    """Return whether a servo that is not known to be off may still answer this process."""
+    """Return whether a servo that is not read back as off may still answer this process."""
     pairs = zip(links, states, strict=True)
     return any(not state.all_off and not link.gone_for_good for link, state in pairs)

@@ -1,4 +1,4 @@
-"""Which read a cycle of one bus sends: the state each time, and now and then more of a servo."""
+"""Selects the read of each cycle of a bus: the state, or periodically a longer one with health."""
 
 from collections.abc import Sequence
 from typing import Any, NamedTuple
@@ -14,24 +14,25 @@ from windup.hal.protocols.protocol2 import Span
 from windup.hal.servos.servo_model import ServoModel
 
 HEALTH_EVERY = 10
-"""Voltage and temperature are read every so many cycles, and every `CHECK_EVERY`-th time torque."""
+"""Period of reads with voltage and temperature, cycles."""
 CHECK_EVERY = 4
+"""Period of reads that include torque, in units of `HEALTH_EVERY` cycles."""
 ALONE_EVERY = 5
-"""Where one servo can be read further on than the others, it is another one's turn so often."""
+"""Period of longer reads of one servo each, in turn, if the family allows it, cycles."""
 
 
 Column = npt.NDArray[np.int64]
 
 
 class Longer(NamedTuple):
-    """What a read says of some servos beyond their state, as live views.
+    """Live views of the data that a read contains beyond the state, for some servos.
 
     Attributes:
-        rows: The servos.
-        volts: (rows,) counts of the voltage.
-        degrees: (rows,) counts of the temperature.
-        torque: Each register that says whether they drive, (rows,) counts, and what a restart
-            leaves in it, -1 where that says nothing. Empty where none was read.
+        rows: Rows of the servos.
+        volts: (rows,) voltage, counts.
+        degrees: (rows,) temperature, counts.
+        torque: For each torque register, its (rows,) counts and its value after a restart (-1 if
+            it does not detect restarts). Empty if they are not read.
     """
 
     rows: slice
@@ -41,7 +42,7 @@ class Longer(NamedTuple):
 
     @classmethod
     def of(cls, read: CyclicRead, rows: slice, begin: int, family: Family) -> "Longer":
-        """Return what `read` will say of `rows`, which it reads from the address `begin` on."""
+        """Return the views of `rows` in `read`, which reads them from the address `begin` on."""
 
         def column(name: str) -> Column:
             register = family.registers[name]
@@ -55,14 +56,14 @@ class Longer(NamedTuple):
 
 
 class Asked(NamedTuple):
-    """One of the reads of a line.
+    """One of the reads of a bus.
 
     Attributes:
         read: The read.
-        state_at: Which bytes of its payload are the servos' state; None where they are its
-            beginning.
-        block: What is read of each servo.
-        longer: What is read of some beyond that, or None.
+        state_at: Indices of the bytes of its payload that contain the servos' states; None if
+            they are its first bytes.
+        block: The block read of each servo.
+        longer: Views of further data of some servos, or None.
     """
 
     read: CyclicRead
@@ -72,17 +73,17 @@ class Asked(NamedTuple):
 
 
 class LineReads:
-    """The reads of one line of servos, in turn.
+    """The reads of the servos of one bus, one per cycle.
 
-    A cycle is one transaction: the common read of the family, the fast one where all servos know
-    it, one read a servo where they know none. On a bus with an OpenCR it is a bulk read of servos
-    and board. Now and then servos are read further on, to voltage and temperature, and from
-    further ahead, where they say whether torque is on: one where the protocol lets a read differ
-    between servos, else all.
+    A cycle is one transaction: the common read of the family, the fast one if all servos support
+    it, or one read per servo if they support none. On a bus with an OpenCR it is a bulk read of
+    servos and board. Periodically a longer span is read, with voltage and temperature, and with
+    the torque registers before the state: of one servo if the protocol allows different spans per
+    servo, else of all.
 
     Attributes:
-        broken_chain: Was somebody missing? In a fast answer all are silent behind a missing one:
-            it is left alone until all are back.
+        broken_chain: Whether a servo is missing. In a fast read all servos after a missing one are
+            silent, so it is not used until all answer again.
     """
 
     def __init__(
@@ -100,7 +101,7 @@ class LineReads:
         self.broken_chain = False
 
     def probe_fast(self) -> bool:
-        """Use the fast read from now on if all servos know it."""
+        """Use the fast read from now on if all servos support it; return whether they do."""
         if self._board is None and self._bus.probe_fast(self._ids):
             self._fast = self._plain(fast=True)
             if not self._bus.family.check_alone:
@@ -108,7 +109,7 @@ class LineReads:
         return self._fast is not None
 
     def next(self) -> Asked:
-        """Return what this cycle asks, the first one before any."""
+        """Return the read of the next cycle."""
         self._cycle += 1
         fast = self._fast if not self.broken_chain else None
         if self._cycle % self._every:
@@ -117,7 +118,7 @@ class LineReads:
         return health[self._cycle // self._every % len(health)]
 
     def health(self) -> Asked:
-        """Return the read of all servos, state and health, that is no part of the cycle."""
+        """Return a read of state and health of all servos, for use outside the cycle."""
         state, check = self._blocks.state, self._blocks.check
         end = check.address + check.size
         return self._of_all(Block(state.address, end - state.address, state.state), False)
@@ -127,7 +128,7 @@ class LineReads:
         return Asked(self._read(self._spans(block), fast), None, block)
 
     def _take_turns(self, fast: bool = False) -> list[Asked]:
-        """Return the longer reads, in the order in which they take turns."""
+        """Return the longer reads, in the order of their use."""
         health, check = self._blocks.health, self._blocks.check
         if health is None:
             return [self._alone(row) for row in range(len(self._ids))]
@@ -135,13 +136,13 @@ class LineReads:
         return [short] * (CHECK_EVERY - 1) + [long]
 
     def _of_all(self, block: Block, fast: bool) -> Asked:
-        """Return a read of all servos that reaches further than the state."""
+        """Return a read of all servos with a `block` longer than the state."""
         read = self._read(self._spans(block), fast)
         everybody = slice(0, len(self._ids))
         return Asked(read, None, block, Longer.of(read, everybody, block.address, self._bus.family))
 
     def _alone(self, row: int) -> Asked:
-        """Return the read in which one servo is read from its torque to its temperature."""
+        """Return a read in which one servo is read from its torque to its temperature registers."""
         state, check = self._blocks.state, self._blocks.check
         spans = self._spans(state)
         spans[row] = check.span(self._ids[row])
@@ -158,7 +159,7 @@ class LineReads:
 
 
 def _state_of(spans: Sequence[Span], state: Block) -> npt.NDArray[Any]:
-    """Return which bytes of a payload of uneven `spans` are the `state` of each."""
+    """Return the indices of the bytes of each servo's `state` in a payload of uneven `spans`."""
     starts = np.cumsum([0, *(span.size for span in spans[:-1])])
     ahead = np.array([state.address - span.address for span in spans])
     return ((starts + ahead)[:, None] + np.arange(state.size)).ravel()

@@ -1,6 +1,7 @@
-"""Registers of the servos of one line: written to all and read back, until everybody has them."""
+"""Register access to the servos of one bus: written to several, read back, and retried."""
 
 from collections.abc import Sequence
+from shlex import quote
 
 import numpy as np
 import numpy.typing as npt
@@ -12,14 +13,14 @@ from windup.hal.servo_bus.bus_readout import BusReadout, Rows
 
 ATTEMPTS = 8
 BACKOFF = 4e-3
-"""How much longer to wait before each further attempt, s: adapters hold answers back for 16 ms."""
+"""Increase of the pause before each further attempt, s: adapters may delay answers by 16 ms."""
 
 
 class LineRegisters:
-    """One register at a time of some of the servos of a line; lost frames are sent again.
+    """Reads and writes one register of several servos of a bus; lost frames are sent again.
 
     Args:
-        line: The line.
+        line: Readout of the bus.
     """
 
     def __init__(self, line: BusReadout) -> None:
@@ -27,11 +28,11 @@ class LineRegisters:
         self._all = np.arange(len(line.ids))
 
     def write(self, register: Register, value: int, rows: Rows = slice(None)) -> None:
-        """Send one value to the servos at `rows`. Nobody answers."""
+        """Write one value to the servos at `rows`, with a sync write, which is not answered."""
         self.line.bus.sync_write(register, dict.fromkeys(self._ids(self._all[rows]), value))
 
     def ask(self, register: Register, rows: Rows, attempt: int = 0) -> tuple[Array, Mask]:
-        """Read a register once, and return (rows,) counts and whose are fresh; see `_parts`."""
+        """Read a register once; return (rows,) counts, and (rows,) bool: servos that answered."""
         counts: npt.NDArray[np.int64] = np.zeros(len(self._all), dtype=np.int64)
         fresh: Mask = np.zeros(len(self._all), dtype=bool)
         for part in self._parts(rows, attempt):
@@ -39,7 +40,7 @@ class LineRegisters:
         return counts[self._all[rows]].astype(np.float64), fresh[self._all[rows]]
 
     def ask_torque(self, rows: Rows, attempt: int = 0) -> tuple[Mask, Mask]:
-        """Read once whose torque is on, and return that, (rows,) bool, and who answered."""
+        """Read torque enable once; return (rows,) bool: torque on; and those that answered."""
         bus = self.line.bus
         on: Mask = np.zeros(len(self._all), dtype=bool)
         fresh: Mask = np.zeros_like(on)
@@ -51,15 +52,15 @@ class LineRegisters:
         return on[self._all[rows]], fresh[self._all[rows]]
 
     def pause(self, attempt: int) -> None:
-        """Wait before an attempt that is not the first."""
+        """Wait before an attempt, except before the first (0)."""
         if attempt:
             self.line.bus.wait(BACKOFF * attempt)
 
     def _parts(self, rows: Rows, attempt: int) -> list[npt.NDArray[np.intp]]:
-        """Return which servos are asked together.
+        """Return the groups of servos that are read together.
 
-        One that is missing may silence all that come behind it in the same answer: the second
-        attempt asks in the other order, further ones ask one after the other.
+        In one answer, all servos after a missing one may be silent: so the second attempt reads in
+        reverse order, and further ones read each servo alone.
         """
         chosen = self._all[rows]
         if attempt < 2:
@@ -81,13 +82,15 @@ class LineRegisters:
             if not left.size:
                 return counts[chosen]
         url = self.line.bus.port.url
-        raise HardwareError(f"{url}: no answer from {self.line.who(left)}; run `windup scan {url}`")
+        raise HardwareError(
+            f"{url}: no answer from {self.line.who(left)}; run `windup scan {quote(url)}`"
+        )
 
     def set(self, register: Register, values: Array, rows: Rows = slice(None)) -> None:
         """Write the (rows,) `values`, counts, and read them back.
 
         Raises:
-            HardwareError: A servo does not answer, or keeps another value.
+            HardwareError: A servo does not answer, or reads back another value.
         """
         chosen, wanted = self._all[rows], np.rint(values)
         ids = self._ids(chosen)

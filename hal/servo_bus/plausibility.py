@@ -1,10 +1,11 @@
-"""What a checksum lets through: of 8 bits one broken frame in 256, of any a servo of a wrong id.
+"""Plausibility check of readings: rejects errors that pass the checksum.
 
-A reading is believed if it lies within the encoder's range, if its velocity is one the motor has,
-and if the position is no further from the last one than the motor can turn in the time between.
-A joint that is not believed coasts, and the longer it coasts, the further it may have gone: after
-a true jump it is believed again within a moment. The very first reading has nothing to be compared
-with: behind a weak checksum it is believed when a second one agrees.
+An 8-bit checksum passes one corrupt frame in 256, and any checksum passes the answer of a servo
+with a wrong id. A reading is accepted if its position is within the encoder's range, its velocity
+within that of the motor, and its distance from the last position within what the motor can turn in
+the time between. The allowed distance grows while readings are rejected, so that after a real jump
+they are soon accepted again. A first reading has no reference: with a weak checksum it is accepted
+only if a second one agrees.
 """
 
 import numpy as np
@@ -12,25 +13,25 @@ import numpy as np
 from windup.hal.joints import Array, Mask
 
 FASTER = 1.5
-"""How much faster than its data sheet says a servo may turn (supply, or driven from outside)."""
+"""Factor by which a servo may exceed its data sheet speed (higher supply, or driven externally)."""
 MARGIN = 0.02
-"""Part of the encoder's range that a position may jump at no time at all: noise and rounding."""
+"""Fraction of the encoder's range that a position may always jump, for noise and rounding."""
 TURN = 4096.0
-"""That range of servos that count many turns, counts."""
+"""Maximum range used with `MARGIN`, for multi-turn servos, counts."""
 
 
 class Plausibility:
-    """The check of one line of n servos; everything in counts.
+    """The check of the n servos of one bus; positions are in counts.
 
     Args:
         last: (n,) largest count.
-        speed: (n,) counts a second without load.
-        velocity_unit: (n,) counts a second of one unit of the velocity register.
-        weak: Does a first reading need a second one that agrees?
+        speed: (n,) no-load speed, counts/s.
+        velocity_unit: (n,) one unit of the velocity register, counts/s.
+        weak: Whether a first reading has to be confirmed by a second one.
         first: (n,) smallest count; 0 by default.
 
     Attributes:
-        rejected: How many readings have been refused, first ones apart.
+        rejected: Number of readings rejected; unconfirmed first readings do not count.
     """
 
     def __init__(
@@ -54,7 +55,14 @@ class Plausibility:
         self.rejected = 0
 
     def accept(self, position: Array, velocity: Array, valid: Mask, now: float) -> Mask:
-        """Return (n,) bool: `valid` and believable. Position and velocity are (n,) counts."""
+        """Return (n,) bool: valid and plausible readings.
+
+        Args:
+            position: (n,) counts.
+            velocity: (n,) units of the velocity register.
+            valid: (n,) bool, servos that answered.
+            now: Present time, s.
+        """
         can_be = (
             (position >= self._first)
             & (position <= self._last)
@@ -77,7 +85,7 @@ class Plausibility:
         return good
 
     def forget(self) -> None:
-        """Start anew, wherever the servos are now, as after they had no power."""
+        """Reset: accept new first readings, as after a loss of power."""
         self._seen.fill(False)
         self._known.fill(False)
         self._all_known = False

@@ -1,4 +1,4 @@
-"""Which joint's servo is unwell, and what of."""
+"""Hardware alerts of the servos, by joint."""
 
 from collections.abc import Sequence
 from contextlib import suppress
@@ -18,14 +18,14 @@ ERROR_KINDS = ("no answer", "corrupt", "resynchronised", "implausible")
 
 
 class ServoAlerts:
-    """The servos that signal an error, by joint name, while it lasts.
+    """The servos that report an error, by joint name, while it lasts.
 
-    An alert is no shutdown: whether a servo still drives, `TorqueCheck` finds out.
+    An alert is not a shutdown: `TorqueCheck` finds out whether a servo still has torque.
 
     Attributes:
         errors: (n,) error bytes of the last answers.
-        now: Joint name to what is wrong.
-        kinds: All that can be wrong.
+        now: Maps joint name to the present alerts of its servo.
+        kinds: All kinds of alert.
     """
 
     def __init__(self, joints: Joints, mounts: Sequence[ServoMount]) -> None:
@@ -38,12 +38,12 @@ class ServoAlerts:
         self.now: dict[str, tuple[str, ...]] = {}
 
     def watch(self, lines: Sequence[BusReadout]) -> None:
-        """Take note of which bits mean an alert on each line."""
+        """Set the bits of the error byte that mean an alert, for each bus."""
         for line in lines:
             self._mask[line.rows] = line.bus.family.alert
 
     def update(self, links: Sequence[BusConnection]) -> None:
-        """Explain the servos that newly signal an error, and forget those that do not any more."""
+        """Add alerts of servos that newly report an error, and remove those that have ended."""
         if not self.now and not self.errors.any():
             return
         alert = (self.errors & self._mask) != 0
@@ -51,14 +51,14 @@ class ServoAlerts:
         for line in [link.line for link in links if link.lost is None]:
             rows = np.flatnonzero(alert[line.rows]).tolist()
             if new := [row for row in rows if self._name(line, row) not in self.now]:
-                with suppress(PortError):  # the next request sees that too
+                with suppress(PortError):  # the next request finds that too
                     self._explain(line, new)
 
     def _name(self, line: BusReadout, row: int) -> str:
         return self._joints.names[line.rows[row]]
 
     def _explain(self, line: BusReadout, rows: Sequence[int]) -> None:
-        """Take down what the servos in `rows` of a line signal; who does not say is asked again."""
+        """Record the alerts of the servos at `rows`; one that cannot be read is retried later."""
         family = line.bus.family
         bits = self.errors[line.rows[rows]] & family.alert
         said = np.ones(len(rows), dtype=bool)
@@ -71,7 +71,7 @@ class ServoAlerts:
 
 
 def count_errors(links: Sequence[BusConnection], watchdog_trips: int) -> dict[str, int]:
-    """Return kind of error to how often it has happened; the kinds are always the same."""
+    """Return the number of errors so far by kind; the keys are fixed."""
     counts = dict.fromkeys(ERROR_KINDS, 0)
     for link in links:
         for kind in ERROR_KINDS:

@@ -1,4 +1,4 @@
-"""Joints on buses of servos, of one make or of several, behind the joint-command interface."""
+"""The backend of real robots: joints on servo buses of one or several families."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -40,36 +40,36 @@ ATTEMPTS = 30
 class ServoBackend:
     """The joints of one robot on k buses of servos, each bus of one family.
 
-    The servos' law is that of `ServoModel`: stiffness becomes a P register, sent when it changes;
-    velocity and torque become a shifted goal; damping is the motor's own. A joint that does not
-    answer, or not believably, keeps its last state, with its age. So do the joints of a bus whose
-    port has gone: it is opened again when it is back, with torque off, and no goal reaches it
-    until `rearm`.
+    The servos' control law is that of `ServoModel`: stiffness becomes a P register, sent when it
+    changes; velocity and torque become a shifted goal; damping is that of the motor. A joint
+    without a valid and plausible answer keeps its last state, with its age. So do the joints of a
+    bus whose port is lost: the port is reopened when it is back, with torque off, and its joints
+    get no goals until `rearm`.
 
     Args:
         joints: The joints.
         mounts: The servo of each joint, in the same order.
-        ports: Bus name to its port.
-        supply: Voltage for which stiffness is turned into P registers, V.
+        ports: Maps bus name to its port.
+        supply: Supply voltage used to convert stiffness to P registers, V.
         board: The OpenCR, read with the servos of its bus.
-        imu: An IMU with a connection of its own.
-        couplings: Joints that two servos move together.
-        watchdog: Silence after which a bus watchdog freezes the pose, torque on, s; 0 for none.
-        contacts: Number of contact sensors that observations have room for; none is measured.
+        imu: An IMU with its own connection.
+        couplings: Joints that are driven by two servos together.
+        watchdog: Silence after which a Bus Watchdog freezes the pose, torque on, s; 0 for none.
+        contacts: Number of contact sensors in observations; their forces are always 0.
         opener: Opens a port.
 
     Attributes:
         links: The buses, from `connect` to `disconnect`.
-        readings: What the servos last said.
-        button: The buttons of the OpenCR: any of them is a stop.
-        clamps: Clamp name to the number of commands it changed: "goal" beyond the encoder's range,
-            "gain" beyond the register's; "unarmed" and "lost" are goals withheld, of a bus, and of
-            joints that may have lost their torque.
-        lost_joints: Joint name to how it has lost its torque since the robot was armed. It gets
-            no goal until `rearm`.
-        watchdog_trips: Servos that had frozen for silence, and were cleared.
-        arming_stiffness: (n,) N m/rad with which torque comes on.
-        heartbeat: Called again and again while torque is switched, which takes a while.
+        readings: Last readings of the servos.
+        button: The buttons of the OpenCR; each of them is a stop button.
+        clamps: Maps clamp to the number of commands it changed: "goal" beyond the encoder's range,
+            "gain" beyond that of the register; "unarmed" and "lost" are goals withheld from a bus,
+            and from joints that may have lost their torque.
+        lost_joints: Maps joint name to how it lost its torque since the robot was armed. Such
+            joints get no goals until `rearm`.
+        watchdog_trips: Number of Bus Watchdogs that fired and were cleared.
+        arming_stiffness: (n,) stiffness at torque enable, N m/rad.
+        heartbeat: Called repeatedly while torque is switched, which takes a while.
     """
 
     def __init__(
@@ -110,7 +110,7 @@ class ServoBackend:
 
     @property
     def lines(self) -> list[BusReadout]:
-        """The servos of each bus."""
+        """The readout of each bus."""
         return [link.line for link in self.links]
 
     @property
@@ -119,30 +119,30 @@ class ServoBackend:
 
     @property
     def alert_kinds(self) -> tuple[str, ...]:
-        """All that a servo of this robot can complain of."""
+        """All kinds of alert that the servos of this robot can report."""
         return self._alerts.kinds
 
     @property
     def alerts(self) -> dict[str, tuple[str, ...]]:
-        """Joint name to the hardware errors that its servo signals."""
+        """Maps joint name to the hardware errors that its servo reports."""
         return self._alerts.now
 
     @property
     def lost(self) -> dict[str, str]:
-        """URL of each port that is gone, to what was seen of it."""
+        """Maps the URL of each lost port to a description of the failure."""
         return {link.bus.port.url: link.lost for link in self.links if link.lost is not None}
 
     @property
     def doubtful_joints(self) -> Mapping[str, str]:
-        """The joints that are silent, or whose port is gone, and what to do about each."""
+        """Maps joint name to the remedy, for joints whose torque state is unknown."""
         return self._torque.doubts(self.links)
 
     def connect(self) -> None:
         """Open the ports. Nothing moves.
 
         Raises:
-            PortError: One cannot be opened; the others are closed again.
-            UsageError: Some ports live on the wall's time and some in a virtual world.
+            PortError: A port cannot be opened; the others are closed again.
+            UsageError: The ports do not share one clock (wall clock, or one virtual clock).
         """
         self.disconnect()
         build = lines_of(self.joints, self.mounts, self.units, self.board)
@@ -152,10 +152,11 @@ class ServoBackend:
         self._alerts.watch(self.lines)
 
     def configure(self) -> None:
-        """Check every servo, then assert the settings that the stack relies on. Nothing moves.
+        """Check every servo, then write the required settings that differ. Nothing moves.
 
         Raises:
-            HardwareError: Something is not as wired; nothing has been written.
+            HardwareError: The wiring differs from robot.toml, and nothing has been written; or a
+                servo does not answer cyclic reads.
         """
         buses = {link.line.mounts[0].bus: link.bus for link in self.links}
         with beating(self._buses, self.heartbeat):
@@ -168,11 +169,11 @@ class ServoBackend:
         self.read_health()
 
     def read_health(self) -> None:
-        """Read voltage and temperature of every servo now, where its port is there."""
+        """Read voltage and temperature of every servo now, except on lost ports."""
         self.readings.read_health(self.links)
 
     def _silent(self) -> str:
-        """Read until every joint has answered, some times at most; return the names of others."""
+        """Read until every joint has answered, `ATTEMPTS` times at most; return silent joints."""
         began = self.clock.now()
         for _ in range(ATTEMPTS):
             self.read()
@@ -181,12 +182,12 @@ class ServoBackend:
         return names_of(self.joints, self.readings.answered <= began)
 
     def request(self) -> None:
-        """Ask every joint for its state."""
+        """Request the state of every joint, without waiting for it."""
         for link in self.links:
             link.request()
 
     def collect(self) -> Observation:
-        """Return the state last asked for."""
+        """Wait for the state last requested and return it."""
         calm = True
         for link in self.links:
             self.readings.collect(link, self._alerts.errors)
@@ -200,12 +201,12 @@ class ServoBackend:
         return self.readings.observe(self.clock.now(), self.links)
 
     def read(self) -> Observation:
-        """Return the present state: `request` and `collect`."""
+        """Return the present state: `request` followed by `collect`."""
         self.request()
         return self.collect()
 
     def write(self, command: JointCommand) -> JointCommand:
-        """Send a command and return what the servos make of it."""
+        """Send a command and return the command that the servos really apply."""
         block = command.block
         if block[3].tobytes() != self._gains:
             self._send_gains(block[3])
@@ -228,21 +229,21 @@ class ServoBackend:
         return JointCommand(real)
 
     def goal_counts(self, pose: Array) -> Array:
-        """Return the servos' goals (n,) for a pose of the joints (n,) rad, counts."""
+        """Return the servos' goals (n,), counts, for a pose of the joints (n,) rad."""
         goal = self._couplings.servos(pose) if self._couplings else pose
         counts = np.rint(self.units.counts(goal))
         return np.asarray(np.clip(counts, self.units.first, self.units.last))
 
     def bus_errors(self) -> Mapping[str, int]:
-        """Return kind of error to how often it has happened, over all buses."""
+        """Return the number of errors by kind, over all buses."""
         return count_errors(self.links, self.watchdog_trips)
 
     def set_torque(self, on: bool) -> TorqueState:
-        """Switch all torque, on at the present pose only, and return what was read back.
+        """Switch torque off, or on at the present pose, and return what was read back.
 
         Raises:
-            HardwareError: Torque on, and a servo cannot be read, or a port was gone or a joint
-                lost its torque since the robot was armed; all torque is off.
+            HardwareError: Torque was to go on, but a servo cannot be read, or a port or the torque
+                of a joint was lost since the robot was armed; torque is switched off everywhere.
         """
         self._gains = b""
         with beating(self._buses, self.heartbeat):
@@ -254,13 +255,13 @@ class ServoBackend:
             return self._torque.on(self.links, gains, self.heartbeat)
 
     def rearm(self) -> TorqueState:
-        """Check and set every servo again, then switch torque on at the present pose.
+        """Check and configure every servo again, then switch torque on at the present pose.
 
-        After a port was gone servos may have been without power. Returns what was read back.
+        While a port was lost, servos may have lost power. Returns what was read back.
 
         Raises:
-            PortError: A port is still gone.
-            HardwareError: Something is not as wired; torque stays off.
+            PortError: A port is still missing.
+            HardwareError: The wiring differs from robot.toml; torque stays off.
         """
         self.heartbeat()
         if self.lost:
@@ -274,7 +275,7 @@ class ServoBackend:
         return self.set_torque(True)
 
     def disconnect(self) -> None:
-        """Close the ports. Torque that is on stays on, also when the servos' watchdog trips."""
+        """Close the ports. Torque that is on stays on, even after the Bus Watchdog fires."""
         for link in self.links:
             link.close()
         if self._imu_link is not None:
@@ -282,7 +283,7 @@ class ServoBackend:
         self.links, self._imu_link = [], None
 
     def _see_to(self, links: Sequence[BusConnection]) -> None:
-        """Look after whoever was silent, signals an error or has lost its torque."""
+        """Update losses, watchdogs and alerts after silence, an error or a loss of torque."""
         self.lost_joints = self._torque.losses(links)
         if any(link.check.woke for link in links):
             self.watchdog_trips += sum(link.clear_watchdogs() for link in links)

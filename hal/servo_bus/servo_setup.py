@@ -1,4 +1,4 @@
-"""What happens once, between opening the ports of a robot and the first tick of its loop."""
+"""Setup of the servo buses: opening ports, measuring adapters, checking and writing settings."""
 
 import logging
 from collections.abc import Callable, Mapping, Sequence
@@ -29,10 +29,10 @@ BuildLine = Callable[[Port], BusReadout]
 
 
 def one_clock(clocks: Sequence[Clock]) -> Clock:
-    """Return the clock that all ports of a robot live on.
+    """Return the clock that all ports of a robot share.
 
     Raises:
-        UsageError: Some live on the wall's time and some in a virtual world, or in two worlds.
+        UsageError: Some use the wall clock and some a virtual clock, or two virtual clocks.
     """
     first = clocks[0]
     wall = isinstance(first, WallClock)
@@ -45,7 +45,7 @@ def one_clock(clocks: Sequence[Clock]) -> Clock:
 def lines_of(
     joints: Joints, mounts: Sequence[ServoMount], units: Units, board: OpenCr | None
 ) -> dict[str, BuildLine]:
-    """Return bus name to what makes its line from its port."""
+    """Return, by bus name, a function that builds the readout of the bus from its port."""
 
     def build(name: str, rows: list[int]) -> BuildLine:
         here = [mounts[row] for row in rows]
@@ -66,11 +66,11 @@ def open_links(
     watchdog: float,
     opener: Opener,
 ) -> tuple[list[BusConnection], ImuConnection | None, Clock]:
-    """Return the open buses, the IMU's connection if it has one, and the clock they live on.
+    """Open all ports; return the buses, the connection of an IMU that has one, and their clock.
 
     Raises:
-        PortError: One cannot be opened; the others are closed again.
-        UsageError: They do not live on one clock.
+        PortError: A port cannot be opened; the others are closed again.
+        UsageError: The ports do not share one clock.
     """
     links: list[BusConnection] = []
     beside: ImuConnection | None = None
@@ -92,13 +92,13 @@ def open_links(
 def set_up(
     joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, Bus], board: OpenCr | None
 ) -> None:
-    """Measure the adapters, give the servos power, check all, then say and write what differs.
+    """Measure the adapters, switch servo power on, check all servos, log and write what differs.
 
-    Emulated servos forget their settings with the program: there they are not worth a word.
+    Changes of emulated servos are not logged: they are lost when the program ends.
 
     Raises:
-        HardwareError: Something is not as wired; nothing has been written, but the status return
-            level of servos that did not answer.
+        HardwareError: The wiring differs from robot.toml; nothing has been written except the
+            status return level of servos that did not answer.
     """
     for name, bus in buses.items():
         ours = [board.id] if board is not None and board.bus == name else []
@@ -114,12 +114,12 @@ def set_up(
 
 
 def power_up(bus: Bus, board: OpenCr) -> None:
-    """Give the servos power where an OpenCR switches it."""
+    """Switch on the servo power of an OpenCR, and wait until the servos have started."""
     if bus.read(board.id, POWER) != 1:
         bus.write(board.id, POWER, 1)
         bus.wait(POWER_UP_TIME)
 
 
 def names_of(joints: Joints, which: Mask) -> str:
-    """Return the names of some joints, with commas."""
+    """Return the names of the joints `which` (n,) bool, separated by commas."""
     return ", ".join(np.array(joints.names)[which])

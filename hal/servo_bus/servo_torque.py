@@ -1,4 +1,6 @@
-"""Torque on at the present pose, off and read back, and the servos' watch over their host."""
+"""Torque enable at the present pose, torque off with read-back, and the servos' Bus Watchdog."""
+
+from shlex import quote
 
 import numpy as np
 
@@ -13,24 +15,24 @@ from windup.hal.torque_loss import SWITCHED_OFF, UNEXPLAINED
 from windup.hal.torque_state import TorqueState
 
 TRIPPED = -1
-"""What a Bus Watchdog reads that has fired.
+"""Value of the Bus Watchdog register after it has fired.
 
-In position mode the servo holds the place where it was then, and refuses goals until the register
-is set to 0: the pose is frozen, the torque is not off.
+In position mode the servo then holds its position, and rejects goals until the register is set to
+0: the pose is frozen, but torque is not off.
 """
 INRUSH = 5e-3
-"""Pause after a servo was switched on, s: all at once may pull the supply down."""
+"""Pause after torque enable of each servo, s: all at once may pull the supply down."""
 OFF_TIME = 0.12
-"""How long servos are told to go off and read before those that answer are through with it, s."""
+"""Time after which `off` makes no further attempt, s."""
 
 
 class ServoTorque:
-    """The torque switch of one line, and the Bus Watchdog where its servos have one.
+    """Torque control of the servos of one bus, and of their Bus Watchdog, if they have one.
 
     Attributes:
-        watchdog: Silence after which a servo freezes its pose, with torque on, s; 0 for none.
-        armed: Is the watchdog running?
-        powered: Has torque been switched on?
+        watchdog: Bus silence after which a servo freezes its pose, with torque on, s; 0 for none.
+        armed: Whether the Bus Watchdog is running.
+        powered: Whether torque has been switched on.
     """
 
     def __init__(self, line: BusReadout, watchdog: float) -> None:
@@ -43,16 +45,16 @@ class ServoTorque:
         self._last = np.array([mount.last_count for mount in line.mounts], dtype=np.float64)
 
     def on(self, gains: Array) -> TorqueState:
-        """Switch torque on where the joints are now, one after the other.
+        """Switch torque on at the present pose, one servo after the other.
 
-        The goal of each is its present position before its torque comes on, so that nothing moves.
+        The goal of each is set to its present position before torque enable, so nothing moves.
 
         Args:
             gains: (servos,) P registers.
 
         Raises:
-            HardwareError: A servo cannot be read, does not take its goal, or its torque does not
-                come on or stay on: others have torque.
+            HardwareError: A servo cannot be read, does not accept its goal, or its torque does not
+                come on or stay on; other servos may have torque.
         """
         self._prepare(gains)
         self.powered = True
@@ -67,7 +69,7 @@ class ServoTorque:
         return state
 
     def _prepare(self, gains: Array) -> None:
-        """Set all that torque needs to come on at the present pose."""
+        """Write watchdog, restart mark, gains and goals, before torque enable."""
         here = self._here()
         mark = self.line.bus.family.mark
         if self._watch is not None:
@@ -83,7 +85,7 @@ class ServoTorque:
             self.armed = True
 
     def _switch_on(self, row: int) -> None:
-        """Switch one servo on at its present position; the goal may be what does it."""
+        """Switch one servo on at its present position; writing the goal may switch it on."""
         enable, rows = self._registers["torque_enable"], slice(row, row + 1)
         self._values.set(self._registers["goal_position"], self._here(rows), rows)
         for attempt in range(ATTEMPTS):
@@ -95,22 +97,22 @@ class ServoTorque:
         raise HardwareError(self._off_again(row, "come"))
 
     def _off_again(self, row: int, verb: str) -> str:
-        """Return that the torque of a servo does not `verb` on, with what it signals."""
+        """Return the message that a servo's torque does not `verb` on, with the cause if known."""
         url, id = self.line.bus.port.url, self.line.ids[row]
         what = f"{url}: torque does not {verb} on at {self.line.who([row])}"
         loss = examine(self.line, [Suspect(id, False)], self.armed).get(id)
         if loss is None or loss in (SWITCHED_OFF, UNEXPLAINED):
-            return f"{what}; run `windup scan {url}`"
+            return f"{what}; run `windup scan {quote(url)}`"
         return f"{what}: {loss}; {loss.remedy}"
 
     def send_off(self) -> None:
-        """Tell all servos to go off, and wait for nobody."""
+        """Send torque off to all servos, without waiting or reading back."""
         self._values.write(self._registers["torque_enable"], 0)
 
     def off(self, attempts: int = ATTEMPTS) -> TorqueState:
-        """Switch torque off and return what was read back of the servos.
+        """Switch torque off and return the state that was read back.
 
-        Those that answer are off and read within 0.12 s, whoever else is silent.
+        Servos that answer are off and read back within 0.12 s, even if others are silent.
         """
         self.send_off()
         clock = self.line.bus.port.clock
@@ -126,13 +128,13 @@ class ServoTorque:
         return state
 
     def insist(self, state: TorqueState, attempt: int = 0) -> TorqueState:
-        """Switch off once more who was not read as off, and return what is known then."""
+        """Switch off again the servos not read back as off, and return the updated state."""
         left = np.flatnonzero(~state.off)
         self._values.write(self._registers["torque_enable"], 0, left)
         return self._learn(state, left, attempt)
 
     def _learn(self, state: TorqueState, rows: Rows, attempt: int) -> TorqueState:
-        """Return `state` with what the servos at `rows` say of their torque now."""
+        """Read torque enable of the servos at `rows`, and return the updated `state`."""
         seen, fresh = self._values.ask_torque(rows, attempt)
         on, unknown = state.on.copy(), state.unknown.copy()
         on[rows] = np.where(fresh, seen, on[rows])
@@ -140,10 +142,10 @@ class ServoTorque:
         return TorqueState(on, unknown)
 
     def stay(self) -> Array:
-        """Have the servos stay where they are, watching no host, and return (servos,) counts.
+        """Hold the present positions, without Bus Watchdog; return them (servos,), counts.
 
         Raises:
-            HardwareError: A servo has no torque, cannot be read, or does not take its goal.
+            HardwareError: A servo has no torque, cannot be read, or does not accept its goal.
         """
         if not self.state().all_on:
             raise HardwareError(f"{self.line.bus.port.url}: a servo has no torque, or is silent")
@@ -154,7 +156,7 @@ class ServoTorque:
         return here
 
     def state(self, attempts: int = ATTEMPTS) -> TorqueState:
-        """Return what can be read of the servos' torque now."""
+        """Read and return the present torque state of the servos."""
         state = TorqueState.unread(len(self.line.ids))
         for attempt in range(attempts):
             self._values.pause(attempt)
@@ -164,10 +166,10 @@ class ServoTorque:
         return state
 
     def _here(self, rows: Rows = slice(None)) -> Array:
-        """Return (rows,) present positions; behind a weak checksum two readings must agree.
+        """Return present positions (rows,), counts; with a weak checksum two readings must agree.
 
         Raises:
-            HardwareError: They do not, or a servo does not answer.
+            HardwareError: Two readings do not agree, or a servo does not answer.
         """
         register = self._registers["present_position"]
         first, last = self._first[rows], self._last[rows]
@@ -184,10 +186,10 @@ class ServoTorque:
         )
 
     def revive(self) -> int:
-        """Clear the watchdogs that have fired, at the present pose; return how many had.
+        """Clear Bus Watchdogs that have fired, at the present pose; return their number.
 
-        The servos hold all the while, and then take goals again. Torque that a servo has switched
-        off stays off until `on`.
+        The servos hold their position meanwhile, and then accept goals again. Torque that a servo
+        has switched off stays off until `on`.
         """
         register = self._watch
         if register is None:

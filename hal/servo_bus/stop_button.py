@@ -1,4 +1,4 @@
-"""The buttons of an OpenCR as a stop: told from the bytes that come with the IMU anyway."""
+"""The buttons of an OpenCR as stop buttons, decoded from the bytes read with the IMU."""
 
 from collections.abc import Iterable
 
@@ -6,10 +6,10 @@ from windup.hal.servo_bus.bus_connection import BusConnection
 
 
 class StopButton:
-    """Which buttons are down, and which has been pressed.
+    """State of the buttons, and the first press.
 
-    The board itself ignores bounces shorter than 30 ms, and answers are checked by a CRC, so one
-    answer that says so is enough.
+    The board debounces its buttons (30 ms), and answers are checked by a CRC, so a single answer
+    is sufficient.
 
     Attributes:
         held: Names of the buttons that were down when the board last answered.
@@ -21,7 +21,7 @@ class StopButton:
         self.pressed: str | None = None
 
     def update(self, links: Iterable[BusConnection]) -> None:
-        """Take in the last answer of the board, if it was fresh."""
+        """Evaluate the last answer of the board, if it is new."""
         for link in links:
             line = link.line
             if line.imu_fresh and line.board is not None and line.imu is not None:
@@ -32,5 +32,5 @@ class StopButton:
                     self.held = down
 
     def forget(self) -> None:
-        """Wait for a new press, since torque comes on; a button that is down already is none."""
+        """Forget earlier presses before torque enable; a button already down is not a new press."""
         self.pressed = None

@@ -1,4 +1,4 @@
-"""What the registers of servos say of their torque: is it still there, and if not, why?"""
+"""Determines from the servos' registers whether they still have torque, and if not, why."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from windup.hal.torque_loss import SWITCHED_OFF, UNEXPLAINED, Loss, restarted, s
 UNNAMED = "an error that its manual does not name"
 
 Values = dict[int, int]
-"""Id to what a register holds, of those who answered."""
+"""Maps id to the value of a register, for the servos that answered."""
 
 
 class Suspect(NamedTuple):
@@ -19,7 +19,7 @@ class Suspect(NamedTuple):
 
     Attributes:
         id: Its id.
-        silent: Was it silent for so long that it may have restarted?
+        silent: Whether it was silent for so long that it may have restarted.
     """
 
     id: int
@@ -27,11 +27,11 @@ class Suspect(NamedTuple):
 
 
 class Readback(NamedTuple):
-    """What one servo says of its torque.
+    """Torque registers and alert bits read back from one servo.
 
     Attributes:
-        values: The family's registers of torque, by name.
-        bits: Alert bits of the answer.
+        values: Values of the family's torque registers, by name.
+        bits: Alert bits of the status packet.
     """
 
     values: dict[str, int]
@@ -39,18 +39,18 @@ class Readback(NamedTuple):
 
     @property
     def drives(self) -> bool:
-        """Is torque on?"""
+        """Whether torque is on."""
         return all(self.values.values())
 
 
 class Evidence(NamedTuple):
-    """What is known of a servo that may have lost its torque.
+    """Evidence for judging whether a servo has lost its torque.
 
     Attributes:
-        drives: Is its torque on?
-        restarted: Has it restarted?
-        errors: Bits of what it signals.
-        unloading: Bits of the errors that end its torque, or weaken it.
+        drives: Whether its torque is on.
+        restarted: Whether it has restarted.
+        errors: Bits of the errors that it reports.
+        unloading: Bits of the errors that end its torque, or reduce it.
     """
 
     drives: bool
@@ -60,17 +60,17 @@ class Evidence(NamedTuple):
 
 
 def examine(line: BusReadout, suspects: Sequence[Suspect], watched: bool) -> dict[int, Loss | None]:
-    """Return id to how its torque was lost, None where it is there; who is silent is left out.
+    """Map id to how its torque was lost, or None if it has torque; silent servos are omitted.
 
     Args:
-        line: Their line.
+        line: The bus of the servos.
         suspects: The servos.
-        watched: Is their Bus Watchdog running, where they have one?
+        watched: Whether their Bus Watchdog is running.
     """
     bus, family = line.bus, line.bus.family
     back = _read_back(bus, [suspect.id for suspect in suspects])
     slack = [id for id, seen in back.items() if _is_slack(family, seen)]
-    if slack and family.dialect.weak:  # one broken frame in 256 looks good
+    if slack and family.dialect.weak:  # one corrupt frame in 256 passes the checksum
         again = _read_back(bus, slack)
         back = {id: seen for id, seen in back.items() if id not in slack} | again
     unclear = [suspect for suspect in suspects if _is_unclear(family, back.get(suspect.id))]
@@ -83,7 +83,7 @@ def examine(line: BusReadout, suspects: Sequence[Suspect], watched: bool) -> dic
 
 
 def judge(family: Family, evidence: Evidence, volts: float) -> Loss | None:
-    """Return how the torque was lost, or None if it is there; `volts` is the lowest supply, V."""
+    """Return how the torque was lost, or None if it is on; `volts` is the lowest supply, V."""
     signalled = evidence.errors & evidence.unloading
     weak, ended = signalled & family.weakening, signalled & ~family.weakening
     if evidence.restarted:
@@ -96,7 +96,7 @@ def judge(family: Family, evidence: Evidence, volts: float) -> Loss | None:
 
 
 def _read_back(bus: Bus, ids: Sequence[int]) -> dict[int, Readback]:
-    """Return id to what the servo says, of those who answered."""
+    """Map id to the torque registers read back, for the servos that answered."""
     family = bus.family
     registers = [family.registers[name] for name in family.torque]
     begin = family.torque_span(0).address
@@ -112,21 +112,21 @@ def _read_back(bus: Bus, ids: Sequence[int]) -> dict[int, Readback]:
 
 
 def _is_slack(family: Family, seen: Readback) -> bool:
-    """Return whether a servo does not drive, or has restarted and may drive to an old goal."""
+    """Return whether a servo has no torque, or has restarted and may move to an old goal."""
     mark = family.mark
     again = mark is not None and seen.values.get(mark.name) == mark.restarted
     return again or not seen.drives
 
 
 def _is_unclear(family: Family, seen: Readback | None) -> bool:
-    """Return whether it takes more to know whether a servo that has answered has its torque."""
+    """Return whether more registers are needed to judge the torque of a servo that answered."""
     return seen is not None and (_is_slack(family, seen) or bool(seen.bits & family.weakening))
 
 
 def _evidence(
     bus: Bus, suspects: Sequence[Suspect], back: dict[int, Readback], watched: bool
 ) -> dict[int, Evidence]:
-    """Return id to all that its registers say, as far as it could be read."""
+    """Map id to the evidence from its registers, for the servos that could be read."""
     if not suspects:
         return {}
     family, mark = bus.family, bus.family.mark
@@ -135,7 +135,7 @@ def _evidence(
     if not family.errors_in_answers:
         errors = _values(bus, ids, "hardware_error")
     unloading = _values(bus, ids, family.shutdown)
-    # Where no register tells, silence does.
+    # Without a register that detects a restart, silence counts as one.
     again = {suspect.id: suspect.silent for suspect in suspects}
     if mark is not None and mark.name in family.torque:
         again = {id: back[id].values[mark.name] == mark.restarted for id in ids}

@@ -1,7 +1,7 @@
-"""Whether the servos of a line still have the torque they were given; without it, no goal.
+"""Detects servos of a bus that have lost their torque, and withholds their goals.
 
 A goal switches the torque of most servos on (`Family.goal_wakes`): after a brown-out, a restart or
-a shutdown the next one would drive a joint from wherever it hangs.
+a shutdown the next goal would drive the joint from wherever it hangs.
 """
 
 import numpy as np
@@ -13,29 +13,30 @@ from windup.hal.servo_bus.torque_cause import Suspect, examine
 from windup.hal.torque_loss import Loss
 
 MISSES = 4
-"""Answers missed in a row after which a servo may have restarted; of 1 % losses, once in 10^8."""
+"""Consecutive missed answers after which a servo may have restarted; at 1 % loss, once in 10^8."""
 SILENCE = 0.1
-"""Time without a cycle after which any servo may have, s: booting takes longer (assumed)."""
+"""Time without a cycle after which any servo may have restarted, s: booting is assumed longer."""
 
 PATIENCE = 3
-"""Cycles that a suspect waits at most for one that all answer, to be read back in."""
+"""Maximum number of cycles before suspects are read back; earlier if all servos answer one."""
 
 Bits = npt.NDArray[np.uint8]
 
 
 class TorqueCheck:
-    """Finds the servos of one line that have lost their torque since it was switched on.
+    """Finds the servos of one bus that have lost their torque since it was switched on.
 
-    A servo that was silent, signals an error, or whose registers say that it does not drive is
-    suspect until it has been read back: then either it has its torque, or it has lost it, until
-    `clear`. Suspects get no goal where a goal may switch torque on.
+    A servo that was silent, signals an error, or whose registers say that it has no torque is
+    suspect until it has been read back: then it either still has its torque, or has lost it until
+    `clear`. Suspects get no goals if a goal may switch torque on.
 
     Attributes:
-        withheld: (servos,) bool, who gets no goal; None while all do.
-        losses: Row within the line to how the torque was lost.
-        suspects: (servos,) bool, whose torque is unknown.
-        calm: Did all answer the last cycle, and is nobody suspect or without torque?
-        woke: Has somebody answered the last cycle whose Bus Watchdog may have fired?
+        withheld: (servos,) bool, servos that get no goals; None if all get them.
+        losses: Maps row within the bus to how the torque was lost.
+        suspects: (servos,) bool, servos whose torque state is unknown.
+        calm: Whether all servos answered the last cycle, and none is suspect or without torque.
+        woke: Whether a servo answered the last cycle after a silence in which its Bus Watchdog
+            may have fired.
     """
 
     def __init__(self, line: BusReadout) -> None:
@@ -43,7 +44,7 @@ class TorqueCheck:
         self.clear()
 
     def clear(self) -> None:
-        """Begin anew: nothing is suspect, nothing lost."""
+        """Reset: no servo is suspect or has lost its torque."""
         servos = len(self.line.ids)
         self.withheld: Mask | None = None
         self.losses: dict[int, Loss] = {}
@@ -58,12 +59,12 @@ class TorqueCheck:
         self.line.slack[:] = False
 
     def update(self, error: Bits, now: float, watchdog: float) -> None:
-        """Take in the line's last cycle, and read back the suspects that have answered it.
+        """Evaluate the last cycle of the bus, and read back the suspects that answered it.
 
         Args:
             error: (n,) error bytes of all joints of the robot.
-            now: When, s.
-            watchdog: Silence after which the servos' Bus Watchdog fires, s; 0 where none runs.
+            now: Present time, s.
+            watchdog: Silence after which the Bus Watchdogs fire, s; 0 if they do not run.
         """
         late = now - self._then > SILENCE
         if self.calm and self.line.calm and not late:
@@ -75,13 +76,13 @@ class TorqueCheck:
         self._settle()
 
     def lose_all(self, loss: Loss) -> None:
-        """Take down that all servos have lost their torque."""
+        """Record that all servos have lost their torque."""
         self.losses = dict.fromkeys(range(len(self.line.ids)), loss) | self.losses
         self._lost[:] = True
         self._settle()
 
     def _look(self, errors: Bits, now: float, late: bool, watchdog: float) -> None:
-        """Suspect who was silent, who newly signals an error, whose torque read as off."""
+        """Mark servos suspect that were silent, newly signal an error, or read without torque."""
         answered = self.line.answered
         if self.calm:
             self._heard[:] = self._then
@@ -96,7 +97,7 @@ class TorqueCheck:
         self.line.slack[:] = False
 
     def _is_time(self) -> bool:
-        """Return whether to ask now: rather in a cycle that all have answered, but soon."""
+        """Return whether to read back now: in a cycle that all answered, or after `PATIENCE`."""
         self._waited += 1
         return self._waited >= PATIENCE or bool(self.line.answered.all())
 

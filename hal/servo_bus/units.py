@@ -1,6 +1,6 @@
-"""Between the counts of servos and the SI of joints, as arrays in joint order.
+"""Conversion between servo counts and SI units of joints, as arrays in joint order.
 
-The mount says how a servo sits: ``counts = zero + sign ratio q counts_per_rev / (2 pi)``.
+By the mount of each servo: ``counts = zero + sign ratio q counts_per_rev / (2 pi)``.
 """
 
 from collections.abc import Sequence
@@ -21,17 +21,18 @@ class Units:
     """Conversion for n servos, one at each joint.
 
     Attributes:
-        counts_per_rad: (n,) counts for one rad of the joint, signed.
+        counts_per_rad: (n,) counts per rad of the joint, signed.
         zero: (n,) counts at joint angle 0.
-        scale: (3, n) SI of one count of position (rad), velocity (rad/s) and torque (N m). The
-            torque of a servo that measures no current, but load, is nan.
+        scale: (3, n) SI value of one count of position (rad), velocity (rad/s) and torque (N m).
+            The torque of a servo that measures load instead of current is NaN.
         offset: (3, n) counts at which each of them is 0.
-        first: (n,) smallest count that a servo can be sent to.
-        last: (n,) largest count that a servo can be sent to.
-        speed: (n,) counts a second of the servo without load.
-        speed_unit: (n,) counts a second of one unit of its velocity.
-        stiffness: (n,) N m/rad at the joint for one unit of the P register.
-        damping: (n,) N m s/rad at the joint that the motor has by itself.
+        first: (n,) smallest goal position of the servo, counts.
+        last: (n,) largest goal position of the servo, counts.
+        speed: (n,) no-load speed of the servo, counts/s.
+        speed_unit: (n,) one unit of its velocity register, counts/s.
+        stiffness: (n,) stiffness at the joint for one unit of the P register, N m/rad.
+        damping: (n,) damping of the motor itself at the joint, N m s/rad.
+        gains: Gain registers, each with the indices of its servos.
     """
 
     def __init__(self, mounts: Sequence[ServoMount], supply: float) -> None:
@@ -52,7 +53,7 @@ class Units:
         )
         self.offset: Array = np.zeros_like(self.scale)
         self.offset[0] = self.zero
-        # Torque grows with the ratio and the angle shrinks with it: gains carry its square.
+        # Torque is multiplied and angle divided by the ratio, so gains scale with its square.
         each = np.array([mount.model.stiffness(1.0, supply) for mount in mounts])
         own = np.array([mount.model.damping(supply) for mount in mounts])
         self.stiffness: Array = ratio**2 * each
@@ -60,19 +61,22 @@ class Units:
         self.gains: list[tuple[Gain, Rows]] = gain_groups(mounts)
 
     def si(self, counts: Array) -> Array:
-        """Return (3, n) position rad, velocity rad/s and torque N m from counts (3, n)."""
+        """Return position rad, velocity rad/s and torque N m (3, n) from counts (3, n)."""
         return np.asarray((counts - self.offset) * self.scale)
 
     def counts(self, position: Array) -> Array:
-        """Return the counts (n,), not rounded, of joint angles (n,) rad."""
+        """Return the counts (n,), not rounded, for joint angles (n,) rad."""
         return np.asarray(position * self.counts_per_rad + self.zero)
 
     def angle(self, counts: Array) -> Array:
-        """Return the joint angles (n,) rad at counts (n,)."""
+        """Return the joint angles (n,) rad for counts (n,)."""
         return np.asarray((counts - self.zero) * self.scale[0])
 
     def p_registers(self, stiffness: Array) -> tuple[Array, bool]:
-        """Return the P registers (n,) nearest to `stiffness` (n,) N m/rad; was one out of reach?"""
+        """Return P registers (n,) nearest to `stiffness` (n,) N m/rad, and if any is clamped.
+
+        A P register is clamped where the wanted stiffness exceeds its range.
+        """
         registers = stiffness / self.stiffness
         beyond = False
         for gain, rows in self.gains:
@@ -84,7 +88,7 @@ class Units:
 
 
 def gain_groups(mounts: Sequence[ServoMount]) -> list[tuple[Gain, Rows]]:
-    """Return each way to set stiffness, with the indices of its mounts."""
+    """Return each gain register, with the indices of its mounts."""
     groups: dict[Gain, list[int]] = {}
     for row, mount in enumerate(mounts):
         groups.setdefault(family_of(mount.model.name).gain(mount.model.name), []).append(row)
@@ -92,13 +96,13 @@ def gain_groups(mounts: Sequence[ServoMount]) -> list[tuple[Gain, Rows]]:
 
 
 def _velocity_per_count(mount: ServoMount) -> float:
-    """Return rad/s at the servo for one count of its velocity."""
+    """Return one count of the servo's velocity register, rad/s at the servo."""
     table = family_of(mount.model.name).table(mount.model.name)
     return table["present_velocity"].unit
 
 
 def _torque_per_count(mount: ServoMount, mounts: Sequence[ServoMount]) -> float:
-    """Return N m at the servo for one count of what its bus reads; nan where that is load."""
+    """Return the torque of one count of the current read, N m at the servo; NaN if it is load."""
     family, constant = family_of(mount.model.name), mount.model.torque_constant
     table = family.table(mount.model.name)
     if constant is None or "present_current" not in table:

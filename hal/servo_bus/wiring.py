@@ -1,8 +1,9 @@
-"""Is the robot wired as its file says? One message names everything that is not."""
+"""Checks that the servos are wired as robot.toml says; one message lists all differences."""
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations
 from math import degrees
+from shlex import quote
 
 import numpy as np
 
@@ -25,7 +26,7 @@ from windup.hal.servo_bus.units import Units
 from windup.hal.servos.servo_model import ServoMount
 
 PROTOCOL_1 = "speaks protocol 1: set its Protocol Type (register 13) to 2 with DYNAMIXEL Wizard"
-"""What is wrong with a servo of the X series that answers in protocol 1."""
+"""Message for an X series servo that answers in protocol 1."""
 
 
 def check_mounts(
@@ -35,13 +36,12 @@ def check_mounts(
     units: Units,
     couplings: Couplings,
 ) -> None:
-    """Refuse a wiring that cannot be.
-
-    An unknown bus, two families on one bus, an id twice, a range past the encoder's.
+    """Check the configured wiring before any port is opened.
 
     Raises:
-        ConfigError: The message names the joints.
-        UnknownNameError: A bus that has no port.
+        ConfigError: Two families on one bus, a duplicate id, or a joint range beyond the
+            encoder's; the message names the joints.
+        UnknownNameError: A mount names a bus that has no port.
     """
     for mount in mounts:
         if mount.bus not in buses:
@@ -66,7 +66,7 @@ def check_mounts(
 
 
 def bus_families(mounts: Sequence[ServoMount]) -> dict[str, Family]:
-    """Return bus name to the family of its first servo."""
+    """Return the family of the first servo of each bus, by bus name."""
     families: dict[str, Family] = {}
     for mount in mounts:
         families.setdefault(mount.bus, family_of(mount.model.name))
@@ -87,13 +87,13 @@ def _check_families(named: Sequence[tuple[str, ServoMount]]) -> None:
 def check_servos(
     joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, Bus], board: OpenCr | None
 ) -> list[Differs]:
-    """Return what has to be written to each servo.
+    """Check every servo, and return the settings that have to be written to each.
 
-    Nothing is written here but the status return level of a servo that does not answer.
+    Nothing is written except the status return level of a servo that does not answer reads.
 
     Raises:
-        HardwareError: Somebody is missing, is another model, or has to be written while its
-            torque is on: every such servo in one message, with the command to run next.
+        HardwareError: A servo is missing, is another model, or needs a write while its torque
+            is on; one message lists all such servos, with the command to run next.
     """
     problems: dict[str, list[str]] = {}
     found: list[Differs] = []
@@ -139,7 +139,7 @@ def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting],
 
 
 def _settings(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting], str]:
-    """Return what has to be written, how the servo protects itself, and what was repaired."""
+    """Return the settings to write, the unusual protection limits, and what was repaired."""
     repaired = make_answer(bus, mount.id, mount.model)
     _check_offset(bus, mount)
     settings = differences(bus, mount)
@@ -150,10 +150,10 @@ def _settings(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting]
 
 
 def _check_offset(bus: Bus, mount: ServoMount) -> None:
-    """Refuse a homing offset that is not the one with which the joint's zero was found.
+    """Raise unless the homing offset is the one for which the joint's zero was calibrated.
 
     Raises:
-        HardwareError: The joint would be driven off by the difference.
+        HardwareError: They differ, so joint angles would be wrong by the difference.
     """
     table = bus.family.table(mount.model.name)
     if "homing_offset" not in table:
@@ -183,10 +183,10 @@ def _strange(error: NoAnswerError) -> str:
 
 def _sentence(url: str, problems: list[str]) -> str:
     count = f"{len(problems)} thing{'s' if len(problems) > 1 else ''}"
-    return f"{url}: {count} not as wired: {'; '.join(problems)}; run `windup scan {url}`"
+    return f"{url}: {count} not as wired: {'; '.join(problems)}; run `windup scan {quote(url)}`"
 
 
 def row_groups(mounts: Sequence[ServoMount]) -> dict[str, list[int]]:
-    """Return bus name to the indices of the joints on it."""
+    """Return the indices of the joints on each bus, by bus name."""
     names = np.array([mount.bus for mount in mounts])
     return {str(name): np.flatnonzero(names == name).tolist() for name in dict.fromkeys(names)}

@@ -1,4 +1,4 @@
-"""Data sheets of servos: one table a family, one line a servo."""
+"""Data sheets of servos: one table per family, one entry per servo model."""
 
 from windup.hal.servos.catalogue import servo_model, servo_names
 

@@ -1,4 +1,4 @@
-"""All servos that Windup knows, by the name printed on them."""
+"""All supported servo models, by the name printed on them."""
 
 from windup.hal.errors import UnknownNameError
 from windup.hal.servos.feetech import FEETECH
@@ -10,18 +10,18 @@ _MODELS = {model.name: model for model in (*X_SERIES, *MX, *FEETECH)}
 
 
 def servo_names() -> tuple[str, ...]:
-    """Return the names of all known servos."""
+    """Return the names of all supported servo models."""
     return tuple(_MODELS)
 
 
 def servo_model(name: str) -> ServoModel:
-    """Return the servo called `name`.
+    """Return the servo model `name`.
 
     >>> servo_model("XL430-W250").model_number
     1060
 
     Raises:
-        UnknownNameError: There is no such servo; the message names the likely one.
+        UnknownNameError: There is no such model; the message suggests the likely one.
     """
     try:
         return _MODELS[name]

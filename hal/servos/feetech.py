@@ -1,15 +1,15 @@
-"""Feetech STS and SCS.
+"""Data sheets of Feetech STS and SCS.
 
-The law is ``duty = P x counts of error / 4000``: 0.16297 of duty per rad and unit of P, which an
-oscilloscope (Rhoban bam: 0.166) and K-Scale's fits (0.16293) confirm. Torque and speed are
-Feetech's data sheets; the sheets of the 7.4 V type disagree with measurement (bam identifies
-3.25 N m at 7.4 V), so weigh a robot's own torque before trusting it. Armature and friction are
-bam's model M1 of the 7.4 V type (Apache-2.0); nobody has published a physical fit of the other
-two, which borrow them.
+The control law is ``duty = P x counts of error / 4000``: a duty of 0.16297 per rad and unit of P,
+confirmed by an oscilloscope (Rhoban bam: 0.166) and K-Scale's fits (0.16293). Torque and speed are
+from Feetech's data sheets; for the 7.4 V type they disagree with measurement (bam identifies
+3.25 N m at 7.4 V), so measure the torque of a robot before relying on it. Armature and friction are
+those of bam's model M1 of the 7.4 V type (Apache-2.0); there is no published physical fit of the
+other two, which use the same values.
 
-Of the SCS0009 torque, speed and default gains are from memory, and neither its duty law nor its
-armature and friction are published: its line takes the STS's law for the same angle and scales the
-STS3215's armature and friction by stall torque. Identify it before trusting a twin of it.
+For the SCS0009, torque, speed and default gains have no cited source, and its control law, armature
+and friction are not published: its entry uses the STS's law for the same angle, and the STS3215's
+armature and friction scaled by stall torque. Identify it before relying on a twin of it.
 """
 
 from math import pi
@@ -17,10 +17,10 @@ from math import pi
 from windup.hal.servos.servo_model import OwnLimits, Row, ServoModel
 
 GAIN = 4096 / (2.0 * pi) / 4000
-"""Duty per rad and unit of P: 0.16297."""
+"""Duty per rad of error and unit of P: 0.16297."""
 
 GOAL_SPEED = 3400 * 2.0 * pi / 4096
-"""An STS as it leaves the factory lets its goal run no faster (measured by bam), rad/s."""
+"""Maximum speed of the internal goal of an STS at factory defaults (measured by bam), rad/s."""
 
 STS3215_7V4 = (Row.of(6.0, 1.6, 55 * 6.0 / 7.4), Row.of(7.4, 1.91, 55))
 STS3215_12V = (Row.of(12.0, 2.94, 45, 2.7),)
@@ -28,7 +28,7 @@ STS3250_12V = (Row.of(12.0, 4.9, 75),)
 SCS0009_6V = (Row.of(6.0, 0.226, 100),)
 SCS_COUNTS_PER_REV = 1024 * 360 / 300
 LIMITS_7V4, LIMITS_12V = OwnLimits(70.0, 4.0, 8.0), OwnLimits(70.0, 4.0, 14.0)
-"""Registers 13 to 15 of Feetech's memory tables; the largest voltage is the winding's."""
+"""Registers 13 to 15 of Feetech's memory tables; the maximum voltage depends on the winding."""
 
 # name, model number, rows, duty per rad and P, default P, armature kg m2, friction N m
 FEETECH = (

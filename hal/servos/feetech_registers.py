@@ -1,13 +1,13 @@
 """Control tables of Feetech: STS and SMS (magnetic encoder), SCS (potentiometer).
 
-Addresses and signs are those of Feetech's memory tables and of its SCServo library. STS is
-little-endian and spells a negative number as a magnitude under a sign bit, another one for each
-register; SCS is big-endian, and its positions have no sign.
+Addresses and sign encodings are from Feetech's memory tables and its SCServo library. STS is
+little-endian and encodes negative numbers as sign and magnitude, with a sign bit that differs
+between registers; SCS is big-endian, and its positions are unsigned.
 
-Register 18, the phase, is "special function": bit 2 set makes the unit of speed one step a second
-(0.0146 rpm, as the servos leave the factory with phase 12), clear 50 steps (0.732 rpm); bit 4 set
-makes the position count whole turns. The codes of baud rates from 57,600 down differ between
-Feetech's own SDK and LeRobot: only those on which both agree are here.
+Register 18, phase ("special function"): bit 2 set selects a speed unit of one step per second
+(0.0146 rpm; the factory default is phase 12), clear 50 steps per second (0.732 rpm); bit 4 set
+makes the position count whole turns. The codes of baud rates of 57,600 and less differ between
+Feetech's own SDK and LeRobot: only those on which both agree are listed.
 """
 
 from dataclasses import replace
@@ -17,19 +17,19 @@ from windup.hal.errors import UnknownNameError
 from windup.hal.registers import Register, RegisterTable
 
 COUNT = 2.0 * pi / 4096
-"""rad of one count of an STS."""
+"""One count of an STS, rad."""
 SCS_COUNT = 300.0 * pi / 180.0 / 1024
-"""rad of one count of an SCS."""
+"""One count of an SCS, rad."""
 CURRENT = 6.5e-3
-"""A of one unit of current."""
+"""One unit of current, A."""
 
 STEP_SPEED, MULTI_TURN = 1 << 2, 1 << 4
-"""Bits of the phase."""
+"""Bits of the register `phase`."""
 MIDDLE = 128
-"""Written to `torque_enable`: the present position is the middle; it goes into the offset."""
+"""Value of `torque_enable` that sets `homing_offset` so that the present position reads 2048."""
 
 BAUD_CODES = {1_000_000: 0, 500_000: 1, 250_000: 2, 128_000: 3, 115_200: 4}
-"""Baud rate to the value of its register."""
+"""Maps baud rate to the value of the register `baud_rate`."""
 
 # name, address, size, area, writable, signed, SI value of one count, sign bit
 COMMON = (
@@ -96,7 +96,7 @@ NO_SIGN = ("goal_position", "goal_speed", "present_position")
 
 
 def _scs(register: Register) -> Register:
-    """Return a register as an SCS has it: big-endian, coarser, positions without a sign."""
+    """Return the SCS version of a register: big-endian, coarser unit, unsigned positions."""
     unit = register.unit * SCS_COUNT / COUNT if register.unit in (COUNT, 100.0 * COUNT) else None
     return replace(
         register,
@@ -119,7 +119,7 @@ HARDWARE_ERRORS = {
     3: "overcurrent",
     5: "overload",
 }
-"""Bit of the error byte of every answer, and of `hardware_error`, to what it means."""
+"""Maps each bit of the error byte of status packets, and of `hardware_error`, to its meaning."""
 
 _TABLES = {
     **{name: RegisterTable(name, STS.values()) for name in STS_NUMBERS.values()},
@@ -128,13 +128,13 @@ _TABLES = {
 
 
 def feetech_registers(model: str) -> RegisterTable:
-    """Return the registers of `model`; what follows a dash is the winding, not the table.
+    """Return the registers of `model`; a suffix after a dash (the winding) is ignored.
 
     >>> [feetech_registers(name)["lock"].address for name in ("STS3215-7.4V", "SCS0009")]
     [55, 48]
 
     Raises:
-        UnknownNameError: It is not of this family.
+        UnknownNameError: The model is not of this family.
     """
     try:
         return _TABLES[model.split("-")[0]]

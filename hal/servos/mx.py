@@ -1,12 +1,12 @@
-"""ROBOTIS Dynamixel of protocol 1: AX and MX (an MX may run protocol 2 after another firmware).
+"""Data sheets of ROBOTIS Dynamixel AX and MX with protocol 1 (other MX firmware has protocol 2).
 
-Torque, speed and current are the rows of the e-Manual. MX: ``duty = P / 8 x counts / 511``, which
-an oscilloscope confirms (Rhoban bam: 0.158). An AX ramps from nothing to full duty over its
-compliance slope, in counts; the manual equates a slope with an MX's P of 1024 / slope, and so does
-its P register here. Its punch, a step at the goal, is left out.
+Torque, speed and current are the rows of the e-Manual. MX: ``duty = P / 8 x counts / 511``,
+confirmed by an oscilloscope (Rhoban bam: 0.158). The duty of an AX rises from 0 to 1 over its
+compliance slope, in counts; the manual equates a slope with an MX's P of 1024 / slope, which is
+its P register here. Its punch, a step of duty at the goal, is not modelled.
 
-Armature and friction are bam's models M1 (Apache-2.0) of MX-64 and MX-106. Nobody has published a
-fit of AX-12A or MX-28: their lines scale the MX-64's by stall torque.
+Armature and friction of MX-64 and MX-106 are those of bam's models M1 (Apache-2.0). There is no
+published fit of AX-12A or MX-28: they use those of the MX-64, scaled by stall torque.
 """
 
 from math import pi
@@ -14,10 +14,10 @@ from math import pi
 from windup.hal.servos.servo_model import OwnLimits, Row, ServoModel
 
 GAIN = 4096 / (2.0 * pi) / 8 / 511
-"""Duty per rad and unit of P: 0.1595."""
+"""Duty per rad of error and unit of P: 0.1595."""
 AX_COUNTS_PER_REV = 1024 * 360 / 300
 AX_GAIN = AX_COUNTS_PER_REV / (2.0 * pi) / 1024
-"""Duty per rad and unit of 1024 / slope: 0.1910."""
+"""Duty per rad of error and unit of 1024 / slope: 0.1910."""
 MAX_DUTY = 0.9625
 
 AX_12A = (Row.of(12.0, 1.5, 59, 1.5),)

@@ -1,8 +1,8 @@
 """Control tables of Dynamixel protocol 1: AX-12A, MX-28, MX-64, MX-106, from the ROBOTIS e-Manual.
 
-Speeds and loads are magnitudes under a direction bit 10. An AX has no gains but compliance: a
-margin and a slope on either side of the goal. `present_current` (MX-64, MX-106) reads 2048 at no
-current and 4.5 mA a count; it stands so far behind the position that the cyclic read leaves it.
+Speeds and loads are magnitudes with direction bit 10. An AX has no gains but compliance: a margin
+and a slope on each side of the goal. `present_current` (MX-64, MX-106) reads 2048 at zero current,
+4.5 mA per count; its address is so far from the position that the cyclic read does not include it.
 """
 
 from math import pi
@@ -11,26 +11,26 @@ from windup.hal.errors import UnknownNameError
 from windup.hal.registers import Register, RegisterTable
 
 COUNT = 2.0 * pi / 4096
-"""rad of one count of an MX."""
+"""One count of an MX, rad."""
 AX_COUNT = 300.0 * pi / 180.0 / 1024
-"""rad of one count of an AX."""
+"""One count of an AX, rad."""
 SPEED = 0.114 * 2.0 * pi / 60.0
-"""rad/s of one unit of an MX's speed."""
+"""One speed unit of an MX, rad/s."""
 AX_SPEED = 0.111 * 2.0 * pi / 60.0
-"""rad/s of one unit of an AX's speed."""
+"""One speed unit of an AX, rad/s."""
 
 BAUD_CODES = {1_000_000: 1, 500_000: 3, 400_000: 4, 250_000: 7, 200_000: 9, 115_200: 16} | {
     57_600: 34,
     19_200: 103,
     9_600: 207,
 }
-"""Baud rate to the value n of its register, 2,000,000 / (n + 1), as the e-Manual lists them."""
+"""Maps baud rate to its register value n, 2,000,000 / (n + 1), as listed in the e-Manual."""
 FAST_CODES = {2_250_000: 250, 2_500_000: 251, 3_000_000: 252}
-"""The same, of the MX only."""
+"""Further baud rates, of the MX only."""
 
 
 def _table(count: float, speed: float) -> tuple[Register, ...]:
-    """Return what AX and MX have alike; `count` rad a count, `speed` rad/s a unit of speed."""
+    """Return the registers common to AX and MX; `count` is in rad, the `speed` unit in rad/s."""
     return (
         Register("model_number", 0, 2, "eeprom", False),
         Register("firmware_version", 2, 1, "eeprom", False),
@@ -58,7 +58,7 @@ def _table(count: float, speed: float) -> tuple[Register, ...]:
         Register("present_temperature", 43, 1, "ram", False),
         Register("registered", 44, 1, "ram", False),
         Register("moving", 46, 1, "ram", False),
-        Register("eeprom_lock", 47, 1),  # stays until the power goes: never written
+        Register("eeprom_lock", 47, 1),  # cannot be cleared before power-off: never written
         Register("punch", 48, 2),
     )
 
@@ -66,7 +66,7 @@ def _table(count: float, speed: float) -> tuple[Register, ...]:
 AX_ONLY = (
     Register("cw_compliance_margin", 26, 1, unit=AX_COUNT),
     Register("ccw_compliance_margin", 27, 1, unit=AX_COUNT),
-    Register("compliance_slopes", 28, 2),  # clockwise in the low byte, the other in the high one
+    Register("compliance_slopes", 28, 2),  # clockwise slope in the low byte, other in the high one
 )
 MX_ONLY = (
     Register("multi_turn_offset", 20, 2, "eeprom", signed=True, unit=COUNT),
@@ -96,11 +96,11 @@ MODELS = (
 )
 
 COMMON = {register.name: register for register in _table(COUNT, SPEED)}
-"""What all of them have at the same place; units are the model's."""
+"""Registers common to all models, by name; units are those of an MX."""
 NUMBERS = {number: name for name, number, _ in MODELS}
 
 HARDWARE_ERRORS = {0: "input voltage", 2: "overheating", 5: "overload"}
-"""Bit of the error byte of every answer to what it means; the others are about the instruction."""
+"""Maps hardware error bits of the error byte to meanings; other bits concern the instruction."""
 
 _TABLES = {name: RegisterTable(name, registers) for name, _, registers in MODELS}
 
@@ -112,7 +112,7 @@ def mx_registers(model: str) -> RegisterTable:
     28
 
     Raises:
-        UnknownNameError: It is not of this family.
+        UnknownNameError: The model is not of this family.
     """
     try:
         return _TABLES[model]

@@ -1,4 +1,4 @@
-"""What a position servo is: a motor with a gearbox, and a P register that turns error into duty."""
+"""Model of a position servo: DC motor, gearbox, and a P register from position error to duty."""
 
 from dataclasses import dataclass
 from math import pi
@@ -7,18 +7,18 @@ from typing import NamedTuple
 import numpy as np
 
 RPM = 2.0 * pi / 60.0
-"""One turn a minute, rad/s."""
+"""One revolution per minute, rad/s."""
 EXTENDED_COUNTS = 1_048_575
 """Largest goal in extended position mode, counts: 256 turns (e-Manual XM430, Goal Position)."""
 
 
 class OwnLimits(NamedTuple):
-    """Where a servo begins to protect itself: its limit registers as they leave the factory.
+    """Limits at which a servo protects itself: factory defaults of its limit registers.
 
     Attributes:
-        temperature: It switches its torque off there, degrees C.
-        low: Supply below which it signals an error, V.
-        high: Supply above which it does, V.
+        temperature: Temperature at which it switches its torque off, degrees C.
+        low: Supply voltage below which it signals an error, V.
+        high: Supply voltage above which it signals an error, V.
     """
 
     temperature: float
@@ -31,10 +31,10 @@ class Row:
     """One row of a data sheet, at the output shaft.
 
     Attributes:
-        voltage: Supply, V.
-        stall_torque: Torque that stops the shaft, N m.
-        no_load_speed: Speed without a load, rad/s.
-        stall_current: Current at stall, A; None where the sheet is silent.
+        voltage: Supply voltage, V.
+        stall_torque: Stall torque, N m.
+        no_load_speed: Speed without load, rad/s.
+        stall_current: Current at stall, A; None if the data sheet does not state it.
     """
 
     voltage: float
@@ -44,7 +44,7 @@ class Row:
 
     @classmethod
     def of(cls, volt: float, stall: float, rpm: float, amp: float | None = None) -> "Row":
-        """Return a row as data sheets print it: V, N m, turns a minute, A."""
+        """Return a row from data sheet units: V, N m, rpm, A."""
         return cls(volt, stall, rpm * RPM, amp)
 
 
@@ -53,7 +53,7 @@ class Motor:
     """A DC motor behind its gearbox at one supply voltage: tau = (K / R) (duty V - K dq).
 
     Attributes:
-        voltage: Supply V, V.
+        voltage: Supply voltage V, V.
         stall_torque: K V / R, N m.
         no_load_speed: V / K, rad/s.
     """
@@ -69,35 +69,35 @@ class Motor:
 
     @property
     def R(self) -> float:  # noqa: N802 - the literature's symbol
-        """Resistance that makes the stall torque true, ohm. No ohmmeter shows it."""
+        """Effective resistance that yields the stall torque, ohm; not the winding resistance."""
         return self.K * self.voltage / self.stall_torque
 
 
 @dataclass(frozen=True, slots=True)
 class ServoModel:
-    """One type of position servo. Everything is at the output shaft.
+    """One model of position servo. All quantities are at the output shaft.
 
-    The servo's law, from the makers' manuals::
+    The control law, from the makers' manuals::
 
         duty = clip(error_gain P (goal - q), -pwm_limit, pwm_limit)
         tau = (K / R) (duty V - K dq)
 
     so that, below saturation, a P register is a stiffness, and K^2/R is a damping that no
-    register takes away.
+    register can reduce.
 
     Attributes:
-        name: As printed on the servo.
-        model_number: What the servo answers to a ping.
-        rows: Data sheet, rising in voltage.
+        name: Name printed on the servo.
+        model_number: Value of its model number register.
+        rows: Data sheet, in order of rising voltage.
         error_gain: Duty per rad of error and unit of the P register, 1/rad.
-        p_default: P register as the servo leaves the factory.
-        armature: Rotor inertia through the gearbox, kg m2.
+        p_default: Factory default of the P register.
+        armature: Rotor inertia reflected through the gearbox, kg m2.
         friction_loss: Dry friction, N m.
-        counts_per_rev: Counts of one turn; where the encoder sees less, as many as it would have.
-        pwm_limit: Largest duty.
-        encoder_counts: How many counts the encoder has.
-        goal_speed: Fastest that the firmware lets a goal run, rad/s.
-        limits: Where it begins to protect itself, or None where nobody has published that.
+        counts_per_rev: Counts per turn; extrapolated if the encoder covers less than a turn.
+        pwm_limit: Maximum duty.
+        encoder_counts: Number of counts of the encoder.
+        goal_speed: Maximum speed at which the firmware moves its internal goal, rad/s.
+        limits: Limits at which it protects itself, or None if they are not published.
     """
 
     name: str
@@ -116,7 +116,7 @@ class ServoModel:
     def motor(self, voltage: float) -> Motor:
         """Return the motor at a supply of `voltage` V.
 
-        Linear between the rows; outside them in proportion to the voltage, as for a DC motor.
+        Values are interpolated between the rows, and proportional to voltage outside them.
 
         >>> from windup.hal.servos import servo_model
         >>> round(servo_model("XM430-W350").motor(12.0).R, 3)
@@ -130,7 +130,7 @@ class ServoModel:
         return Motor(voltage, scale * stall, scale * speed)
 
     def stiffness(self, p_register: float, voltage: float) -> float:
-        """Return what a P register means at `voltage` V, N m/rad: error_gain P V K / R."""
+        """Return the stiffness of a P register at `voltage` V, N m/rad: error_gain P V K / R."""
         return self.error_gain * p_register * self.motor(voltage).stall_torque
 
     def p_register(self, stiffness: float, voltage: float) -> float:
@@ -149,29 +149,29 @@ class ServoModel:
 
     @property
     def middle(self) -> int:
-        """The count half way."""
+        """The middle count of the encoder."""
         return self.encoder_counts // 2
 
     @property
     def torque_constant(self) -> float | None:
-        """Torque for each ampere of stall current, N m/A: mean of the rows that print one."""
+        """Stall torque per stall current, N m/A, mean over the rows; None without currents."""
         ratios = [row.stall_torque / row.stall_current for row in self.rows if row.stall_current]
         return float(np.mean(ratios)) if ratios else None
 
 
 @dataclass(frozen=True, slots=True)
 class ServoMount:
-    """How one servo sits at one joint: ``counts = zero + sign ratio q counts_per_rev / (2 pi)``.
+    """Mounting of a servo at a joint: ``counts = zero + sign ratio q counts_per_rev / (2 pi)``.
 
     Attributes:
-        model: The type of servo.
-        bus: Name of the bus that it hangs on.
-        id: Its address there.
-        sign: +1 or -1: does the servo turn with the joint or against it?
+        model: The servo model.
+        bus: Name of its bus.
+        id: Its id on the bus.
+        sign: +1 if the servo turns with the joint, -1 if against it.
         zero: Counts at joint angle 0, before calibration.
-        ratio: Turns of the servo for one of the joint.
-        offset: What its register `homing_offset` holds, counts: it shifts what it calls `zero`.
-        extended: It counts on over many turns (extended position mode), instead of one.
+        ratio: Turns of the servo per turn of the joint.
+        offset: Value of its register `homing_offset` for which `zero` is valid, counts.
+        extended: Whether it runs in extended (multi-turn) position mode.
     """
 
     model: ServoModel
@@ -185,10 +185,10 @@ class ServoMount:
 
     @property
     def first_count(self) -> int:
-        """The smallest count that it can be sent to."""
+        """Smallest goal position, counts."""
         return -EXTENDED_COUNTS if self.extended else 0
 
     @property
     def last_count(self) -> int:
-        """The largest count that it can be sent to."""
+        """Largest goal position, counts."""
         return EXTENDED_COUNTS if self.extended else self.model.last_count

@@ -1,8 +1,8 @@
-"""Control tables of ROBOTIS Dynamixel X: one line a register, and what differs between models.
+"""Control tables of ROBOTIS Dynamixel X: common registers, and those that differ between models.
 
-Addresses, units and model numbers are those of the ROBOTIS e-Manual. Register 126 is the trap of
-the family: present current in 2.69 mA (XM, XH: motor phase) or 1 mA (XC330, XL330: supply side),
-but present LOAD in 0.1 % on XL430, 2XL430, XC430 and 2XC430, which measure no current at all.
+Addresses, units and model numbers are those of the ROBOTIS e-Manual. Register 126 differs in
+meaning: present current in 2.69 mA (XM, XH: motor phase) or 1 mA (XC330, XL330: supply side),
+but present LOAD in 0.1 % on XL430, 2XL430, XC430 and 2XC430, which do not measure current.
 """
 
 from math import pi
@@ -11,13 +11,13 @@ from windup.hal.errors import UnknownNameError
 from windup.hal.registers import Register, RegisterTable
 
 COUNT = 2.0 * pi / 4096
-"""rad of one encoder count."""
+"""One encoder count, rad."""
 RPM = 0.229 * 2.0 * pi / 60.0
-"""rad/s of one unit of velocity."""
+"""One unit of velocity, rad/s."""
 PWM = 1.0 / 885.0
-"""Duty of one unit of PWM."""
+"""One unit of PWM, as a duty."""
 RAMP = 214.577 * 2.0 * pi / 3600.0
-"""rad/s2 of one unit of profile acceleration."""
+"""One unit of profile acceleration, rad/s2."""
 
 # name, address, size, area, writable, signed, SI value of one count
 COMMON = (
@@ -85,7 +85,7 @@ EXTERNAL_PORTS = tuple(
 
 
 def _current(unit: float) -> tuple[Register, ...]:
-    """Return the registers of a servo that measures current, `unit` A a count."""
+    """Return the current registers of a model that measures current; `unit` is A per count."""
     return (
         Register("current_limit", 38, 2, "eeprom", unit=unit),
         Register("goal_current", 102, 2, signed=True, unit=unit),
@@ -96,7 +96,7 @@ def _current(unit: float) -> tuple[Register, ...]:
 PHASE = _current(2.69e-3)
 SUPPLY = _current(1.0e-3)
 
-# name, model number, registers beside the common ones
+# name, model number, registers in addition to the common ones
 MODELS = (
     ("XH430-W350", 1000, PHASE),
     ("XH430-W210", 1010, PHASE),
@@ -133,7 +133,7 @@ BAUD_CODES = {
     4_000_000: 6,
     4_500_000: 7,
 }
-"""Baud rate to the value of its register; XC330 and XL330 end at 6."""
+"""Maps baud rate to its register value; XC330 and XL330 support values up to 6."""
 
 HARDWARE_ERRORS = {
     0: "input voltage",
@@ -142,7 +142,7 @@ HARDWARE_ERRORS = {
     4: "electrical shock",
     5: "overload",
 }
-"""Bit of `hardware_error` to what it means."""
+"""Maps each bit of `hardware_error` to its meaning."""
 
 _TABLES = {name: RegisterTable(name, (*COMMON, *extra)) for name, _, extra in MODELS}
 NUMBERS = {number: name for name, number, _ in MODELS}
@@ -155,7 +155,7 @@ def x_series_registers(model: str) -> RegisterTable:
     0.001
 
     Raises:
-        UnknownNameError: It is not of this family.
+        UnknownNameError: The model is not of this family.
     """
     try:
         return _TABLES[model]

@@ -1,1 +1,1 @@
-"""What a run publishes in shared memory for everybody else."""
+"""Telemetry: a ring buffer in shared memory that a run writes, and other processes read."""

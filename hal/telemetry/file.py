@@ -1,4 +1,4 @@
-"""The file of a telemetry ring: made whole under another name, then moved into its place."""
+"""The file of a telemetry ring: created under a temporary name, then renamed."""
 
 import contextlib
 import mmap
@@ -22,17 +22,21 @@ EMPTY = bytes(65536)
 
 
 def make_ring(path: Path, header: Header, slots: int, size: int) -> tuple[mmap.mmap, int]:
-    """Make a ring and move it to `path`; return its mapping and the offset of the first slot."""
+    """Create a ring at `path`; return its memory map and the offset of the first slot.
+
+    Raises:
+        TelemetryError: The file cannot be created.
+    """
     text = msgspec.json.encode(header)
     first = -(-(FIXED.size + len(text)) // ALIGNMENT) * ALIGNMENT
     head = FIXED.pack(MAGIC, VERSION, first, slots, size, 0, 0, b"", len(text)) + text
     fresh = path.with_suffix(f".{os.getpid()}")
     try:
         with fresh.open("wb+") as file:
-            # Room is taken now: a full disk must not show as a bus error in mid-run.
+            # Disk space is allocated now: a full disk must not cause SIGBUS during a run.
             os.posix_fallocate(file.fileno(), 0, first + slots * size)
             ring = mmap.mmap(file.fileno(), first + slots * size)
-        for start in range(0, len(ring), len(EMPTY)):  # so that no page is new in mid-run
+        for start in range(0, len(ring), len(EMPTY)):  # map all pages before the run
             ring[start : start + len(EMPTY)] = EMPTY[: len(ring) - start]
         ring[: len(head)] = head
         fresh.replace(path)
@@ -47,7 +51,7 @@ def read_header(ring: mmap.mmap) -> tuple[Header, int, int]:
     """Return the header, the offset of the first slot and the number of slots.
 
     Raises:
-        ValueError: It is not a ring.
+        ValueError: The file is not a ring, or has another version or size.
     """
     if len(ring) < FIXED.size or ring[: len(MAGIC)] != MAGIC:
         raise ValueError("other magic")

@@ -1,4 +1,4 @@
-"""How the telemetry ring lies in its file, and where the file is.
+"""Layout and location of the file of a telemetry ring.
 
 The numbers are little-endian::
 
@@ -6,14 +6,14 @@ The numbers are little-endian::
     0       8      magic
     8       16     version, offset of the first slot, number of slots, bytes of a slot
     24      8      sequence number of the newest tick, from 1; 0 before any
-    32      4      1 when the run has ended, 2 when nobody will begin another, else 0
-    36      128    why it ended, UTF-8, zero-padded
-    164     4      bytes of the JSON that follows, a `Header`
+    32      4      1 after a run has ended, 2 after the session has been closed, else 0
+    36      128    why the run ended, UTF-8, zero-padded
+    164     4      length of the JSON that follows, a `Header`, bytes
     168     ..     JSON
 
-and then the slots; tick s lies in slot s modulo their number. A slot is the sequence number, a
-CRC-32 of the numbers behind it (begun with the sequence number), four bytes unused, and float64
-numbers, whose names and shapes stand in the JSON.
+followed by the slots; tick s is in slot s modulo their number. A slot consists of the sequence
+number, a CRC-32 of the numbers after it (initialised with the sequence number), four unused bytes,
+and float64 numbers, whose names and shapes follow from the JSON (`Header.fields`).
 """
 
 import os
@@ -46,21 +46,21 @@ Field = tuple[str, tuple[int, ...]]
 
 
 class Header(msgspec.Struct, frozen=True, kw_only=True):
-    """What stays the same from tick to tick.
+    """The constant data of a ring.
 
     Attributes:
-        robot: Its name.
-        port: The URL of its port, or None for a twin.
+        robot: Name of the robot.
+        port: URL of its port, or None for a twin.
         rate_hz: Rate of the loop, Hz.
         joints: Names of the n joints.
         contacts: Names of the k contact sensors.
         errors: Kinds of bus errors that are counted.
-        alerts: What the bits of `alert` mean, lowest first.
-        pid: The process that writes.
-        started: When it began, s since 1970.
-        clamps: Names of the clamps that are counted.
-        estimated: The base state comes from the IMU.
-        driver_clamps: Names of the clamps that the driver of the servos counts.
+        alerts: Meanings of the bits of `alert`, lowest first.
+        pid: Process id of the writer.
+        started: Time when the writer began, s since 1970.
+        clamps: Names of the clamps that the guard counts.
+        estimated: Whether the base state is estimated from the IMU.
+        driver_clamps: Names of the clamps that the servo driver counts.
     """
 
     robot: str
@@ -77,13 +77,13 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
     driver_clamps: tuple[str, ...] = ()
 
     def fields(self) -> list[Field]:
-        """Return the names and shapes of a tick's numbers, in their order.
+        """Return the names and shapes of the numbers of a slot, in order.
 
         time s on the backend's clock, wall s since 1970, tick and missed ticks of the run,
-        tick_time s, plans of the run and those that came late | the joints: rad, rad/s, N m, V,
-        degrees C, age s and that of volts and degrees | command: target position, rad, stiffness
-        N m/rad | clamped: commands in which each joint was clamped | alert: bits | IMU: wxyz,
-        rad/s, m/s2 | contacts: N | base: m, wxyz, m/s, rad/s. What nobody measures is not a number.
+        tick_time s, plans of the run and late ones | joints: rad, rad/s, N m, V, degrees C, age s,
+        health_age s (age of volts and degrees) | command: target position, rad, stiffness N m/rad
+        | clamped: commands in which each joint was clamped | alert: bits | IMU: wxyz, rad/s, m/s2 |
+        contacts: N | base: m, wxyz, m/s, rad/s. Quantities that are not measured are NaN.
         """
         n = (len(self.joints),)
         run = ("time", "wall", "tick", "missed", "tick_time", "plans", "late_plans")
@@ -107,18 +107,18 @@ class Header(msgspec.Struct, frozen=True, kw_only=True):
         ]
 
     def dtype(self) -> np.dtype[np.void]:
-        """Return a slot as NumPy sees it."""
+        """Return the NumPy record type of a slot."""
         numbers = [(name, "<f8", shape) for name, shape in self.fields()]
         return np.dtype([("sequence", "<u8"), ("checksum", "<u4"), ("unused", "<u4"), *numbers])
 
 
 def checksum(sequence: int, payload: bytes | memoryview) -> int:
-    """Return the CRC-32 of a slot's numbers."""
+    """Return the CRC-32 of a slot's numbers `payload`, initialised with `sequence`."""
     return zlib.crc32(payload, sequence & 0xFFFFFFFF)
 
 
 def ring_path(robot: str, port: str | None = None) -> Path:
-    """Return the ring of `robot` on `port`; None is its twin.
+    """Return the path of the ring of `robot` on `port`; None means its twin.
 
     >>> ring_path("op3", "/dev/ttyUSB0").name
     'op3@dev_ttyUSB0-6fb529ce.ring'
@@ -131,12 +131,12 @@ def ring_path(robot: str, port: str | None = None) -> Path:
 
 
 def runtime_folder() -> Path:
-    """Return the user's folder for rings, made and private.
+    """Return the user's private folder for rings, created if needed.
 
-    It is best kept in memory: a disk that writes a page holds up whoever changes it.
+    It is in memory if possible: while a disk writes back a page, changes of that page block.
 
     Raises:
-        TelemetryError: It belongs to somebody else, or cannot be made.
+        TelemetryError: It belongs to another user, or cannot be created.
     """
     folder = _runtime_base()
     try:

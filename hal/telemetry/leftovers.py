@@ -1,9 +1,9 @@
-"""What runs leave in the runtime folder, and when it goes: nobody else tidies it up.
+"""Removes files that earlier runs have left in the runtime folder.
 
 A ring stays readable after its run, for `windup health`. It is finished when its session has been
-closed or its process is dead; finished rings go after an hour, or sooner, the oldest first, when
-there are many. Files that were being made by a process that is dead, and locks that nobody holds,
-go too.
+closed or its process is dead; finished rings are removed after an hour, or earlier, the oldest
+first, if there are too many. Temporary files of dead processes, and lock files that are not held,
+are removed too.
 """
 
 import fcntl
@@ -19,13 +19,13 @@ from windup.hal.errors import TelemetryError
 from windup.hal.telemetry.ring import TelemetryReader
 
 KEPT: Final = 3600.0
-"""How long a finished ring is kept, s."""
+"""Maximum time for which a finished ring is kept, s."""
 FILES: Final = 16
-"""So many rings are kept at most, while they are finished."""
+"""Maximum number of rings; beyond it finished ones are removed."""
 BYTES: Final = 64 * 2**20
-"""So many bytes of rings."""
+"""Maximum total size of rings, bytes; beyond it finished ones are removed."""
 SPARE: Final = 60.0
-"""How long a lock is left alone after it was last used, s."""
+"""Minimum time since the last use of a lock file before it is removed, s."""
 
 
 @dataclass(frozen=True)
@@ -33,10 +33,10 @@ class Ring:
     """A ring in the folder.
 
     Attributes:
-        path: Its file.
-        size: Bytes.
-        used: When it was last written, s since 1970.
-        finished: Nobody will write it again.
+        path: Path of its file.
+        size: Size, bytes.
+        used: Time when it was last written, s since 1970.
+        finished: Whether it will not be written again.
     """
 
     path: Path
@@ -46,11 +46,11 @@ class Ring:
 
 
 def remove_leftovers(own: Path, now: float | None = None) -> None:
-    """Remove what earlier runs have left in the runtime folder.
+    """Remove files that earlier runs have left in the runtime folder.
 
     Args:
-        own: The ring of the robot that is opened, in that folder; it is replaced, not removed.
-        now: The time, s since 1970; by default that of the clock.
+        own: The ring of the present run, in that folder; it is replaced, not removed.
+        now: Present time, s since 1970; by default that of the clock.
     """
     folder, now = own.parent, time.time() if now is None else now
     for path in folder.glob("*@*"):
@@ -68,19 +68,19 @@ def remove_leftovers(own: Path, now: float | None = None) -> None:
 
 
 def process_runs(pid: int, since: float | None = None) -> bool:
-    """Return whether a process is there; one that began after `since`, s since 1970, is another."""
+    """Return whether process `pid` runs and began no later than `since`, s since 1970, if given."""
     try:
         os.kill(pid, 0)
     except ProcessLookupError:
         return False
     except PermissionError:
-        return since is None  # somebody else's by now: rings are their owner's alone
+        return since is None  # of another user, so it is not the writer of a ring of this user
     began = _began(pid)
     return since is None or began is None or began <= since + 1.0
 
 
 def _rings(folder: Path, own: Path) -> Iterator[Ring]:
-    """Yield the rings of a folder; what cannot be read counts as finished when it was made."""
+    """Yield the rings of a folder; unreadable ones count as finished, with their file's time."""
     for path in folder.glob("*@*.ring"):
         if path == own:
             continue
@@ -105,7 +105,7 @@ def _remove(path: Path) -> None:
 
 
 def _remove_unheld(path: Path, now: float) -> None:
-    """Remove the file of a lock that nobody holds; who opens it meanwhile sees that it is gone."""
+    """Remove a lock file that is not held; a process that opens it meanwhile detects that."""
     with suppress(OSError):
         if now - path.stat().st_mtime < SPARE:
             return
@@ -118,7 +118,7 @@ def _remove_unheld(path: Path, now: float) -> None:
 
 
 def _began(pid: int) -> float | None:
-    """Return when a process began, s since 1970; None where the system does not say."""
+    """Return the start time of a process, s since 1970; None if the system does not report it."""
     try:
         stat = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
         boot = Path("/proc/stat").read_text().partition("btime ")[2].split()[0]

@@ -1,1 +1,1 @@
-"""Ground, and what of a robot touches it."""
+"""The ground of a twin, and the robot's contact with it."""

@@ -1,4 +1,4 @@
-"""How close the feet come to each other, whether or not they collide in the twin."""
+"""Distance between the feet, whether or not they collide in the twin."""
 
 import mujoco
 import numpy as np
@@ -7,9 +7,9 @@ from windup.robots.description import RobotDescription
 
 
 class FootClearance:
-    """The distance between the two feet of a robot; negative when they pass through each other.
+    """Measures the distance between a robot's two feet; negative when they interpenetrate.
 
-    A foot is the largest of its geoms: the sole, or the shoe.
+    Each foot is represented by the largest of its geoms: the sole, or the shoe.
 
     Args:
         robot: The robot.
@@ -17,10 +17,10 @@ class FootClearance:
         data: The state of its twin.
 
     Attributes:
-        smallest: The smallest distance so far, m.
+        smallest: Smallest distance so far, m.
     """
 
-    REACH = 0.5  # farther apart than this is far enough, m
+    REACH = 0.5  # distances above this are not measured, m
 
     def __init__(self, robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         self.model, self.data = model, data
@@ -28,7 +28,7 @@ class FootClearance:
         self.smallest = float("inf")
 
     def update(self) -> float:
-        """Measure now, and return the distance, m."""
+        """Measure the present distance, m, and return it."""
         left, right = self._geoms[:2]
         found = mujoco.mj_geomDistance(self.model, self.data, left, right, self.REACH, None)
         self.smallest = min(self.smallest, float(found))

@@ -1,4 +1,4 @@
-"""How high the ground is under the foot that stands on it, as far as a robot can feel that."""
+"""Estimates the height of the ground under the stance foot from joint angles and contacts."""
 
 import mujoco
 import numpy as np
@@ -7,17 +7,17 @@ from windup.hal.observation import Observation
 from windup.robots.description import RobotDescription
 
 SURE = 0.015
-"""Nearer to 0 is 0, of the base's height: a foot that is tilted or sinks in shows as much."""
+"""Heights below this share of the base's height count as 0: foot tilt or sinking fakes them."""
 
 
 class FootLevel:
-    """Finds the height of the lowest contact sensor that is pressed.
+    """Estimates the ground height as the height of the lowest pressed contact sensor.
 
     Args:
-        robot: The robot; its contact sensors have sites of their own names.
+        robot: The robot; each of its contact sensors has a site of the same name.
 
     Attributes:
-        sure: The smallest height that is told from 0, m.
+        sure: Smallest height that is distinguished from 0, m.
     """
 
     def __init__(self, robot: RobotDescription) -> None:
@@ -35,7 +35,7 @@ class FootLevel:
         self._above = np.array([z - soles[n] for z, n in zip(above, names, strict=True)])
 
     def of(self, observation: Observation) -> float:
-        """Return the height of the ground, m; 0 when it is too near to 0 to tell."""
+        """Return the height of the ground, m; 0 when it cannot be distinguished from 0."""
         base, pressed = observation.base, self.contacts.pressed(observation.contacts)
         if base is None or not pressed.any():
             return 0.0

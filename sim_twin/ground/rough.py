@@ -1,4 +1,4 @@
-"""Rough ground: a height field of seeded heights at the nodes of a square grid."""
+"""Rough ground: a height field with seeded random heights at the nodes of a square grid."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -8,18 +8,18 @@ import numpy as np
 
 from windup.hal.joints import Array
 
-LONG, WIDE = 400, 160  # cells ahead and across
-DEEP = 0.25  # solid ground below the lowest node, m
+LONG, WIDE = 400, 160  # number of cells along x and along y
+DEEP = 0.25  # thickness of the solid ground below the lowest node, m
 
 
 @dataclass(frozen=True)
 class RoughGround:
-    """Ground whose height is uniform in -amplitude .. amplitude at each node.
+    """Ground whose height at each node is uniform in -amplitude .. amplitude.
 
     Attributes:
-        amplitude: m.
-        cell: Distance of the nodes, m.
-        start: Where it begins, m; there it is level with the flat ground.
+        amplitude: Largest height above or below the flat ground, m.
+        cell: Distance between neighbouring nodes, m.
+        start: x where the height field begins, level with the flat ground, m.
         seed: Seed of the heights.
     """
 
@@ -29,7 +29,7 @@ class RoughGround:
     seed: int = 0
 
     def height(self, x: float, y: float) -> float:
-        """Return the height at (x, y) m, linear over the two triangles of a cell as in MuJoCo."""
+        """Return the height at (x, y) m, interpolated over a cell's two triangles as in MuJoCo."""
         nodes = _nodes(self.amplitude, self.seed)
         u = float(np.clip((x - self.start) / self.cell, 0.0, LONG - 1e-9))
         v = float(np.clip(y / self.cell + 0.5 * WIDE, 0.0, WIDE - 1e-9))
@@ -43,7 +43,7 @@ class RoughGround:
         return float(d + (1.0 - u) * (c - d) + (1.0 - v) * (b - d))
 
     def build(self, spec: mujoco.MjSpec, floor: mujoco.MjsGeom) -> None:
-        """Add the field to `spec`, with the surface of `floor`."""
+        """Add the height field to `spec`, with the friction and material of `floor`."""
         nodes = _nodes(self.amplitude, self.seed)
         half = 0.5 * self.cell * np.array([LONG, WIDE])
         share = (nodes + self.amplitude) / (2.0 * self.amplitude)
@@ -67,11 +67,11 @@ class RoughGround:
 
 @lru_cache(maxsize=4)
 def _nodes(amplitude: float, seed: int) -> Array:
-    """Return the heights (WIDE + 1, LONG + 1), m."""
+    """Return the node heights (WIDE + 1, LONG + 1), m."""
     random = np.random.default_rng(seed)
     nodes = random.uniform(-amplitude, amplitude, (WIDE + 1, LONG + 1))
     nodes[:, 0] = 0.0
-    # MuJoCo stretches what it is given to the whole range, which these two corners span.
+    # MuJoCo normalises the heights to their range; these two corners fix it to +-amplitude.
     nodes[0, -1], nodes[-1, -1] = -amplitude, amplitude
     nodes.setflags(write=False)
     return nodes

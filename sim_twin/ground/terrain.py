@@ -1,4 +1,4 @@
-"""The ground of a twin: flat, sloping, strips or stairs across the way, or rough all over."""
+"""The ground of a twin: flat, sloping, strips or stairs across the path, or rough all over."""
 
 from dataclasses import dataclass
 from math import cos, radians, sin, tan
@@ -11,24 +11,24 @@ from windup.hal.joints import Array
 from windup.sim_twin.ground.rough import RoughGround
 
 WIDE = 20.0  # half the width of a tile, m
-DEEP = 0.25  # half its thickness, m
-BEHIND = 3.0  # flat ground behind the start, m
+DEEP = 0.25  # half the thickness of a tile, m
+BEHIND = 3.0  # length of the flat ground before `start`, m
 SLOPE_TILE = 4.0
 TILES = 60
 
 
 @dataclass(frozen=True)
 class Ground:
-    """A flat start, and behind it one kind of ground.
+    """Flat ground around the start, followed by one kind of terrain ahead.
 
     Attributes:
-        slope: Degrees; positive is uphill.
+        slope: Inclination, degrees; positive is uphill.
         strips: Largest height of a strip above or below the start, m.
         stairs: Height of each stair, m; positive is up.
         rough: Largest height of a node of rough ground above or below the start, m.
-        start: Where the flat ground ends, m.
+        start: x where the flat ground ends, m.
         strip: Length of a strip, m; a stair is twice as long, and nodes are half as far apart.
-        seed: Seed of the heights.
+        seed: Seed of the random heights.
     """
 
     slope: float = 0.0
@@ -41,12 +41,12 @@ class Ground:
 
     @property
     def flat(self) -> bool:
-        """True when there is nothing but a plane."""
+        """True when the ground is a single plane."""
         return not (self.slope or self.strips or self.stairs or self.rough)
 
     @property
     def tiles(self) -> Array:
-        """Tiles (t, 2) after the flat start: where each begins, and its height there, m."""
+        """Tiles (t, 2) after the flat start: x where each begins, and its height there, m."""
         if self.strips:
             count = TILES * 4
             heights = np.random.default_rng(self.seed).uniform(-self.strips, self.strips, count)
@@ -80,10 +80,10 @@ class Ground:
         return float(tiles[min(int((x - self.start) / self.length), len(tiles) - 1), 1])
 
     def build(self, spec: mujoco.MjSpec) -> None:
-        """Replace the floor plane of `spec` by such ground, with the plane's own surface.
+        """Replace the floor plane of `spec` by this ground, with the plane's friction and material.
 
         Raises:
-            UsageError: It has none.
+            UsageError: `spec` has no floor plane.
         """
         if self.flat:
             return
@@ -111,7 +111,7 @@ class Ground:
         length: float,
         pitch: float,
     ) -> None:
-        """Add a box whose upper face begins at (x, height) and climbs by `pitch` rad."""
+        """Add a box whose upper face begins at (x, height) m and rises at `pitch` rad."""
         half = 0.5 * length / cos(pitch)
         along = np.array([cos(pitch), 0.0, sin(pitch)])
         down = np.array([sin(pitch), 0.0, -cos(pitch)])

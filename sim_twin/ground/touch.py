@@ -1,4 +1,4 @@
-"""What of a twin touches the ground: its feet should, the rest should not."""
+"""Records which bodies of a twin touch the ground other than its feet."""
 
 import mujoco
 import numpy as np
@@ -7,16 +7,16 @@ from windup.robots.description import RobotDescription
 
 
 class TouchWatch:
-    """Notes the bodies, other than feet, that have touched the ground.
+    """Records the bodies, other than feet, that have touched the ground.
 
     Args:
         robot: The robot.
         model: The model of its twin.
         data: The state of its twin.
-        feet: Names of the bodies that may touch; the robot's feet by default.
+        feet: Names of the bodies that are allowed to touch; by default the robot's feet.
 
     Attributes:
-        touched: Names of the others that did, in the order in which they did.
+        touched: Names of the other bodies that touched, in order of first touch.
     """
 
     def __init__(
@@ -32,7 +32,7 @@ class TouchWatch:
         self.touched: list[str] = []
 
     def update(self) -> None:
-        """Note what touches the ground now."""
+        """Record the bodies that touch the ground now."""
         count = self._data.ncon
         if not count:
             return

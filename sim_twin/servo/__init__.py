@@ -1,1 +1,1 @@
-"""The servo as physics."""
+"""Physics of the servos: actuator models and drives."""

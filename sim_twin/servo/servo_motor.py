@@ -1,8 +1,8 @@
 """Joints as MuJoCo actuators: a position servo as a `dcmotor`, an ideal joint as a `pid`.
 
-The servo: ``nominal = (V, stall torque, no-load speed)``, ``kp`` = duty per rad at this P register
-times V K/R, ``kd = K^2/R``, which cancels the back-EMF compensation of the dcmotor's controller and
-leaves a plain voltage-driven motor behind a P law, and ``Vmax = V x PWM limit``.
+Servo: ``nominal = (V, stall torque, no-load speed)``; ``kp`` = duty per rad at this P register
+times V K/R; ``kd = K^2/R``, which cancels the back-EMF compensation of the dcmotor's controller and
+leaves a plain voltage-driven motor behind a P law; ``Vmax = V x PWM limit``.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from windup.hal.joints import Array
 from windup.hal.servos.servo_model import ServoModel
 from windup.robots.description import RobotDescription
 
-# Places in a dcmotor's gainprm and a pid's biasprm (MuJoCo 4.0, XMLreference).
+# Indices into a dcmotor's gainprm and a pid's biasprm (MuJoCo 4.0, XMLreference).
 R, K, KP, KD, VMAX = 0, 1, 4, 6, 7
 PID_KP, PID_KD = 1, 2
 POSITION = 1  # mjCTRLSPEC bits of the actuators' inputs
@@ -27,13 +27,13 @@ FEED_FORWARD = 4
 def add_actuators(
     spec: mujoco.MjSpec, robot: RobotDescription, delay: float, supply: float
 ) -> None:
-    """Give every joint of `spec` its actuator, in joint order.
+    """Add an actuator to every joint of `spec`, in joint order.
 
     Args:
         spec: The robot's MJCF without actuators.
         robot: The robot.
-        delay: From a write to the actuator acting on it, s.
-        supply: Voltage of the servos, V.
+        delay: Latency from a write until the actuator acts on it, s.
+        supply: Supply voltage of the servos, V.
     """
     for index, name in enumerate(robot.joints.names):
         actuator = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
@@ -64,9 +64,9 @@ def set_servo(
 ) -> None:
     """Make `actuator` a servo of type `model` at `supply` V and `stiffness` N m/rad.
 
-    Behind a linkage that turns the servo `ratio` times for one turn of the joint, it is at the
-    joint a motor of `ratio` times the torque and the ratio'th part of the speed, and its gains
-    carry the square.
+    With a linkage that turns the servo `ratio` times per turn of the joint, the motor seen at the
+    joint has `ratio` times the torque and 1/`ratio` of the speed, and its gains scale with
+    `ratio` squared.
     """
     motor, gains = model.motor(supply), ratio**2
     actuator.set_to_dcmotor(
@@ -87,16 +87,16 @@ def set_servo(
 
 @dataclass
 class ServoDrive:
-    """Carries joint commands out on the dcmotors of a model, as position servos would.
+    """Applies joint commands to the dcmotors of a model, as position servos would.
 
-    Goals are rounded to encoder counts and stiffness to P registers, the feed-forward terms become
-    a shifted goal, and the damping is the motor's own.
+    Goals are rounded to encoder counts and stiffness to P registers. Feed-forward velocity and
+    torque become a shifted goal; the damping is the motor's own.
 
     Attributes:
         model: The twin's model; gains are written into it.
         robot: The robot.
-        supply: Voltage of the servos, V.
-        factor: Stiffness of these servos over that of the data sheet.
+        supply: Supply voltage of the servos, V.
+        factor: Ratio of these servos' stiffness to the data sheet's.
     """
 
     model: mujoco.MjModel
@@ -118,13 +118,13 @@ class ServoDrive:
         self.sent_gains = 0
 
     def write(self, command: JointCommand, ctrl: Array) -> JointCommand:
-        """Put goals into `ctrl` (n,) and return what the servos make of `command`."""
+        """Write goals into `ctrl` (n,) and return the command as the servos realise it."""
         block = command.block
         gains = block[3].tobytes()
         if gains != self._gains:
             self._send_gains(block[3])
             self._gains = gains
-        # Comparing bytes takes a tenth of `any`, and this runs on every tick.
+        # Comparing bytes takes a tenth of the time of `any`, and this runs on every tick.
         plain = block[1:3].tobytes() == self._nothing
         goal = block[0] if plain else shifted_goal(command)
         np.rint(goal * self.counts, out=ctrl)
@@ -138,8 +138,8 @@ class ServoDrive:
     def _send_gains(self, stiffness: Array) -> None:
         """Round stiffness (n,) to whole P registers of the nominal supply and set kp.
 
-        The register is computed for the nominal supply, as a driver that does not measure it
-        would; the stiffness that comes out scales with the real one.
+        The register is computed for the nominal supply, as by a driver that does not measure the
+        voltage; the resulting stiffness scales with the actual supply.
         """
         self._realised[0] = self.factor * np.rint(stiffness / self._nominal) * self._unit
         self.model.actuator_gainprm[:, KP] = self._realised[0]
@@ -148,12 +148,12 @@ class ServoDrive:
 
 @dataclass
 class TorqueDrive:
-    """Carries joint commands out exactly: ideal joints that obey the torque law at every step.
+    """Applies joint commands exactly: ideal joints that follow the torque law at every step.
 
     Attributes:
         model: The twin's model; gains are written into it.
         robot: The robot.
-        factor: Stiffness of these joints over what was asked for.
+        factor: Ratio of these joints' stiffness to the commanded one.
     """
 
     model: mujoco.MjModel
@@ -164,7 +164,7 @@ class TorqueDrive:
         self._gains: bytes = b""
 
     def write(self, command: JointCommand, ctrl: Array) -> JointCommand:
-        """Put targets into `ctrl` (3 n,) and return `command` itself."""
+        """Write targets into `ctrl` (3 n,) and return `command` itself."""
         block = command.block
         gains = block[3:].tobytes()
         if gains != self._gains:

@@ -1,4 +1,4 @@
-"""Emulated servos on a bus. Importing this makes ``twin://`` a port that pyserial can open.
+"""Emulated servos on a bus; importing this lets pyserial open ports named ``twin://...``.
 
 An IMU on I2C is opened by the same URL, see `windup.hal.imu.i2c`.
 """

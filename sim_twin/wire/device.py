@@ -1,67 +1,67 @@
-"""What hangs on a bus."""
+"""Interface of the devices on a bus."""
 
 from typing import Protocol
 
 
 class Device(Protocol):
-    """A servo or a board on a bus; see `Servo` for what each part means.
+    """A servo or a board on a bus; see `Servo` for the details of each member.
 
-    Error bytes are those of its protocol's status frame. Times are the world's, s.
+    Error bytes are those of its protocol's status packet. Times are the world's, s.
     """
 
     @property
     def name(self) -> str:
-        """What people call it."""
+        """Name for messages."""
         ...
 
     @property
     def identifier(self) -> int:
-        """Its id."""
+        """Bus id."""
         ...
 
     @property
     def shadow(self) -> int:
-        """A second id, on whose instructions it acts without an answer; 253 and up: none."""
+        """Secondary id, whose instructions it executes without answering; 253 and up: none."""
         ...
 
     @property
     def protocol(self) -> int:
-        """The protocol that it speaks, 1 or 2."""
+        """Protocol version, 1 or 2."""
         ...
 
     @property
     def baud(self) -> int:
-        """Its baud rate."""
+        """Baud rate."""
         ...
 
     @property
     def return_delay(self) -> float:
-        """From the end of an instruction to its answer, s."""
+        """Delay from the end of an instruction to the status packet, s."""
         ...
 
     @property
     def return_level(self) -> int:
-        """What it answers: 0 pings, 1 reads as well, 2 everything."""
+        """Status return level: 0 answers pings, 1 also reads, 2 all instructions."""
         ...
 
     @property
     def fast(self) -> bool:
-        """Whether it knows fast sync and fast bulk read."""
+        """Whether it supports fast sync and fast bulk read."""
         ...
 
     @property
     def busy(self) -> bool:
-        """Whether `control` has to be called at every physics step."""
+        """Whether `control` must be called at every physics step."""
         ...
 
     @property
     def driving(self) -> bool:
-        """Whether it really drives a motor now."""
+        """Whether it drives a motor now: torque is on and power is present."""
         ...
 
     @property
     def supply(self) -> float:
-        """Its supply voltage, V."""
+        """Supply voltage, V."""
         ...
 
     def listens(self, now: float) -> bool:
@@ -77,23 +77,23 @@ class Device(Protocol):
         ...
 
     def read(self, address: int, count: int, now: float) -> tuple[int, bytes]:
-        """Return the error byte and the data of a read."""
+        """Return the error byte and the data of a read instruction."""
         ...
 
     def write(self, address: int, data: bytes, now: float) -> int:
-        """Do a write and return the error byte."""
+        """Execute a write and return the error byte."""
         ...
 
     def register_write(self, address: int, data: bytes) -> int:
-        """Keep a write for `action` and return the error byte."""
+        """Store a write for `action` and return the error byte."""
         ...
 
     def action(self, now: float) -> int:
-        """Do the write that is kept and return the error byte."""
+        """Execute the stored write and return the error byte."""
         ...
 
     def reboot(self, now: float) -> None:
-        """Start again."""
+        """Reboot."""
         ...
 
     def factory_reset(self, option: int, broadcast: bool, now: float) -> int:
@@ -101,29 +101,29 @@ class Device(Protocol):
         ...
 
     def clear(self, parameters: bytes) -> int:
-        """Do a Clear instruction and return the error byte."""
+        """Execute a Clear instruction and return the error byte."""
         ...
 
     def backup(self, parameters: bytes, now: float) -> int:
-        """Do a Control Table Backup instruction and return the error byte."""
+        """Execute a Control Table Backup instruction and return the error byte."""
         ...
 
     def overload(self, now: float) -> None:
-        """Take itself for overloaded, as with a horn that is held."""
+        """Enter the overload state, as if the horn were blocked."""
         ...
 
     def heat(self, degrees: float) -> None:
-        """Have a motor that is this hot, degrees C, and stays so; -inf: it may cool again."""
+        """Keep the motor at least this hot, degrees C; -inf lets it cool again."""
         ...
 
     def control(self, now: float, dt: float) -> None:
-        """Do one step of the control loop."""
+        """Run one step of the control loop."""
         ...
 
     def watch(self, now: float, dt: float, heard: float) -> None:
-        """Look after itself, every now and then; `heard` is the last instruction."""
+        """Check protection and watchdog, periodically; `heard`: time of the last instruction, s."""
         ...
 
     def set_supply(self, volts: float, now: float) -> None:
-        """Change the supply voltage."""
+        """Change the supply voltage, V."""
         ...

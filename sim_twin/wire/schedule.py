@@ -1,4 +1,4 @@
-"""Things that will happen, in order of time."""
+"""A schedule of future actions, in order of time."""
 
 import heapq
 import math
@@ -6,10 +6,10 @@ from collections.abc import Callable
 
 
 class Schedule:
-    """A queue of actions, each with its time; equal times keep their order.
+    """A queue of actions with their times; equal times keep their order.
 
     Attributes:
-        now: Time of the action that runs, or that the world has been brought to, s.
+        now: Time of the present action, or to which the world has advanced, s.
     """
 
     def __init__(self) -> None:
@@ -19,20 +19,20 @@ class Schedule:
 
     @property
     def next(self) -> float:
-        """When the next action is due, s; infinity if there is none."""
+        """Time of the next action, s; infinity if there is none."""
         return self._queue[0][0] if self._queue else math.inf
 
     def at(self, time: float, action: Callable[[], object]) -> None:
-        """Have `action` called at `time` s; now, if that has passed."""
+        """Schedule `action` for `time`, s, or for now if that has passed."""
         self._count += 1
         heapq.heappush(self._queue, (max(time, self.now), self._count, action))
 
     def clear(self) -> None:
-        """Let nothing happen any more."""
+        """Remove all actions."""
         self._queue.clear()
 
     def run_next(self) -> None:
-        """Bring time to the next action and do it."""
+        """Advance the time to the next action and execute it."""
         time, _, action = heapq.heappop(self._queue)
         self.now = max(self.now, time)
         action()

@@ -9,15 +9,23 @@ import numpy as np
 import pytest
 
 from windup.tools import cli
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results, Study
 from windup.tools.reproduce.laszlo import LASZLO
 from windup.tools.reproduce.laszlo.jobs import walk
 from windup.tools.reproduce.laszlo.phase import pitch_range, scatter
 from windup.tools.reproduce.laszlo.recorder import NAMES
 from windup.tools.reproduce.laszlo.tours import tour
 from windup.tools.reproduce.laszlo.work import VECTORS, work
-from windup.tools.reproduce.report import collect, reproduce
-from windup.tools.reproduce.store import Store
+from windup.tools.reproduce.study.figure import (
+    Claim,
+    DataTable,
+    Figure,
+    Job,
+    Result,
+    Results,
+    Study,
+)
+from windup.tools.reproduce.study.report import collect, reproduce
+from windup.tools.reproduce.study.store import Store
 
 JOBS = [Job("square", {"x": x}) for x in (1, 2, 3)]
 

@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 from windup.control.pose_graph.gait import Gait, load_gait
-from windup.hal.errors import UnknownNameError
+from windup.hal.errors import UnknownNameError, UsageError
 from windup.hal.joints import Array
 from windup.robots import RobotDescription
 
@@ -13,7 +13,8 @@ def find_gait(robot: RobotDescription, name: str) -> Gait:
     """Return a gait or pose graph of `robot` by name, or from the path of a file of your own.
 
     Raises:
-        UnknownNameError: The robot has no such gait, and there is no such file.
+        UnknownNameError: The robot has no such gait.
+        UsageError: There is no such file.
         ConfigError: The file says something that cannot be.
     """
 
@@ -27,11 +28,16 @@ def gait_path(robot: RobotDescription, name: str) -> Path:
     """Return the file of a gait of `robot`; `name` may be its path (it then ends in .toml).
 
     Raises:
-        UnknownNameError: The robot has no such gait, and there is no such file.
+        UnknownNameError: The robot has no such gait.
+        UsageError: There is no such file.
     """
     gaits = robot.gaits()
     if name in gaits:
         return gaits[name]
     if name.endswith(".toml") and os.path.isfile(name):
         return Path(name)
+    if name.endswith(".toml"):
+        raise UsageError(
+            f"no file {name}; the gaits of {robot.name} are {', '.join(sorted(gaits))}"
+        )
     raise UnknownNameError(f"gait of {robot.name}", name, gaits)

@@ -1,1 +1,1 @@
-"""`windup bench`: what is measured of the stack, by anybody."""
+"""`windup bench`: measurements of the stack that anyone can repeat."""

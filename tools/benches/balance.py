@@ -1,4 +1,4 @@
-"""What the rollouts of a step cost, beside the step's own duration."""
+"""Measures the cost of a step's rollouts relative to the step's duration."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -20,7 +20,7 @@ WARM_UP = 5
 
 
 class Lap(NamedTuple):
-    """A step: its duration, and its rollouts on one thread, on two, and a single one, s."""
+    """One step: its duration, and the time of all rollouts on one and two threads and of one, s."""
 
     duration: float
     one: float
@@ -30,11 +30,11 @@ class Lap(NamedTuple):
 
 @dataclass
 class Recorder:
-    """A planner that keeps the requests which it hands on.
+    """A planner that records the requests which it passes on.
 
     Attributes:
-        planner: Who answers.
-        requests: What it was asked.
+        planner: The planner that answers.
+        requests: The requests so far.
     """
 
     planner: StepPlanner
@@ -50,7 +50,7 @@ class Recorder:
         self.planner.reset()
 
     def ask(self, request: StepRequest) -> None:
-        """Keep the request and hand it on."""
+        """Record the request and pass it on."""
         self.requests.append(request)
         self.planner.ask(request)
 
@@ -60,12 +60,12 @@ class Recorder:
 
 
 def measure_balance(name: str) -> dict[str, Any]:
-    """Return what a step's rollouts take: all of the full model, on one and two threads, and one.
+    """Return the times of a step's rollouts: all on one and on two threads, and a single one.
 
     The steps are those of a real walk; the two predictors take turns on each.
 
     Raises:
-        WindupError: The robot fell before there were steps to measure.
+        WindupError: The robot fell before there were enough steps to measure.
     """
     with Robot.open(name) as robot:
         walker = build_walk(robot.description, WalkOptions(), robot.predictor)
@@ -109,7 +109,7 @@ def _share(ratios: Iterable[float]) -> float:
 def _time(
     planner: StepPlanner, predictor: RolloutPredictor, request: StepRequest, rollouts: int
 ) -> float:
-    """Return the wall time of some rollouts of one step, s."""
+    """Return the wall-clock time of `rollouts` rollouts of one step, s."""
     scale = np.repeat(request.scale[None], rollouts, axis=0)
     predictor.predict(request.start, planner.policy(request, scale), planner.horizon)
     return predictor.stopwatch.laps[-1]

@@ -1,13 +1,14 @@
-"""`windup bench`: what ticks, physics, rollouts and servos cost, as ratios of one run."""
+"""`windup bench`: the cost of ticks, physics, rollouts and servos, as ratios within one run."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tyro
 
+from windup.hal.errors import UsageError
 from windup.hal.ranges import Range
 from windup.tools.benches.balance import measure_balance
 from windup.tools.benches.faults import measure_faults
@@ -42,45 +43,75 @@ What = Literal[
     "fuzz",
 ]
 
+USED: dict[What, tuple[str, ...]] = {
+    "tick": ("robot",),
+    "twin": ("robot",),
+    "balance": ("robot",),
+    "servo": ("robot",),
+    "bus": ("vendor",),
+    "safety": ("robot", "moments", "rows", "seed"),
+    "guardian": ("robot", "minutes"),
+    "loop": ("robot", "minutes"),
+    "faults": ("reads", "seed"),
+    "unplug": ("robot", "times", "seed"),
+    "leaks": ("robot", "times"),
+    "starts": ("robot", "times", "seed"),
+    "fuzz": ("robot", "times", "seed"),
+}
+"""The options that each bench accepts, besides --json."""
+
 
 @dataclass(frozen=True)
 class Bench(Command):
-    """Measure what the stack costs."""
+    """Measure the cost and the safety of the stack."""
 
     what: Annotated[What, tyro.conf.Positional]
-    """tick: one turn of the loop. twin: stepping through the guard against bare physics.
+    """tick: one iteration of the loop. twin: guarded stepping of the twin against bare physics.
     balance: the rollouts of one step. servo: the twin's servo against its data sheet.
-    bus: a cycle of 20 servos against the wire and other packages.
-    safety: end a moving robot in every way there is, and see who switches it off (an hour).
-    guardian: does it leave a robot alone that walks beside a spinning process (give --minutes 30).
-    loop: how late our loop wakes at 125 Hz, beside a C program that only sleeps.
-    faults: what becomes of readings under each kind of fault on the bus (3 minutes).
-    unplug: what becomes of a robot whose adapter is pulled out and put in again (4 minutes).
-    starts: does a robot start from wherever it is put, and notice what is wrong with it (5 min).
+    bus: a cycle of 20 servos against the bus's own time and other packages.
+    safety: end a moving robot in every way there is, and check that torque goes off (an hour).
+    guardian: takeovers during a walk beside a busy process, where none is due (give --minutes 30).
+    loop: wake-up lateness of our loop at 125 Hz, beside a C program that only sleeps.
+    faults: readings that are wrong or lost under each kind of bus fault (3 minutes).
+    unplug: a robot whose adapter is pulled out and plugged in again (4 minutes).
+    starts: starts of a robot from random poses, without and with a fault in it (5 min).
     fuzz: odd command lines on broken robots; none may end in a traceback (give --times 10000).
-    leaks: what opening and closing a robot leaves behind; 1000 times (10 minutes), status 1 if that
-    is more than 5 MB, or any file, thread or process."""
+    leaks: resources left over by opening and closing a robot 1000 times (10 minutes); status 1 if
+    that is more than 5 MB, or any file, thread or process."""
     robot: str | None = None
     """Name of the robot, or path of its folder; op3 by default, safety: op3 and duck."""
     vendor: Maker = "dynamixel2"
-    """bus: whose servos: STS3215, MX-28 under protocol 1, or XM430 under protocol 2."""
+    """bus: the servos and their protocol: STS3215, MX-28 (protocol 1), or XM430 (protocol 2)."""
     moments: Count = 20
-    """safety: random moments of each way to end, shared by the robots."""
+    """safety: number of random moments for each way to end, shared by the robots."""
     rows: tuple[str, ...] = ()
-    """safety: only the rows that begin with one of these names; all by default."""
+    """safety: only the rows whose names begin with one of these; all by default."""
     reads: Annotated[int, Range(1, 10**9)] = 10_000_000
-    """faults: how often servos are read, in all."""
+    """faults: total number of servo readings."""
     times: Count | None = None
-    """unplug, leaks, starts and fuzz: how often; 100, 1000, 100, and 1000."""
+    """unplug, leaks, starts and fuzz: number of repetitions; 100, 1000, 100, and 1000."""
     seed: Seed = 0
-    """safety, faults, unplug, fuzz: what is drawn with; starts: of the first."""
+    """safety, faults, unplug, fuzz: seed of the random numbers; starts: of the first start."""
     minutes: Annotated[float, Range(0.0, 10_000.0, "minutes", above=True)] = 10.0
-    """loop, guardian: how long."""
+    """loop, guardian: duration."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
+    def check(self) -> None:
+        """Check the options.
+
+        Raises:
+            UsageError: A number is out of its range, or an option belongs to another bench.
+        """
+        super().check()
+        for option in fields(self):
+            known = option.name in ("what", "json", *USED[self.what])
+            if not known and getattr(self, option.name) != option.default:
+                takers = ", ".join(what for what, names in USED.items() if option.name in names)
+                raise UsageError(f"bench {self.what} takes no --{option.name}; these do: {takers}")
+
     def run(self) -> int:
-        """Measure; returns the exit status."""
+        """Measure and print the result; return the exit status."""
         measures: dict[str, Callable[[str], dict[str, Any]]] = {
             "tick": measure_tick,
             "twin": measure_twin,
@@ -106,7 +137,7 @@ class Bench(Command):
         return 0 if result.get("met", True) else 1
 
     def _faults(self) -> int:
-        """Read servos under faults, whose table has other columns too."""
+        """Measure readings under faults, and print them in a table of their own."""
         result = measure_faults(self.reads, self.seed)
         console.print(fault_table(result["cells"]))
         console.print(
@@ -117,7 +148,7 @@ class Bench(Command):
         return 0 if result["met"] else 1
 
     def _safety(self) -> int:
-        """Measure safety, whose table has other columns than key and value."""
+        """Measure safety, and print it in a table of its own."""
         robots = ROBOTS if self.robot is None else (self.robot,)
         result = measure_safety(self.moments, self.seed, self.rows, robots)
         console.print(

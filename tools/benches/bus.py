@@ -1,9 +1,9 @@
-"""What a bus cycle costs this computer, beside dynamixel-sdk and rustypot.
+"""Measures the processor time of a bus cycle, beside dynamixel-sdk and rustypot.
 
 One cycle reads current, velocity and position of n servos and writes n goals. Every function
-returns a dict of microseconds of processor time a cycle, measured in interleaved rounds of which
-the median counts: on a busy machine trust the ratios. The answers are canned, so no wire time and
-no emulator is in them.
+returns a dict of microseconds of processor time per cycle: the median of interleaved rounds. On a
+busy machine only the ratios are reliable. The answers are prepared beforehand, so neither wire time
+nor an emulator is included.
 """
 
 import contextlib
@@ -39,19 +39,19 @@ GOAL = 116
 BAUD = 4_000_000
 READY = b"r"
 MEMORY = bytes(64) + b"\x01" + bytes(61) + struct.pack("<hii", -12, 34, 2048) + bytes(range(80, 96))
-"""What the servos' registers hold: torque on, and from 126 on what they measure."""
+"""Contents of the servos' registers: torque on, and the measured values from address 126."""
 Cycle = Callable[[], None]
 
 
 def bench_memory(
     servos: int = 20, rounds: int = 9, cycles: int = 100, vendor: Vendor | None = None
 ) -> dict[str, float]:
-    """Measure the codecs alone: answers lie ready in memory, nothing is a system call.
+    """Measure the codecs alone: prepared answers in memory, without system calls.
 
-    `vendor` says whose protocol 1; None is Dynamixel protocol 2.
+    `vendor` selects a maker's protocol 1; None is Dynamixel protocol 2.
 
     Returns:
-        Microseconds of processor time a cycle for "sdk", "codec", "codec fast" (of protocol 2),
+        Microseconds of processor time per cycle for "sdk", "codec", "codec fast" (of protocol 2),
         "backend".
     """
     ids = list(range(1, servos + 1))
@@ -75,7 +75,7 @@ def bench_pty(
     """Measure with system calls, over a pseudo-terminal to a process that answers at once.
 
     Returns:
-        As `bench_memory`, and "rustypot" where that is installed.
+        As `bench_memory`, and also "rustypot" where that is installed.
     """
     ids = list(range(1, servos + 1))
     with contextlib.ExitStack() as stack:
@@ -100,7 +100,7 @@ def bench_pty(
 
 
 def interleaved(subjects: Mapping[str, Cycle], rounds: int, cycles: int) -> dict[str, float]:
-    """Return the median processor time of a cycle of each subject, microseconds."""
+    """Return the median processor time per cycle of each subject, microseconds."""
     times: dict[str, list[float]] = {name: [] for name in subjects}
     for cycle in subjects.values():
         cycle()
@@ -114,7 +114,7 @@ def interleaved(subjects: Mapping[str, Cycle], rounds: int, cycles: int) -> dict
 
 
 def wire_bytes(servos: int = 20, fast: bool = False, vendor: Vendor | None = None) -> int:
-    """Return the bytes of one cycle: request, answers and goals."""
+    """Return the number of bytes in one cycle: request, answers and goals."""
     if vendor is not None:
         return bench_bus1.wire_bytes(vendor, servos)
     ids = range(1, servos + 1)
@@ -123,14 +123,14 @@ def wire_bytes(servos: int = 20, fast: bool = False, vendor: Vendor | None = Non
 
 
 def respond(descriptor: int) -> None:
-    """Answer reads on `descriptor` for ever, at once, with canned bytes."""
+    """Answer reads on `descriptor` for ever, at once, with prepared bytes."""
     canned: dict[bytes, bytes] = {}
     pending = b""
     os.write(descriptor, READY)
     while data := os.read(descriptor, 4096):
         pending += data
         while len(pending) >= 7 or (len(pending) >= 6 and pending[2] != 0xFD):
-            newer = pending[2] == 0xFD  # no servo of protocol 1 has this id here
+            newer = pending[2] == 0xFD  # else protocol 1, where no servo here has this id
             end = 7 + int.from_bytes(pending[5:7], "little") if newer else 4 + pending[3]
             if len(pending) < end:
                 break
@@ -142,7 +142,7 @@ def respond(descriptor: int) -> None:
 
 
 def _answer(request: bytes) -> bytes:
-    """Return what healthy servos say to a request of one of the cyclic kinds."""
+    """Return the answer of healthy servos to one of the cyclic requests."""
     kind, body = request[7], request[8:-2]
     start, size = struct.unpack_from("<HH", body)
     data = MEMORY[start : start + size]
@@ -162,7 +162,7 @@ def _answer(request: bytes) -> bytes:
 
 
 class _Canned:
-    """A pyserial object whose servos have answered before they were asked."""
+    """A pyserial port whose answers are in the buffer as soon as the request is written."""
 
     def __init__(self, ids: list[int]) -> None:
         self.baudrate, self.latency = BAUD, 0.0
@@ -189,7 +189,7 @@ class _Canned:
 
 
 class _CannedSdkPort(PortHandler):  # type: ignore[misc]  # the SDK has no types
-    """The SDK's port over the same canned answers; its own code does all the rest."""
+    """The SDK's port with the same prepared answers; the rest is the SDK's own code."""
 
     def __init__(self, ids: list[int]) -> None:
         super().__init__("canned")
@@ -204,7 +204,7 @@ class _CannedSdkPort(PortHandler):  # type: ignore[misc]  # the SDK has no types
 
 
 def _sdk_cycle(port: PortHandler, ids: list[int]) -> Cycle:
-    """Return the SDK's way: grouped read, three values a servo, grouped write."""
+    """Return the SDK's cycle: grouped read, three values per servo, grouped write."""
     packets = Protocol2PacketHandler()
     read = GroupSyncRead(port, packets, STATE, SIZE)
     write = GroupSyncWrite(port, packets, GOAL, 4)
@@ -227,7 +227,7 @@ def _sdk_cycle(port: PortHandler, ids: list[int]) -> Cycle:
 
 
 def _codec_cycle(port: Port, ids: list[int], fast: bool = False) -> Cycle:
-    """Return our way without the backend: exchange, codec, integers in arrays."""
+    """Return our cycle without the backend: exchange, codec, integers in arrays."""
     exchange = BusTransactions(port)
     read = BlockRead([Span(id, STATE, SIZE) for id in ids], fast)
     write = BlockWrite(ids, GOAL, 4)
@@ -263,7 +263,7 @@ def _backend_cycle(port: Port, ids: list[int]) -> Cycle:
 
 
 def _rustypot_cycle(path: str, ids: list[int]) -> Cycle | None:
-    """Return rustypot's raw way, or None where it is not installed."""
+    """Return rustypot's raw cycle, or None where it is not installed."""
     try:
         from rustypot import Xl330PyController
     except ImportError:

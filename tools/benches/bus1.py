@@ -1,8 +1,7 @@
 """The bus benchmark of protocol 1: STS beside feetech-servo-sdk, MX beside dynamixel-sdk.
 
-One cycle reads position, velocity and load of n servos and writes n goals: a sync read where the
-maker is Feetech, a bulk read where it is Dynamixel. See `windup.tools.benches.bus` for how it is
-measured.
+One cycle reads position, velocity and load of n servos and writes n goals: with a sync read on
+Feetech servos, with a bulk read on Dynamixels. See `windup.tools.benches.bus` for the method.
 """
 
 import contextlib
@@ -35,12 +34,12 @@ STATE = b"\x00\x08\x00\x00\x00\x00\x4a\x23"
 """Position 2048, no velocity, no load, 7.4 V, 35 degrees C."""
 STS_MEMORY = bytes(40) + b"\x01".ljust(8, b"\0") + b"\xe7\x03".ljust(8, b"\0") + STATE
 MX_MEMORY = bytes(24) + b"\x01".ljust(10, b"\0") + b"\xfe\x03" + STATE
-"""The same where the servos have it, behind torque that is on, with the mark of an armed one."""
+"""The same at the servos' addresses, with torque on and the mark of an armed servo."""
 
 
 @dataclass(frozen=True)
 class Maker:
-    """What is measured of a maker: one model of one family, and its SDK."""
+    """The subject of a measurement: one model of one family, and the maker's SDK."""
 
     model: str
     family: Family
@@ -50,7 +49,7 @@ class Maker:
 
 
 def subjects(vendor: Vendor, ids: list[int]) -> dict[str, Cycle]:
-    """Return the cycles to measure with answers that lie ready in memory."""
+    """Return the cycles to measure with prepared answers in memory."""
     maker = MAKERS[vendor]
     return {
         "sdk": maker.sdk_cycle(_over_canned(maker.sdk_port("canned")), ids, maker.family),
@@ -62,7 +61,7 @@ def subjects(vendor: Vendor, ids: list[int]) -> dict[str, Cycle]:
 def pty_subjects(
     vendor: Vendor, ids: list[int], paths: list[str], stack: contextlib.ExitStack
 ) -> dict[str, Cycle]:
-    """Return the cycles to measure over the pseudo-terminals at `paths`, four of them."""
+    """Return the cycles to measure over the four pseudo-terminals at `paths`."""
     maker = MAKERS[vendor]
     sdk = maker.sdk_port(paths[0])
     sdk.baudrate = BAUD
@@ -80,7 +79,7 @@ def pty_subjects(
 
 
 def wire_bytes(vendor: Vendor, servos: int = 20) -> int:
-    """Return the bytes of one cycle: request, answers and goals."""
+    """Return the number of bytes in one cycle: request, answers and goals."""
     family, ids = MAKERS[vendor].family, list(range(1, servos + 1))
     read = family.dialect.read([family.state.span(id) for id in ids], fast=True)
     goals = family.dialect.write(ids, family.registers["goal_position"])
@@ -88,7 +87,7 @@ def wire_bytes(vendor: Vendor, servos: int = 20) -> int:
 
 
 def answer(request: bytes) -> bytes:
-    """Return what healthy servos say to a request of one of the cyclic kinds."""
+    """Return the answer of healthy servos to one of the cyclic requests."""
     kind, body = request[4], request[5:-1]
     if kind == Instruction.SYNC_READ:
         data = STS_MEMORY[body[0] : body[0] + body[1]]
@@ -102,7 +101,7 @@ def answer(request: bytes) -> bytes:
 
 
 def codec_cycle(port: Port, ids: list[int], family: Family) -> Cycle:
-    """Return our way without the backend: exchange, codec, integers in arrays."""
+    """Return our cycle without the backend: exchange, codec, integers in arrays."""
     exchange, block = BusTransactions(port), family.state
     read = family.dialect.read([block.span(id) for id in ids], fast=True)
     write = family.dialect.write(ids, family.registers["goal_position"])
@@ -155,7 +154,7 @@ def _dynamixel_cycle(port: Any, ids: list[int], family: Family) -> Cycle:
 
 
 class _BulkRead(GroupBulkRead):  # type: ignore[misc]  # the SDK has no types
-    """The SDK's, without the argument too many that makes it fail in protocol 1."""
+    """The SDK's bulk read, without the surplus argument that makes it fail in protocol 1."""
 
     def txPacket(self) -> Any:  # noqa: N802 - the SDK's name
         if self.is_param_changed or not self.param:
@@ -171,7 +170,7 @@ def _sdk_cycle(read: Any, write: Any, ids: list[int], address: int) -> Cycle:
         write.addParam(id, goal)
 
     def cycle() -> None:
-        # Its timeout is short for a machine that has other things to do now and then.
+        # Its time-out is short for a machine that is busy now and then.
         if all(read.txRxPacket() != 0 for _ in range(ATTEMPTS)):
             raise RuntimeError("the SDK's read failed")
         for id in ids:
@@ -184,7 +183,7 @@ def _sdk_cycle(read: Any, write: Any, ids: list[int], address: int) -> Cycle:
 
 
 def _rustypot_cycle(maker: Maker, path: str, ids: list[int]) -> Cycle | None:
-    """Return rustypot's raw way, or None where there is none."""
+    """Return rustypot's raw cycle, or None where it is missing or has no such servo."""
     try:
         import rustypot
     except ImportError:
@@ -203,7 +202,7 @@ def _rustypot_cycle(maker: Maker, path: str, ids: list[int]) -> Cycle | None:
 
 
 class _Canned:
-    """A pyserial object whose servos have answered before they were asked."""
+    """A pyserial port whose answers are in the buffer as soon as the request is written."""
 
     def __init__(self) -> None:
         self.baudrate, self.latency = BAUD, 0.0
@@ -230,7 +229,7 @@ class _Canned:
 
 
 def _over_canned(port: Any) -> Any:
-    """Return an SDK's port over canned answers; its own code does all the rest."""
+    """Return an SDK's port with prepared answers; the rest is the SDK's own code."""
     canned = _Canned()
     port.ser, port.is_open, port.tx_time_per_byte = canned, True, 10e3 / BAUD
     port.readPort = canned.read

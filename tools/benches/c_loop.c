@@ -1,5 +1,5 @@
-/* A loop that only sleeps, for `windup bench loop`: `c_loop PERIOD_NS TICKS` prints how late each
- * tick woke, ns, one a line. It has the precedence and the timer slack that our loop has. */
+/* A loop that only sleeps, for `windup bench loop`: `c_loop PERIOD_NS TICKS` prints the lateness of
+ * each wake-up, ns, one per line. It has the same priority and timer slack as our loop. */
 #define _GNU_SOURCE
 #include <sched.h>
 #include <stdint.h>
@@ -24,7 +24,7 @@ int main(int count, char **words)
     if (late == NULL)
         return 1;
     struct sched_param precedence = {.sched_priority = 10};
-    sched_setscheduler(0, SCHED_RR, &precedence); /* refused without the right: so is ours */
+    sched_setscheduler(0, SCHED_RR, &precedence); /* fails without permission, as in our loop */
     prctl(PR_SET_TIMERSLACK, 1);
     const int64_t start = now();
     for (int64_t k = 0; k < ticks; k++) {

@@ -1,4 +1,4 @@
-"""Ten million readings of all families of servos, each kind of fault apart, beside the truth."""
+"""Millions of readings of all servo families under each kind of fault, checked with the truth."""
 
 import time
 from collections.abc import Iterator
@@ -12,17 +12,17 @@ from windup.tools.benches.soak_verdict import KINDS, LATE_ADAPTER, MIX, MIXED, v
 from windup.tools.terminal.parallel import side_by_side
 
 RATES = (0.01, 0.05)
-"""Of the answers. Everything at once comes at the first alone: at the second few are whole."""
+"""Shares of the answers that are hit; the mix uses the first only, as few survive the second."""
 CHUNK = 25_000
-"""Readings of one emulated bus."""
+"""Number of readings of one emulated bus."""
 BREAKDOWNS = 0.01
-"""Of the cycles, where everything goes wrong."""
+"""Share of the cycles with breakdowns, in the mix of all faults."""
 LATE = 16e-3
-"""Latency of an adapter as FTDI sells it, s."""
+"""Latency of an FTDI adapter in its factory setting, s."""
 
 
 class Cell(NamedTuple):
-    """Which servos are read under which fault."""
+    """A combination of servos and a fault."""
 
     family: str
     kind: str
@@ -30,7 +30,7 @@ class Cell(NamedTuple):
 
 
 class Item(NamedTuple):
-    """What one process does at a time."""
+    """One work item of a process."""
 
     cell: Cell
     reads: int
@@ -38,10 +38,10 @@ class Item(NamedTuple):
 
 
 def measure_faults(reads: int = 10_000_000, seed: int = 0) -> dict[str, Any]:
-    """Return what became of `reads` servo-reads, shared by all families, faults and rates.
+    """Return the results of `reads` servo readings, divided among all families, faults and rates.
 
     Args:
-        reads: In all, on benches of 20 servos of one family.
+        reads: Total number of readings, on benches of 20 servos of one family.
         seed: Seed of the faults.
 
     Raises:
@@ -67,14 +67,14 @@ def measure_faults(reads: int = 10_000_000, seed: int = 0) -> dict[str, Any]:
 
 
 def _items(cells: list[Cell], reads: int, seed: int) -> Iterator[Item]:
-    """Yield the work: `reads` readings a cell, in pieces."""
+    """Yield the work items: `reads` readings per cell, in pieces."""
     pieces = max(1, round(reads / CHUNK))
     for piece, cell in product(range(pieces), cells):
         yield Item(cell, -(-reads // pieces), seed + piece)
 
 
 def _soak(item: Item) -> tuple[Tally, float]:
-    """Return what came of the readings, and the share of the position in an answer."""
+    """Return the tally of the readings, and the share of the position bytes in an answer."""
     (family, kind, rate), reads, seed = item
     latency = LATE if kind == LATE_ADAPTER else 0.0
     with SoakRig(family, seed=seed, latency=latency) as rig:
@@ -83,7 +83,7 @@ def _soak(item: Item) -> tuple[Tally, float]:
 
 
 def _faults(kind: str, rate: float) -> dict[str, float]:
-    """Return the kinds of fault on the bus; a late adapter loses answers too."""
+    """Return the rates of the faults on the bus; a late adapter also loses answers."""
     if kind == MIX:
         return dict.fromkeys(MIXED, rate)
     return {"drop" if kind == LATE_ADAPTER else kind: rate}

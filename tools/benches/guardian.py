@@ -1,4 +1,4 @@
-"""Does the guardian leave a robot alone that walks for a long time on a busy computer?"""
+"""Checks that the guardian does not take over a robot during a long walk on a busy computer."""
 
 import multiprocessing
 import tempfile
@@ -15,19 +15,19 @@ from windup.tools.robot.robot import Robot
 from windup.tools.terminal.output import console
 
 STEPS = 400
-"""Of one walk; then the robot rests, and walks again."""
+"""Steps of one walk; then the robot rests, and walks again."""
 
 
 def measure_takeovers(name: str, minutes: float = 30.0, speed: float = 0.1) -> dict[str, Any]:
-    """Return how often the guardian took over while a robot walked beside a spinning process.
+    """Return how often the guardian took over during a walk beside a process that uses one core.
 
     The servos are those of `windup emulate` on a pseudo-terminal, in real time. A walk whose robot
     falls ends by itself, is counted, and is followed by the next.
 
     Args:
         name: The robot.
-        minutes: How long it walks in all.
-        speed: How fast, m/s.
+        minutes: Total duration of the walks.
+        speed: Walking speed, m/s.
     """
     context = multiprocessing.get_context("spawn")
     busy = context.Process(target=_spin, daemon=True)
@@ -63,7 +63,7 @@ def measure_takeovers(name: str, minutes: float = 30.0, speed: float = 0.1) -> d
 
 
 def _last(told: Connection) -> dict[str, Any]:
-    """Return the last report of a walk: it sends one a second, since it may be killed."""
+    """Return the last report of a walk, which sends one per second because it may be killed."""
     report: dict[str, Any] = {"seconds": 0.0, "reason": "it did not begin", "longest_gap_s": 0.0}
     try:
         while True:
@@ -73,7 +73,7 @@ def _last(told: Connection) -> dict[str, Any]:
 
 
 def _walk(name: str, speed: float, seconds: float, tell: Connection) -> None:
-    """Walk an emulated robot for some time; the body of a process that may be killed."""
+    """Walk an emulated robot for `seconds`; the main function of a process that may be killed."""
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
     with tempfile.TemporaryDirectory() as folder:
@@ -96,7 +96,7 @@ def _walk(name: str, speed: float, seconds: float, tell: Connection) -> None:
 
 
 class Gaps:
-    """The time between the ticks of a walk, from its first step on, told once a second."""
+    """Measures the longest time between the ticks of a walk, and reports it once a second."""
 
     def __init__(self, tell: Connection, seconds: float) -> None:
         self._tell, self._seconds = tell, seconds
@@ -106,7 +106,7 @@ class Gaps:
         self.over = False
 
     def update(self, observation: Observation) -> None:
-        """Take note of a tick."""
+        """Record a tick."""
         now = time.monotonic()
         if self._walking:
             self._longest = max(self._longest, now - self._last)
@@ -116,7 +116,7 @@ class Gaps:
             self.tell("killed")
 
     def end_in_time(self) -> Callable[[int, float], None]:
-        """Return what ends the walk when it has lasted long enough."""
+        """Return a step callback that ends the walk after its duration."""
 
         def on_step(number: int, speed: float) -> None:
             self._walking = True
@@ -127,7 +127,7 @@ class Gaps:
         return on_step
 
     def tell(self, reason: str) -> None:
-        """Say how it has gone so far."""
+        """Send a report with the results so far."""
         seconds = time.monotonic() - self._began
         self._tell.send({"seconds": seconds, "reason": reason, "longest_gap_s": self._longest})
 

@@ -1,4 +1,4 @@
-"""How late the ticks of our loop wake, beside a C program that only sleeps, in the same minutes."""
+"""Measures the wake-up lateness of our loop, beside a C program that only sleeps."""
 
 import multiprocessing
 import os
@@ -19,15 +19,15 @@ from windup.tools.robot.robot import Robot
 from windup.tools.terminal.output import console
 
 RATE = 125.0  # Hz
-FACTOR, MARGIN = 2.0, 0.2  # of the C loop's p99.9, and ms beside it, that ours may have
+FACTOR, MARGIN = 2.0, 0.2  # allowed p99.9: this factor times the C loop's, plus this margin, ms
 SOURCE = Path(__file__).with_name("c_loop.c")
 
 
 class WakeLog:
-    """A clock that takes down how late its waits end.
+    """A clock that records how late its waits end.
 
     Attributes:
-        late: Of each wait, s.
+        late: Lateness of each wait, s.
     """
 
     def __init__(self, clock: Clock) -> None:
@@ -39,20 +39,20 @@ class WakeLog:
         return self.clock.now()
 
     def wait_until(self, time_: float) -> None:
-        """Wait until it is `time_` s."""
+        """Wait until `time_`, s."""
         self.clock.wait_until(time_)
         self.late.append(self.clock.now() - time_)
 
 
 def measure_jitter(name: str, minutes: float = 10.0) -> dict[str, Any]:
-    """Return the lateness of both loops at 125 Hz, side by side, ms.
+    """Return the lateness of both loops, running simultaneously at 125 Hz, ms.
 
-    Ours is the whole of it: the robot stands, armed, on the servos of `windup emulate` on a
+    Ours is the complete loop: the robot stands, armed, on the servos of `windup emulate` on a
     pseudo-terminal, which another process emulates in real time.
 
     Args:
         name: The robot.
-        minutes: How long both run.
+        minutes: Duration of the measurement.
 
     Raises:
         UsageError: There is no C compiler.
@@ -78,7 +78,7 @@ def measure_jitter(name: str, minutes: float = 10.0) -> dict[str, Any]:
 
 
 def compile_c(folder: Path) -> Path:
-    """Return the C loop, compiled into a folder.
+    """Compile the C loop into a folder and return its path.
 
     Raises:
         UsageError: There is no compiler, or it fails.
@@ -103,7 +103,7 @@ def run_c(program: Path, ticks: int) -> "subprocess.Popen[str]":
 def _side_by_side(
     robot: Robot, program: Path, ticks: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
-    """Run both; return their latenesses, s, and the ticks that ours missed."""
+    """Run both loops; return their latenesses, s, and the number of ticks that ours missed."""
     backend = robot.backend.backend
     assert isinstance(backend, ServoBackend)
     log = WakeLog(backend.clock)
@@ -122,7 +122,7 @@ def _side_by_side(
 
 
 def _compare(late: NDArray[np.float64], other: NDArray[np.float64], missed: int) -> dict[str, Any]:
-    """Return the percentiles of both, and what ours may be."""
+    """Return the percentiles of both loops, and whether ours is within the allowed lateness."""
     percents = (50.0, 99.0, 99.9, 100.0)
     result: dict[str, Any] = {"rate_hz": RATE, "ticks": len(late), "missed": missed}
     for key, values in (("ours", late), ("c", other)):

@@ -1,4 +1,4 @@
-"""What is left behind by opening a robot, running it for a moment and closing it, many times."""
+"""Measures what remains after opening a robot, running it briefly and closing it, many times."""
 
 import gc
 import multiprocessing
@@ -23,27 +23,27 @@ from windup.tools.robot.robot import Robot
 from windup.tools.terminal.output import console
 
 RUN: Final = 0.1
-"""How long it stands each time, s."""
+"""Time for which the robot stands each time, s."""
 WARM: Final = 0.1
-"""The part of the times after which counting begins: by then all that is kept once is there."""
+"""Share of the repetitions before the reference: by then all caches are filled."""
 SLOW: Final = 20
-"""On a pseudo-terminal, in real time, it is opened so many times less often."""
+"""Factor by which there are fewer repetitions on a pseudo-terminal, in real time."""
 MEMORY_LIMIT: Final = 5.0
-"""Growth of memory, MB."""
+"""Allowed growth of memory, MB."""
 COUNTED: Final = ("descriptors", "threads", "processes", "files")
-"""What there may be no more of than before."""
+"""Resources of which there may be no more than before."""
 
 
 @dataclass(frozen=True)
 class Traces:
-    """What this process has.
+    """Resources of this process.
 
     Attributes:
-        memory: In RAM, MB.
-        descriptors: Open files, pipes and ports.
-        threads: Threads.
-        processes: Child processes.
-        files: Files in the user's runtime folder.
+        memory: Resident memory, MB.
+        descriptors: Number of open files, pipes and ports.
+        threads: Number of threads.
+        processes: Number of child processes.
+        files: Number of files in the user's runtime folder.
     """
 
     memory: float
@@ -54,7 +54,7 @@ class Traces:
 
     @classmethod
     def now(cls) -> "Traces":
-        """Look, when nothing is left that nobody refers to."""
+        """Collect garbage, then count the resources."""
         gc.collect()
         tasks = list(Path("/proc/self/task").iterdir())
         children = [(task / "children").read_text().split() for task in tasks]
@@ -68,17 +68,17 @@ class Traces:
         )
 
     def since(self, before: "Traces") -> dict[str, float]:
-        """Return what has come since `before`."""
+        """Return the growth since `before`."""
         counts = {name: getattr(self, name) - getattr(before, name) for name in COUNTED}
         return {"memory_grown_mb": round(self.memory - before.memory, 2), **counts}
 
 
 def measure_leaks(name: str, times: int) -> dict[str, Any]:
-    """Return what opening a robot so often leaves: as a twin, through its bus, on a port.
+    """Return what remains after opening a robot many times: as a twin, on `twin://`, on a port.
 
     Args:
         name: The robot.
-        times: How often; on a pseudo-terminal a twentieth of that.
+        times: Number of repetitions; on a pseudo-terminal a twentieth of that.
     """
     rows = {"twin": leaks(name, None, times)}
     if any(load_robot(name).servos):
@@ -92,13 +92,13 @@ def measure_leaks(name: str, times: int) -> dict[str, Any]:
 
 
 def clean(row: dict[str, float]) -> bool:
-    """Return whether nothing worth a name is left."""
+    """Return whether nothing counted remains, and memory grew within its limit."""
     left = sum(max(row[name], 0) for name in COUNTED)
     return row["memory_grown_mb"] <= MEMORY_LIMIT and left == 0
 
 
 def leaks(name: str, port: str | None, times: int) -> dict[str, float]:
-    """Return what is left after `times`, beside what there was after the first of them."""
+    """Return the growth of resources over `times` repetitions, after the first `WARM` of them."""
     warm = max(round(WARM * times), 1)
     with _unsaid(), Progress(console=Console(stderr=True), transient=True) as progress:
         bar = progress.add_task(f"opening {name} on {port or 'its twin'}", total=times)
@@ -113,7 +113,7 @@ def leaks(name: str, port: str | None, times: int) -> dict[str, float]:
 
 
 def open_once(name: str, port: str | None) -> None:
-    """Open the robot, let it stand for a moment, and close it without a crouch."""
+    """Open the robot, let it stand briefly, and close it without a crouch."""
     robot = Robot.open(name, port=port, arm=True)
     try:
         robot.stand(RUN)
@@ -124,7 +124,7 @@ def open_once(name: str, port: str | None) -> None:
 
 @contextmanager
 def _unsaid() -> Iterator[None]:
-    """Leave out what is said each time a robot is armed."""
+    """Suppress the messages that appear each time a robot is armed."""
     console.quiet = True
     try:
         yield
@@ -134,7 +134,7 @@ def _unsaid() -> Iterator[None]:
 
 @contextmanager
 def emulated(name: str) -> Iterator[str]:
-    """Serve the robot's buses on pseudo-terminals; what `--port` takes for them."""
+    """Serve the robot's buses on pseudo-terminals; yield the value of `--port` for them."""
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
     with tempfile.TemporaryDirectory() as folder:

@@ -1,4 +1,4 @@
-"""What a tick costs, and what the guarded twin costs beside bare physics."""
+"""Measures the duration of a tick, and the cost of the guarded twin beside bare physics."""
 
 import gc
 import time
@@ -16,7 +16,7 @@ ROUNDS = 20
 
 
 def measure_tick(name: str) -> dict[str, Any]:
-    """Return the tick of guard and tracker: read, step, write, without physics."""
+    """Return the duration of a tick with guard and tracker: read, step, write, without physics."""
     with Robot.open(name) as robot:
         options = WalkOptions(open_loop=True)
         walker = build_walk(robot.description, options, None)

@@ -1,4 +1,4 @@
-"""Does a robot start from wherever it is put, and does it notice what is wrong with it?"""
+"""Starts a robot from random poses, and checks that it starts and that faults in it are noticed."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ from windup.tools.benches.starts.trial import CAUGHT_WITHIN, Start, try_start
 from windup.tools.terminal.parallel import side_by_side
 
 SHARE = 4
-"""So many times fewer starts with each fault than without any."""
+"""Factor by which there are fewer starts with each fault than without any."""
 ON_FEET: tuple[Kind, ...] = ("standing", "squatting")
 SHOWN: dict[Fault, tuple[Kind, ...]] = {
     "sign": ON_FEET,
@@ -19,20 +19,20 @@ SHOWN: dict[Fault, tuple[Kind, ...]] = {
     "jam": (*ON_FEET, "hanging"),
     "motor": (*ON_FEET, "hanging"),
 }
-"""Where a fault can show in the first motion: one of the file only with the feet on the floor. Who
-gets up holds its pose first, and moves many joints only later."""
+"""Postures in which a fault can show in the first motion; a fault in the file only does so with the
+feet on the floor. A robot that gets up first holds its pose, and moves many joints only later."""
 
 
 def measure_starts(name: str, starts: int = 100, seed: int = 0) -> dict[str, Any]:
-    """Return what came of random starts of a robot, sound ones and such with one fault.
+    """Return the results of random starts of a robot, without a fault and with one.
 
-    A robot that lies or sits should be told so when it is to stand, and then get up if it can. A
-    *false refusal* is any other refusal: the others can all be started.
+    A robot that lies or sits must report that when it is to stand, and then get up if it can. Any
+    other refusal is a *false refusal*, since the robot can start from all other postures.
 
     Args:
         name: The robot.
-        starts: How many without a fault; a quarter as many with each.
-        seed: Of the first; the others follow.
+        starts: Number of starts without a fault; a quarter as many with each fault.
+        seed: Seed of the first start; the seeds of the others follow it.
     """
     robot = load_robot(name)
     kinds = kinds_of(robot)
@@ -50,7 +50,7 @@ def measure_starts(name: str, starts: int = 100, seed: int = 0) -> dict[str, Any
 
 
 def _sound(rows: Sequence[dict[str, Any]], rises: bool) -> dict[str, Any]:
-    """Return what came of starts with nothing wrong."""
+    """Return the summary of starts without a fault."""
     down = [row for row in rows if row["kind"] in ("sitting", "lying")]
     told = [row for row in down if row["told"]]
     refused = [row for row in rows if row["outcome"] in ("refused", "first motion")]
@@ -68,11 +68,11 @@ def _sound(rows: Sequence[dict[str, Any]], rises: bool) -> dict[str, Any]:
 
 
 def _broken(rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Return what came of starts with one fault.
+    """Return the summary of starts with one fault.
 
     "late": it did harm, or moved its joint by more than 15 degrees, before it was caught, or was
-    not caught. "unseen": not caught, for nothing of it showed. "moved": the farthest that a joint
-    came before it was caught, degrees.
+    not caught. "unseen": not caught, because it had no effect. "moved": the largest motion of a
+    joint before its fault was caught, degrees.
     """
     ends = ("refused", "first motion", "UnhealthyError")
     caught = [row for row in rows if row["outcome"] in ends]
@@ -91,6 +91,6 @@ def _broken(rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _sentence(row: dict[str, Any]) -> str:
-    """Return what came of one start, for people."""
+    """Return a description of one start."""
     joints, moved = " and ".join(row["joints"]), row["moved"]
     return f"{row['kind']} {row['seed']}, {joints}, moved {moved:.0f} degrees: {row['said']}"

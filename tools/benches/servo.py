@@ -1,4 +1,4 @@
-"""The twin's servo on a test stand, beside its data sheet."""
+"""Compares the twin's servo on a test stand with its data sheet."""
 
 from typing import Any
 
@@ -10,14 +10,14 @@ from windup.robots import load_robot
 from windup.sim_twin.servo.servo_motor import set_servo
 
 STEP = 0.001
-INERTIA = 0.01  # kg m2, of the stand's lever
-LOAD = 0.4  # of the stall torque, for the static deflection
+INERTIA = 0.01  # of the stand's lever, kg m2
+LOAD = 0.4  # share of the stall torque, for the static deflection
 
 
 def measure_servos(name: str) -> dict[str, Any]:
     """Return stall torque, no-load speed and deflection of each servo type of a robot.
 
-    Every value is a ratio of what the twin does to what the data sheet (or the P law) says.
+    Every value is the ratio of the twin's result to that of the data sheet (or the P law).
     """
     servos = {servo.model.name: servo.model for servo in load_robot(name).servos if servo}
     result = {}
@@ -58,14 +58,14 @@ class TestStand:
         self.model = spec.compile()
 
     def stall_torque(self) -> float:
-        """Return the torque at a blocked shaft, its goal far away, N m."""
+        """Return the torque at the blocked shaft with a distant goal, N m."""
         data = mujoco.MjData(self.model)
         data.ctrl[0] = np.pi
         mujoco.mj_forward(self.model, data)
         return float(data.actuator_force[0])
 
     def no_load_speed(self) -> float:
-        """Return the speed of the free shaft, its goal always far ahead, rad/s."""
+        """Return the speed of the free shaft with a goal that stays ahead, rad/s."""
         data = mujoco.MjData(self.model)
         for _ in range(round(2.0 / STEP)):
             data.ctrl[0] = data.qpos[0] + np.pi
@@ -73,10 +73,10 @@ class TestStand:
         return float(data.qvel[0])
 
     def deflection(self) -> float:
-        """Return the static deflection under a load over that of the P law.
+        """Return the static deflection under a load relative to that of the P law.
 
-        Dry friction holds the shaft on either side of the balance; the mean of coming to rest from
-        above and from below is what a bench shows.
+        Coulomb friction stops the shaft on either side of equilibrium; the mean of approaching it
+        from above and from below is what a bench shows.
         """
         rest = []
         for start in (0.0, 2.0 * self.load / self.stiffness):

@@ -1,4 +1,4 @@
-"""One family of servos read for a long time while everything goes wrong, against the truth."""
+"""Reads one family of servos for a long time under faults, and compares with the truth."""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -13,27 +13,27 @@ from windup.hal.servo_bus.plausibility import FASTER, MARGIN
 from windup.sim_twin.wire.faults.fault_rule import ANSWERS, SECONDS, make_rule
 from windup.tools.benches.soak_rig import SoakRig
 
-PERIOD = 0.008  # s between two cycles, as in a loop of 125 Hz
+PERIOD = 0.008  # s between two cycles, as in a loop at 125 Hz
 BREAKDOWNS: Final = ("dead", "reset", "brown_out", "overload", "unplug")
-OUTAGE: Final = {"brown_out": 0.05, "unplug": 0.1}  # s
-DEAD_FOR = 5  # cycles until a dead servo is given its power back
+OUTAGE: Final = {"brown_out": 0.05, "unplug": 0.1}  # durations, s
+DEAD_FOR = 5  # number of cycles until a dead servo is powered again
 
 
 @dataclass
 class Tally:
-    """What came of many reads; tallies add up.
+    """The counts of many readings; tallies can be added.
 
     Attributes:
-        reads: Servos asked while the port was there.
-        fresh: Readings that the backend called fresh.
-        faults: Kind to how often it happened.
-        stale: Fresh readings that were those of an earlier cycle.
-        borrowed: Fresh readings that were another servo's, under a wrong id that fits its checksum.
-        garbled: Fresh readings that were nobody's.
-        outside: Those of the three that the range and step check should have refused.
-        refused: Good frames that this check did refuse.
-        waited: Longest run of cycles without a fault in which a servo was not heard yet.
-        raised: Exceptions that left the backend, with their texts.
+        reads: Number of servo readings requested while the port was open.
+        fresh: Number of readings that the backend reported as fresh.
+        faults: Number of times that each kind of fault happened.
+        stale: Number of fresh readings with the value of an earlier cycle.
+        borrowed: Number of fresh readings from another servo, with a wrong id and a valid checksum.
+        garbled: Number of fresh readings with a value that no servo had.
+        outside: Number of those three that the range and step check should have refused.
+        refused: Number of correct frames that this check did refuse.
+        waited: Longest run of cycles without a fault in which a servo had no fresh reading.
+        raised: Texts of the exceptions raised by the backend, with their counts.
     """
 
     reads: int = 0
@@ -48,7 +48,7 @@ class Tally:
     raised: Counter[str] = field(default_factory=Counter)
 
     def add(self, other: "Tally") -> None:
-        """Take over another tally."""
+        """Add another tally."""
         for key in ("reads", "fresh", "stale", "borrowed", "garbled", "outside", "refused"):
             setattr(self, key, getattr(self, key) + getattr(other, key))
         self.waited = max(self.waited, other.waited)
@@ -57,13 +57,13 @@ class Tally:
 
 
 class Soak:
-    """A rig under faults, and what became of every reading.
+    """A rig under faults, with the classification of every reading.
 
     Args:
         rig: The servos.
-        kinds: Kind of fault to the share of the answers, or requests, that it hits.
+        kinds: Share of the answers, or requests, that each kind of fault hits.
         seed: Seed of the events.
-        breakdowns: Share of the cycles in which servo, supply or adapter fails, each in each way.
+        breakdowns: Share of the cycles with each kind of failure of servo, supply or adapter.
     """
 
     def __init__(
@@ -76,14 +76,14 @@ class Soak:
         self._last, self._when = rig.truth.copy(), np.zeros(rig.servos)
         self._blind = np.zeros(rig.servos, dtype=int)
         self._dead: dict[int, int] = {}
-        self._broken_until = 0.0  # an answer that was held back is still on its way
+        self._broken_until = 0.0  # end of the delay of an answer that was held back, s
         units = rig.backend.units
         self._margin, self._reach = MARGIN * (units.last + 1.0), FASTER * units.speed
         for kind, rate in kinds.items():
             rig.faults.add(make_rule(kind, rate))
 
     def run(self, reads: int) -> Tally:
-        """Read until so many servos were asked, and return the tally."""
+        """Read until `reads` readings were requested, and return the tally."""
         clock = self.rig.backend.clock
         began, tick = clock.now(), 0
         for cycle in count():
@@ -100,7 +100,7 @@ class Soak:
         return self.tally
 
     def _events(self, cycle: int) -> None:
-        """Let servos, supply and adapter fail, each kind in its share of the cycles."""
+        """Trigger failures of servos, supply and adapter, each kind in its share of the cycles."""
         for kind in BREAKDOWNS:
             if self._dice.random() < self.rate:
                 servo = int(self._dice.integers(1, self.rig.servos + 1))
@@ -119,7 +119,7 @@ class Soak:
         hits.clear()
         try:
             seen, fresh, true = rig.read()
-        except Exception as error:  # whatever leaves the backend is a finding
+        except Exception as error:  # any exception of the backend is a finding
             tally.raised[f"{type(error).__name__}: {error}"] += 1
             return
         tally.reads += 0 if lost else rig.servos

@@ -1,4 +1,4 @@
-"""A bench of emulated servos whose every reading is known beforehand, behind the real driver."""
+"""A bench of emulated servos with known positions, read through the real driver."""
 
 from itertools import count
 from types import TracebackType
@@ -18,52 +18,52 @@ from windup.sim_twin.wire.faults.faults import Faults
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
 from windup.sim_twin.wire.world.bus_world import Bench
 
-# What people call a family, and the servo that stands for it.
+# Names of the families, with the servo that represents each.
 FAMILIES: Final = {
     "dynamixel2": "XM430-W350",
-    "dynamixel2_plain": "2XL430-W250",  # knows no fast sync read
+    "dynamixel2_plain": "2XL430-W250",  # without fast sync read
     "dynamixel1": "MX-28",
     "ax": "AX-12A",
     "sts": "STS3215-7.4V",
     "scs": "SCS0009",
 }
 BAUD = 1_000_000
-FASTEST = 9  # counts that the fastest servo turns in a cycle; the slowest turns 1
-SWING = 0.3  # of the encoder's range, each way from the middle
+FASTEST = 9  # counts per cycle of the fastest servo; the slowest turns 1
+SWING = 0.3  # amplitude around the middle, as a share of the encoder's range
 _worlds = count()
 
 
 def open_untold(url: str, baud: int) -> Port:
-    """Open a port whose driver says nothing of its latency."""
+    """Open a port whose driver does not report the adapter's latency."""
     port = open_port(url, baud)
     port.latency = LATENCY
     return port
 
 
 class Puppets:
-    """Shafts that stand where they were put: physics in which nothing moves by itself."""
+    """Physics in which the shafts move only when their positions are set."""
 
     def __init__(self, shafts: tuple[InertiaShaft, ...], timestep: float) -> None:
         self.shafts, self.timestep = shafts, timestep
 
     def step(self) -> None:
-        """Let one step of time pass."""
+        """Do nothing for one time step."""
 
 
 class SoakRig:
-    """Servos of one family on a bench, their driver, and what they should say.
+    """Servos of one family on a bench, their driver, and their true positions.
 
     Args:
         family: A key of `FAMILIES`.
-        servos: How many.
-        seed: Seed of faults and of the way that the shafts go.
-        latency: Of the adapter, s; nobody tells the driver.
+        servos: Number of servos.
+        seed: Seed of the faults and of the motion of the shafts.
+        latency: Latency of the adapter, which the driver does not know, s.
 
     Attributes:
         backend: The driver, configured and with torque on.
-        faults: What goes wrong on the bus; nothing yet.
-        truth: (servos,) counts where the encoders stand.
-        url: The port.
+        faults: The faults of the bus; none at first.
+        truth: (servos,) true encoder positions, counts.
+        url: URL of the port.
     """
 
     def __init__(self, family: str, servos: int = 20, seed: int = 0, latency: float = 0.0) -> None:
@@ -98,18 +98,18 @@ class SoakRig:
 
     @property
     def position_share(self) -> float:
-        """Share of the position in the bytes of a servo's answer."""
+        """Share of the position in the data bytes of a servo's answer."""
         family = self.backend.lines[0].bus.family
         state = family.cycle([self._model]).state
         return family.registers["present_position"].size / state.size
 
     @property
     def faults(self) -> Faults:
-        """What goes wrong on the bus."""
+        """The faults of the bus."""
         return self.world.faults
 
     def turn(self) -> None:
-        """Turn every shaft by its own number of counts, to and fro within the encoder's range."""
+        """Turn every shaft at its own speed, to and fro within the encoder's range."""
         self._cycle += 1
         way = (self._phase + self._cycle * self._pace) % (4 * self._reach)
         zigzag = np.abs(way - 2 * self._reach) - self._reach
@@ -119,7 +119,7 @@ class SoakRig:
             shaft.position = angle
 
     def read(self) -> tuple[Observation, Mask, Mask]:
-        """Read once; return what came, whose reading is fresh (servos,), and whose is true."""
+        """Read once; return the observation, and (servos,) which readings are fresh and correct."""
         began = self.backend.clock.now()
         seen = self.backend.read()
         fresh: Mask = seen.joints.age <= seen.time - began
@@ -130,16 +130,16 @@ class SoakRig:
         return self.backend.units.counts(seen.joints.position)
 
     def listening(self) -> Mask:
-        """Return (servos,) bool: who is powered and has booted."""
+        """Return (servos,) bool: which servos are powered and have booted."""
         now = self.world.now
         return np.array([device.listens(now) for device in self.world.devices[: self.servos]])
 
     def repair(self, servo: int) -> None:
-        """Give the servo of an id its power back."""
+        """Repair the servo of this id."""
         self.world.repair(self.world.devices[servo - 1])
 
     def close(self) -> None:
-        """Give the port back and forget the world."""
+        """Close the port and remove the world."""
         self.backend.disconnect()
         wire.drop_world(self.name)
 

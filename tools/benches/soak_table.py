@@ -1,4 +1,4 @@
-"""The table of `windup bench faults`: how many readings were wrong and nobody could tell."""
+"""The table of `windup bench faults`: numbers of wrong readings that were reported as fresh."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ from windup.tools.benches.soak_verdict import KINDS
 
 
 def fault_table(cells: list[dict[str, Any]]) -> Table:
-    """Return the wrong readings that were called fresh: faults down, servos across."""
+    """Return the wrong readings reported as fresh: one row per fault, one column per servo."""
     table = Table("fault", *FAMILIES.values(), box=None)
     for kind in KINDS:
         row = [[cell for cell in cells if (cell["family"], cell["kind"]) == (family, kind)]
@@ -19,7 +19,7 @@ def fault_table(cells: list[dict[str, Any]]) -> Table:
 
 
 def _text(cells: list[dict[str, Any]]) -> str:
-    """Return the wrong readings of some cells, and how many there may be where that is not 0."""
+    """Return the number of wrong readings of some cells, and the expected maximum if not 0."""
     wrong = sum(cell["wrong_and_fresh"] for cell in cells)
     most = sum(cell["expected_at_most"] for cell in cells)
     text = f"{wrong} (<= {most:.0f})" if most else str(wrong)

@@ -1,7 +1,7 @@
-"""A robot's adapter is pulled out and put in again, over and over, at random moments.
+"""Pulls out a robot's adapter and plugs it in again, many times, at random moments.
 
-The servos are those of `windup emulate`, in real time and on pseudo-terminals: what is opened,
-lost and opened again are true descriptors.
+The servos are those of `windup emulate`, in real time and on pseudo-terminals, so that real
+descriptors are opened, lost and opened again.
 """
 
 import gc
@@ -24,26 +24,26 @@ from windup.tools.benches.safety.emulated import serve
 from windup.tools.robot.stack import servo_backend
 from windup.tools.terminal.output import console
 
-FIRST = 3.0  # s; the robot is armed by then
-OUT = (0.1, 0.6)  # s that the adapter is out
-BETWEEN = (0.8, 2.8)  # s from it being back to the next time; some come before it is armed again
+FIRST = 3.0  # time of the first unplugging, when the robot is armed, s
+OUT = (0.1, 0.6)  # range of times for which the adapter is out, s
+BETWEEN = (0.8, 2.8)  # range of times from its return to the next unplugging, s
 PERIOD = 0.008  # s
-PATIENCE = 20.0  # s for anything to happen
-WARM = 10  # times after which memory is compared
+PATIENCE = 20.0  # longest time in which nothing happens, s
+WARM = 10  # number of unpluggings before the reference for memory
 
 
 @dataclass
 class Times:
-    """How often what happened.
+    """Counts of events.
 
     Attributes:
-        lost: The port was missed.
-        found: It was opened again.
-        off: All torque was off then, read back from the servos.
-        withheld: A goal was not sent then.
-        armed: Arming again switched all torque on.
-        descriptors: Open descriptors, each time that it was found again.
-        memory: Peak of the memory, kB, the same.
+        lost: Times that the loss of the port was noticed.
+        found: Times that it was opened again.
+        off: Times that all torque was off then, read back from the servos.
+        withheld: Times that a goal was withheld then.
+        armed: Times that arming again switched all torque on.
+        descriptors: Open descriptors, each time that the port was opened again.
+        memory: Peak memory at the same times, kB.
     """
 
     lost: int = 0
@@ -60,11 +60,11 @@ def measure_unplugs(name: str, times: int = 100, seed: int = 0) -> dict[str, Any
 
     Args:
         name: The robot.
-        times: How often the adapter is pulled out.
+        times: Number of unpluggings.
         seed: Seed of the moments.
 
     Raises:
-        WindupError: The robot was not there for a long time.
+        WindupError: The robot was unreachable for too long.
     """
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
@@ -88,7 +88,7 @@ def measure_unplugs(name: str, times: int = 100, seed: int = 0) -> dict[str, Any
 
 
 def script(times: int, seed: int, bus: str) -> str:
-    """Return the faults that pull out the adapter of `bus` so often."""
+    """Return the faults that unplug the adapter of `bus` `times` times."""
     rng, moment, rules = np.random.default_rng(seed), FIRST, []
     for _ in range(times):
         out = rng.uniform(*OUT)
@@ -98,10 +98,10 @@ def script(times: int, seed: int, bus: str) -> str:
 
 
 def watch(backend: ServoBackend, times: int) -> Times:
-    """Go on as a loop would until the port was pulled out so often, arming whenever it is back.
+    """Run a loop until the port was lost `times` times, and arm whenever it is back.
 
     Raises:
-        WindupError: It is gone, or not pulled out, for too long.
+        WindupError: It is lost, or not unplugged, for too long.
     """
     seen, link, gone = Times(), backend.links[0], False
     hold = JointCommand.hold(backend.joints, backend.read().joints.position)
@@ -118,7 +118,7 @@ def watch(backend: ServoBackend, times: int) -> Times:
                 if not gone:
                     _examine(backend, hold, seen)
             elif link.barred and not gone:
-                with suppress(PortError, HardwareError):  # it may be pulled out meanwhile
+                with suppress(PortError, HardwareError):  # it may be unplugged meanwhile
                     seen.armed += bool(backend.rearm().all_on)
                     since = due
             backend.write(hold)
@@ -128,7 +128,7 @@ def watch(backend: ServoBackend, times: int) -> Times:
 
 
 def _examine(backend: ServoBackend, hold: JointCommand, seen: Times) -> None:
-    """Note what the robot is like that was found again, before it is armed."""
+    """Record the state of the robot when it is reachable again, before it is armed."""
     seen.found += 1
     withheld = backend.clamps["unarmed"]
     backend.write(hold)

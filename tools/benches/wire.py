@@ -1,4 +1,4 @@
-"""What a full cycle of a bus takes beside the time of its bytes, and beside other packages."""
+"""Compares the duration of a bus cycle with that of its bytes, and its cost with other packages."""
 
 import multiprocessing
 import tempfile
@@ -29,17 +29,17 @@ ROUNDS = 20
 CYCLES = 25
 MODEL = "XM430-W350"
 BAUDS = 1_000_000, 4_000_000
-WARM_UP = 5  # cycles that all servos answer
-PATIENCE = 5.0  # s; a busy machine may let the emulator wait
-BITS = 10  # a byte on the wire: start, eight, stop
+WARM_UP = 5  # number of complete cycles before measuring
+PATIENCE = 5.0  # s; a busy machine may delay the emulator
+BITS = 10  # per byte on the wire: one start, eight data, one stop
 
 
 def measure_bus(name: str, maker: Maker = "dynamixel2") -> dict[str, Any]:
-    """Return the processor time of a cycle beside other packages', and its time over the wire's.
+    """Return the processor time of a cycle relative to other packages, and its time to the wire's.
 
     Args:
         name: Ignored: the bus is a bench of 20 servos.
-        maker: Whose, and which protocol.
+        maker: The maker of the servos and the protocol.
     """
     vendor = None if maker == "dynamixel2" else maker
     memory, over_pty = bench_memory(vendor=vendor), bench_pty(vendor=vendor)
@@ -51,7 +51,7 @@ def measure_bus(name: str, maker: Maker = "dynamixel2") -> dict[str, Any]:
     }
     if "rustypot" in over_pty:
         result["codec_over_rustypot"] = round(over_pty["codec"] / over_pty["rustypot"], 3)
-    for baud in BAUDS if vendor is None else BAUDS[:1]:  # the other makers' servos end there
+    for baud in BAUDS if vendor is None else BAUDS[:1]:  # others support 1 Mbaud at most
         result[f"cycle_over_wire_{baud // 1_000_000}_Mbaud"] = round(
             cycle_over_wire(baud, maker), 3
         )
@@ -65,7 +65,7 @@ def measure_bus(name: str, maker: Maker = "dynamixel2") -> dict[str, Any]:
 def cycle_over_wire(
     baud: int, maker: Maker, servos: int = SERVOS, rounds: int = ROUNDS, cycles: int = CYCLES
 ) -> float:
-    """Return the median time of a cycle over the time of its bytes at `baud`.
+    """Return the median time of a cycle, as a ratio to the time of its bytes at `baud`.
 
     Raises:
         WindupError: The servos do not answer.
@@ -100,7 +100,7 @@ def cycle_over_wire(
 
 
 def _frames(ids: list[int], vendor: Vendor | None) -> tuple[CyclicRead, CyclicWrite]:
-    """Return the read and the write of a cycle."""
+    """Return the read and the write request of a cycle."""
     if vendor is None:
         return BlockRead([Span(id, STATE, SIZE) for id in ids]), BlockWrite(ids, GOAL, 4)
     family = MAKERS[vendor].family
@@ -109,16 +109,16 @@ def _frames(ids: list[int], vendor: Vendor | None) -> tuple[CyclicRead, CyclicWr
 
 
 def one_missing(cycles: int = 300, baud: int = 1_000_000) -> tuple[bool, float]:
-    """Return whether the other 19 answered in every cycle, and the longest time over the wire, ms.
+    """Return whether the other 19 answered in every cycle, and the largest time over the wire, ms.
 
-    In virtual time: what the driver waits for is the wire's and its own deadline, not this machine.
+    In virtual time: it depends on the wire and the driver's deadline only, not on this machine.
     """
     gone = SERVOS // 2
     url = f"twin://bench?servos={MODEL}:1-{gone - 1},{MODEL}:{gone + 1}-{SERVOS}"
     others, longest = True, 0.0
     with open_port(f"{url}&baud={baud}&return_delay=0", baud) as port:
         exchange = BusTransactions(port)
-        exchange.turnaround = TURNAROUND  # the servos' return delay is 0, as `configure` sees to
+        exchange.turnaround = TURNAROUND  # the servos' return delay is 0, as `configure` sets it
         read = BlockRead([Span(id, STATE, SIZE) for id in range(1, SERVOS + 1)])
         wire = (len(read.request) + read.length) * BITS / baud
         for _ in range(cycles):
@@ -131,7 +131,7 @@ def one_missing(cycles: int = 300, baud: int = 1_000_000) -> tuple[bool, float]:
 
 @contextmanager
 def _emulator(model: str, servos: int, baud: int) -> Iterator[str]:
-    """Serve a bench of servos from a process of its own; yield the path of its terminal."""
+    """Serve a bench of servos from a process of its own; yield the path of its pseudo-terminal."""
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe()
     with tempfile.TemporaryDirectory() as folder:

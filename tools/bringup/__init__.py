@@ -1,1 +1,1 @@
-"""Looking for servos, and at the health of a robot."""
+"""Finding servos on a port, and checking the health of a robot."""

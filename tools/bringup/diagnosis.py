@@ -1,10 +1,11 @@
-"""Is a robot well? Its telemetry held against limits, and what to do about each complaint.
+"""Diagnoses a run: compares its telemetry with limits, and advises on every complaint.
 
-Supply, temperature, load, stall and the IMU are judged by the watches of the run itself.
+Supply, temperature, load, stall and IMU are checked by the same watches as during the run.
 """
 
 import os
 from dataclasses import dataclass, field, fields
+from shlex import quote
 from typing import Any
 
 import numpy as np
@@ -21,20 +22,20 @@ from windup.tools.terminal.slowness import PLANS, TICKS, Slowness
 
 COUNTERS = ("missed", "plans", "late_plans")
 STANDSTILL = 1.0
-"""Silence after which a loop that has not ended counts as standing still, s."""
+"""Time without a tick after which a loop that has not ended counts as standing still, s."""
 
 
 @dataclass(frozen=True)
 class Limits:
-    """What is still healthy.
+    """Limits of a healthy run.
 
     Attributes:
         joints: The robot's joints.
-        health: When they are unwell.
+        health: Warning and stop levels of the joints.
         age: Age of a joint's or the IMU's state, s; at twice that the guard stops the robot.
-        missed: Share of ticks that came too late.
-        late_plans: Share of plans that came too late.
-        errors: Bus errors of one kind for each tick.
+        missed: Share of the ticks that are late.
+        late_plans: Share of the plans that are late.
+        errors: Number of bus errors of one kind per tick.
         clamped: Share of the ticks in which one joint is clamped.
     """
 
@@ -52,7 +53,7 @@ class Limits:
         return cls(robot.joints, robot.health)
 
     def record(self) -> dict[str, Any]:
-        """Return them for programs; levels are by kind and joint."""
+        """Return the limits as plain data; levels are by kind and joint."""
         plain = {item.name: getattr(self, item.name) for item in fields(self)[2:]}
         levels = {
             SAYINGS[kind].name: {"warn": self.health.warn[kind], "stop": self.health.stop[kind]}
@@ -63,7 +64,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Complaint:
-    """Who is unwell, what is wrong, and what to do."""
+    """One complaint: the subject, what is wrong, and what to do."""
 
     who: str
     what: str
@@ -75,15 +76,15 @@ class Complaint:
 
 @dataclass
 class Diagnosis:
-    """The health of a run, over as much of it as the ring holds.
+    """The health of a run, over as much of it as the telemetry ring holds.
 
     Attributes:
-        header: What its telemetry says of itself.
-        ticks: (m,) the ticks, one at least.
-        ended: Why the run ended, or None.
-        limits: What is healthy.
-        now: s since 1970.
-        complaints: What is not.
+        header: Header of its telemetry.
+        ticks: (m,) the ticks, at least one.
+        ended: Reason why the run ended, or None.
+        limits: Limits of a healthy run.
+        now: Present time, s since 1970.
+        complaints: What is not healthy.
     """
 
     header: Header
@@ -116,12 +117,12 @@ class Diagnosis:
 
     @property
     def healthy(self) -> bool:
-        """True when there is nothing to complain of."""
+        """True when there are no complaints."""
         return not self.complaints
 
     @property
     def state(self) -> str:
-        """Running, ended, standing still or dead."""
+        """State of the run: "running", "ended", "standing still" or "dead"."""
         if self.ended is not None:
             return "ended"
         if not _alive(self.header.pid):
@@ -130,13 +131,13 @@ class Diagnosis:
 
     @property
     def rate(self) -> float | None:
-        """Ticks a second of the backend's time, over the ring."""
+        """Ticks per second of the backend's time over the ring, Hz; None if unknown."""
         seconds = float(self.newest["time"] - self.ticks[0]["time"])
         return (len(self.ticks) - 1) / seconds if seconds > 0.0 else None
 
     @property
     def slowness(self) -> Slowness:
-        """What came late, over the ring."""
+        """Late ticks and plans over the ring."""
         missed, plans, late = (int(self.change(name)) for name in COUNTERS)
         return Slowness(
             self.header.rate_hz,
@@ -148,28 +149,28 @@ class Diagnosis:
 
     @property
     def missed(self) -> float:
-        """Share of the ticks that came too late."""
+        """Share of the ticks that were late."""
         return self.slowness.missed_share
 
     def change(self, name: str) -> Any:
-        """Return by how much a counter has grown over the ring."""
+        """Return the growth of a counter over the ring."""
         return self.newest[name] - self.ticks[0][name]
 
     def bus_errors(self) -> dict[str, int]:
-        """Return kind to count, over the ring."""
+        """Return the number of bus errors by kind, over the ring."""
         return {k: int(n) for k, n in zip(self.header.errors, self.change("errors"), strict=True)}
 
     def clamps(self) -> dict[str, int]:
-        """Return name of the clamp to commands changed, over the ring."""
+        """Return the number of commands changed by each clamp, over the ring."""
         return {k: int(n) for k, n in zip(self.header.clamps, self.change("clamps"), strict=True)}
 
     def driver_clamps(self) -> dict[str, int]:
-        """Return name of the driver's clamp to commands changed, over the ring."""
+        """Return the number of commands changed by each clamp of the driver, over the ring."""
         counts = self.change("driver_clamps")
         return {k: int(n) for k, n in zip(self.header.driver_clamps, counts, strict=True)}
 
     def joints(self) -> list[dict[str, Any]]:
-        """Return one row a joint: present values, largest age and share of clamped ticks."""
+        """Return one row per joint: present values, largest age and share of clamped ticks."""
         ages, clamped = self.ticks["age"].max(axis=0), self.change("clamped") / len(self.ticks)
         columns = zip(
             self.header.joints,
@@ -193,7 +194,7 @@ class Diagnosis:
         ]
 
     def result(self) -> dict[str, Any]:
-        """Return everything, for programs."""
+        """Return the whole diagnosis as plain data."""
         tick = np.percentile(self.ticks["tick_time"], [50, 99]) * 1e3
         return {
             "robot": self.header.robot,
@@ -237,7 +238,9 @@ class Diagnosis:
         for kind, count in self.bus_errors().items():
             if count > self.limits.errors * len(self.ticks):
                 what = f"{kind!r} {count} times in {len(self.ticks)} ticks"
-                self._complain("bus", what, f"check cables and power, then `windup scan {port}`")
+                self._complain(
+                    "bus", what, f"check cables and power, then `windup scan {quote(port)}`"
+                )
 
     def _judge_joints(self) -> None:
         limits = self.limits

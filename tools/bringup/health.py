@@ -1,4 +1,4 @@
-"""`windup health`: is a running robot well? Reads its telemetry; asks nobody and stops nothing."""
+"""`windup health`: diagnoses a robot from its telemetry, without affecting the run."""
 
 import time
 from dataclasses import dataclass
@@ -21,34 +21,34 @@ from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
 
 INTERVAL = 0.5
-"""From one look to the next, s."""
+"""Time between two updates of `--watch`, s."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Health(Command):
-    """Say whether a robot is well, from the telemetry of its present run or its last."""
+    """Diagnose a robot from the telemetry of its present run, or of its last."""
 
     robot: Annotated[str, tyro.conf.Positional]
-    """A robot's name, or the path of its folder."""
+    """Name of a robot, or path of its folder."""
     port: str | None = None
-    """The port it runs on; its twin otherwise."""
+    """Port on which it runs; its twin otherwise."""
     faults: str = ""
-    """What goes wrong there: as it was given to the command that runs."""
+    """Faults of the run, as given to the command that runs it."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
     once: bool = False
-    """Look once and exit, which is the default."""
+    """Diagnose once and exit, which is the default."""
     watch: bool = False
-    """Look twice a second until Ctrl-C."""
+    """Update twice a second until Ctrl-C."""
 
     def check(self) -> None:
-        """Raise what cannot be; see `Command.check`."""
+        """Check the options; see `Command.check`."""
         super().check()
         if self.once and self.watch:
             raise UsageError("--once and --watch: give one of them")
 
     def run(self) -> int:
-        """Look; returns the exit status: 0 well, 1 not, 2 nothing to look at."""
+        """Diagnose; return the exit status: 0 healthy, 1 not healthy, 2 no telemetry."""
         robot = load_robot(self.robot)
         diagnosis = self._look(robot)
         if self.watch:
@@ -59,10 +59,10 @@ class Health(Command):
         return 0 if diagnosis.healthy else 1
 
     def _look(self, robot: RobotDescription) -> Diagnosis:
-        """Return the health of now; the ring is opened anew, since the next run has another.
+        """Return the present health; the ring is opened anew because each run has its own.
 
         Raises:
-            TelemetryError: There is none.
+            TelemetryError: There is no telemetry.
         """
         try:
             with TelemetryReader(
@@ -88,7 +88,7 @@ class Health(Command):
 
 
 def picture(diagnosis: Diagnosis) -> Group:
-    """Return the health for people: a line, a table of the joints, and the complaints."""
+    """Return the health as text: the state, a table of the joints, and the complaints."""
     result = diagnosis.result()
     rate = "" if result["rate_hz"] is None else f"{result['rate_hz']:.1f} Hz of "
     why = "" if result["reason"] is None else f" ({result['reason']})"

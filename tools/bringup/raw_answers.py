@@ -1,4 +1,4 @@
-"""What comes back when one id after the other is pinged, understood or not."""
+"""Pings all ids of a port and collects the answers that no servo should give."""
 
 from typing import NamedTuple
 
@@ -8,22 +8,22 @@ from windup.hal.protocols import protocol1, protocol2
 from windup.hal.protocols.protocol2 import Status
 
 TIME = 5e-3
-"""What a servo may take to answer, with its return delay, s."""
+"""Longest time for a servo to answer, including its return delay, s."""
 LISTEN = 0.05
-"""How long a line is listened to before anybody is asked, s."""
+"""Time for which the bus is listened to before the first ping, s."""
 ROOM = 64
-"""Bytes that one answer has at most, and then some."""
+"""Largest number of bytes read for an answer, with a margin."""
 PING_PARAMS = 3
-"""Parameters of an answer to a ping of protocol 2: the model number and the firmware."""
+"""Parameters in an answer to a protocol 2 ping: model number and firmware version."""
 
 
 class Strange(NamedTuple):
-    """An answer to a ping that is none of a servo.
+    """An answer to a ping that is not a servo's.
 
     Attributes:
-        id: Who was asked; None where nobody was.
-        data: The first bytes that came.
-        whole: Is it a frame with a good checksum?
+        id: Id that was pinged; None if the bytes came unasked or are an echo.
+        data: The first bytes received.
+        whole: Whether it is a frame with a valid checksum.
     """
 
     id: int | None
@@ -32,9 +32,9 @@ class Strange(NamedTuple):
 
 
 def strange_answers(port: Port, family: Family) -> list[Strange]:
-    """Return what answers on a port, at its present baud rate, as no servo of a family does.
+    """Return the invalid answers on a port, at its present baud rate, for a family of servos.
 
-    A line on which somebody talks unasked, or that echoes, has that alone.
+    On a bus with unasked bytes or an echo, that is the only result.
     """
     port.flush_input()
     if unasked := port.read(ROOM, port.clock.now() + LISTEN):
@@ -52,7 +52,7 @@ def strange_answers(port: Port, family: Family) -> list[Strange]:
 
 
 def is_echo(data: bytes) -> bool:
-    """Return whether an adapter sent back the first ping of `strange_answers`."""
+    """Return whether `data` is the echo of the first ping of `strange_answers`."""
     return data.startswith((protocol1.ping(0), protocol2.ping(0)))
 
 
@@ -61,7 +61,7 @@ def _request(family: Family, id: int) -> bytes:
 
 
 def _exchange(port: Port, request: bytes) -> bytes:
-    """Return all that comes when one id is pinged."""
+    """Ping one id and return all bytes received."""
     port.flush_input()
     port.write(request)
     wire = (len(request) + protocol2.OVERHEAD + PING_PARAMS) * BITS / port.baud

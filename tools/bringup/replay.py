@@ -1,4 +1,4 @@
-"""The watches of a run once more, over the ticks of its telemetry: same levels, same words."""
+"""Repeats the watches of a run on the ticks of its telemetry, with the same levels and texts."""
 
 from collections.abc import Iterator
 
@@ -19,7 +19,7 @@ JOINTS = ("position", "velocity", "torque", "voltage", "temperature", "age", "he
 def findings(
     header: Header, ticks: Ticks, joints: Joints, levels: HealthLevels
 ) -> Iterator[Finding]:
-    """Yield what the watches found in the ticks: one a kind, a stop instead of its warning."""
+    """Yield the findings in the ticks: one per kind, a stop in place of its warning."""
     health, imu = HealthWatch(joints, levels), ImuWatch()
     stops: dict[str, Finding] = {}
     watched = bool(np.isfinite(levels.torque).any())
@@ -36,7 +36,7 @@ def findings(
 
 
 def observed(tick: np.void) -> Observation:
-    """Return what was observed in a tick, without its base."""
+    """Return the observation of a tick, without the base state."""
     joints = JointState(*(tick[name] for name in JOINTS))
     imu = None
     if np.isfinite(tick["imu_age"]):
@@ -50,7 +50,7 @@ def observed(tick: np.void) -> Observation:
 
 
 def told(tick: np.void) -> JointCommand:
-    """Return what the joints were told in a tick, as far as telemetry keeps it."""
+    """Return the command of a tick, as far as telemetry contains it."""
     block = np.zeros((len(FIELDS), len(tick["command"])))
     block[FIELDS.index("position")] = tick["command"]
     block[FIELDS.index("stiffness")] = tick["stiffness"]

@@ -1,4 +1,4 @@
-"""`windup scan`: which servos answer on a port, at which baud rate."""
+"""`windup scan`: lists the servos that answer on a port, with their baud rates."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,17 +28,17 @@ class Scan(Command):
     url: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="URL")]
     """The port: /dev/ttyUSB0, usb:SERIAL, socket://HOST:PORT, twin://ROBOT."""
     robot: str | None = None
-    """Compare with the servos of this robot."""
+    """Robot whose servos are expected there."""
     faults: str = ""
-    """What goes wrong on a twin:// port: drop:0.01,unplug:at=5:seconds=1,...; a wrong word gets the
-    list."""
+    """Faults of a twin:// port: drop:0.01,unplug:at=5:seconds=1,...; an unknown kind lists all
+    kinds."""
     baud: Annotated[int, Range(1, 10_000_000, "baud")] | None = None
-    """Look at this baud rate only."""
+    """Scan at this baud rate only."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
     def check(self) -> None:
-        """Raise what cannot be; see `Command.check`."""
+        """Check the options; see `Command.check`."""
         super().check()
         if self._url.startswith(f"{SCHEME}://"):
             parse_address(self._url)
@@ -51,7 +51,7 @@ class Scan(Command):
         return with_faults(self.url, self.faults) or self.url
 
     def run(self) -> int:
-        """Scan; returns the exit status: 3 where nobody answers, or one is not as it should be."""
+        """Scan; return the exit status: 3 if no servo answers or one is missing or wrong."""
         expected = _expected(self.robot)
         port = open_port(self._url)
         survey = Survey(port, expected)
@@ -97,7 +97,7 @@ def _progress() -> Progress:
 
 
 def _expected(robot: str | None) -> dict[int, str]:
-    """Return servo id to joint name."""
+    """Return the joint names by servo id."""
     if robot is None:
         return {}
     description = load_robot(robot)

@@ -1,4 +1,4 @@
-"""What a scan has found, for people: as wide as their terminal."""
+"""Formats the result of a scan for the width of the terminal."""
 
 from collections.abc import Iterator
 from typing import Any, Final
@@ -10,7 +10,7 @@ from windup.tools.bringup.raw_answers import Strange
 from windup.tools.bringup.survey import Survey
 
 WIDE: Final = 78
-"""Columns of a terminal that the whole table needs."""
+"""Width of a terminal that the whole table needs, columns."""
 HEADS: Final = {
     "id": "id",
     "model": "model",
@@ -21,15 +21,15 @@ HEADS: Final = {
     "error": "error",
     "joint": "joint",
 }
-"""Key of a row to the head of its column."""
+"""Heads of the columns by the keys of a row."""
 LONG: Final = ("firmware", "baud", "error")
-"""Columns that a narrow terminal has no room for; errors have lines of their own there."""
+"""Columns omitted on a narrow terminal; baud rates and errors have lines of their own there."""
 SHOWN: Final = 8
-"""Bytes of an answer that are shown."""
+"""Number of bytes of an answer that are shown."""
 
 
 def table(rows: list[dict[str, Any]], width: int) -> Table:
-    """Return the table of the servos for a terminal of so many columns."""
+    """Return the table of the servos for a terminal of `width` columns."""
     keys = [key for key in HEADS if width >= WIDE or key not in LONG]
     keys = [key for key in keys if any(row[key] not in (None, "") for row in rows)]
     made = Table(box=None, padding=(0, 2 if width >= WIDE else 1, 0, 0))
@@ -41,7 +41,7 @@ def table(rows: list[dict[str, Any]], width: int) -> Table:
 
 
 def narrow_lines(rows: list[dict[str, Any]], width: int) -> Iterator[str]:
-    """Yield what the table of a narrow terminal leaves out and matters."""
+    """Yield the important values that the table of a narrow terminal omits."""
     if width < WIDE:
         for baud in dict.fromkeys(row["baud"] for row in rows):
             if baud is not None:
@@ -50,7 +50,7 @@ def narrow_lines(rows: list[dict[str, Any]], width: int) -> Iterator[str]:
 
 
 def complaints(survey: Survey, url: str, missing: list[str]) -> Iterator[str]:
-    """Yield a line about everything that is not as it should be."""
+    """Yield a line for each problem found."""
     for one in survey.unknown:
         numbers = " or ".join(f"{number} ({family})" for family, number in one["numbers"].items())
         at = "" if one["baud"] is None else f" at {one['baud']} baud"

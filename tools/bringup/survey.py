@@ -1,4 +1,4 @@
-"""Looking for servos on a port: who answers at which baud rate, and what else does."""
+"""Scans a port for servos at all baud rates, and for other answers."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -14,28 +14,28 @@ from windup.hal.registers import Register
 from windup.tools.bringup.raw_answers import Strange, is_echo, strange_answers
 
 ANSWER_BYTES: Final = {True: 27, False: 14}
-"""What a scan reads of one servo in protocol 1, where it is pinged, read, pinged and read, and in
-protocol 2, where one ping tells all."""
+"""Bytes that a scan reads from one servo. True: protocol 1, in which it is pinged, read, pinged and
+read. False: protocol 2, in which one ping suffices."""
 SLOW: Final = 57_600
-"""Over a bridge that keeps its baud rate to itself, answers may take as long as at this one."""
+"""Assumed baud rate behind a bridge that hides its own: answers may take as long as at this one."""
 REGISTERS: Final = ("present_voltage", "present_temperature", "hardware_error")
-"""What is read of a servo that was found."""
+"""Registers that are read from each servo found."""
 
 
 @dataclass
 class Survey:
-    """What was found on a port.
+    """The results of scanning a port.
 
     Args:
-        port: The port; it is left at the baud rate it had.
-        joints: Servo id to the name of the joint that it should drive.
+        port: The port; its baud rate is restored.
+        joints: Names of the expected joints by servo id.
 
     Attributes:
-        servos: What each servo says of itself.
-        unknown: Servos that answer and are no model of ours: id, baud, and what the register of
-            the model number holds, by the name of the family that would have it there.
-        protocol_1: Servos of the X series that speak protocol 1: id, baud and model.
-        strange: Other answers, with the baud rate and the family that was asked for.
+        servos: A row of registers for each servo.
+        unknown: Servos of unknown models: id, baud, and the content of the model number register,
+            by the name of each family with a register at that address.
+        protocol_1: Servos of the X series that use protocol 1: id, baud and model.
+        strange: Other answers, with the baud rate and the family that was scanned for.
     """
 
     port: Port
@@ -47,21 +47,21 @@ class Survey:
 
     @property
     def doubled(self) -> list[int]:
-        """Ids from which only broken answers come, beside servos whose answers are whole."""
+        """Ids from which only broken answers come, or broken ones after a valid ping."""
         ids = {one.id for _, _, one in self.strange if one.id is not None and not one.whole}
         return sorted(ids | {row["id"] for row in self.servos if row["broken"]})
 
     @property
     def echo(self) -> bool:
-        """Does the adapter send back what it is sent?"""
+        """Whether the adapter echoes the bytes that it sends."""
         return self.port.echoes or any(is_echo(one.data) for _, _, one in self.strange)
 
     def update(self, baud: int | None, begin: Callable[[str], None]) -> None:
-        """Look for servos of every family.
+        """Scan for servos of every family.
 
         Args:
-            baud: At this baud rate only; None: at all that a family knows.
-            begin: Called with what is looked for, before it is.
+            baud: The only baud rate to scan; None: all that each family supports.
+            begin: Called with a description before each family and baud rate.
         """
         before = self.port.baud
         others: dict[tuple[int | None, int], dict[str, int]] = {}
@@ -75,10 +75,10 @@ class Survey:
                     else:
                         others.setdefault((shown, servo.id), {})[family.name] = servo.model_number
                 if self.echo and not self.port.echoes:
-                    break  # nothing can be made of it
+                    break  # with an echo no answer can be interpreted
         finally:
             self.port.baud = before
-        # Protocol 1 is spoken by three families: what answers one of them answers all.
+        # Three families use protocol 1: a servo that answers one of them answers all.
         known = {(row["baud"], row["id"]) for row in self.servos}
         for (shown, id), numbers in others.items():
             model = DYNAMIXEL_X.numbers.get(numbers.get(DYNAMIXEL_1.name, 0))
@@ -88,7 +88,7 @@ class Survey:
                 self.unknown.append({"id": id, "baud": shown, "numbers": numbers})
 
     def _ask(self, family: Family, rate: int) -> list[Found]:
-        """Return who answers as a servo; keep what else comes."""
+        """Return the servos of a family that answer; store all other answers."""
         bus, self.port.baud = Bus(self.port, family), rate
         bus.get_to_know_adapter(FIRST)
         before = self.port.received
@@ -109,10 +109,10 @@ class Survey:
 
 
 def places(port: Port, baud: int | None = None) -> Iterator[tuple[Family, int]]:
-    """Yield where to look: every family at every baud rate of its, or at one.
+    """Yield the families and baud rates to scan: every family at all of its rates, or at one.
 
-    Behind a bridge that does not pass a baud rate on, that is once a family. Protocol 1 is looked
-    for at the baud rates of the X series too, which may be set to speak it.
+    Behind a bridge with a fixed baud rate that is one per family. Protocol 1 is also scanned for at
+    the baud rates of the X series, which may be set to it.
     """
     for family in FAMILIES:
         if not port.has_baud:
@@ -125,7 +125,7 @@ def places(port: Port, baud: int | None = None) -> Iterator[tuple[Family, int]]:
 
 
 def _describe(bus: Bus, servo: Found) -> dict[str, Any]:
-    """Return what a servo says of itself; "broken" where its answers are no answers."""
+    """Return a row with a servo's registers; "broken" if reading one gave a corrupt answer."""
     board = servo.model_number == OPENCR
     registers: Mapping[str, Register] = {VOLTAGE.name: VOLTAGE} if board else bus.family.registers
     read: dict[str, int | None] = dict.fromkeys(REGISTERS)

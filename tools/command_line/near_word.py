@@ -1,11 +1,11 @@
-"""The known word that a wrong one is nearest to."""
+"""Suggests the known word that is most similar to an unknown one."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
 
 
 def near_word(word: str, known: Iterable[str]) -> str:
-    """Return in words which known one may have been meant; "" where none is near.
+    """Return a suggestion for a misspelt word; "" if no known word is similar.
 
     >>> near_word("wlak", ["play", "walk"])
     ' (did you mean walk?)'

@@ -13,6 +13,6 @@ Controllers for small servo humanoids: on the robot, and on its twin.
 
 
 def overview(commands: Mapping[str, Entry]) -> str:
-    """Return the help: a line for each command."""
+    """Return the help text: one line for each command."""
     wide = max(map(len, commands)) + 2
     return HEAD + "".join(f"{name:{wide}}{entry.gist}\n" for name, entry in commands.items())

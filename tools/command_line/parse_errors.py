@@ -1,4 +1,4 @@
-"""What is wrong with a command line, as one line: the word, the near one, and what to run."""
+"""One-line messages for wrong command lines: the wrong word, a similar one, and what to run."""
 
 import re
 from dataclasses import fields
@@ -14,13 +14,13 @@ WORDS = {"FLOAT FLOAT": "two numbers", "FLOAT": "a number", "INT": "a whole numb
 
 
 def mistake(name: str, command: type, words: list[str], said: str) -> str:
-    """Return what is wrong with a command line that the parser did not take.
+    """Return a message for a command line that the parser rejected.
 
     Args:
-        name: Of the command.
-        command: Its class.
-        words: What stands behind the name.
-        said: What the parser said, in its box.
+        name: Name of the command.
+        command: Class of the command.
+        words: Words after the name.
+        said: Output of the parser, in its box.
     """
     known = options(command)
     for word in takewhile(lambda word: word != "--", words):
@@ -34,7 +34,7 @@ def mistake(name: str, command: type, words: list[str], said: str) -> str:
 
 
 def options(command: Any) -> set[str]:
-    """Return the options of a command, as they are written."""
+    """Return the options of a command, as written on a command line."""
     hints = get_type_hints(command, include_extras=True)
     names = [
         field.name.replace("_", "-")
@@ -45,7 +45,7 @@ def options(command: Any) -> set[str]:
 
 
 def _wanted(missing: str) -> str:
-    """Return what to give, of the parser's line about an argument that is missing.
+    """Return what to give, from the parser's line about a missing argument.
 
     >>> _wanted("URL The port: /dev/ttyUSB0, usb:SERIAL")
     'give URL (the port: /dev/ttyUSB0, usb:SERIAL)'
@@ -58,7 +58,7 @@ def _wanted(missing: str) -> str:
 
 
 def gist(said: str) -> str:
-    """Return what the box says, on one line."""
+    """Return the text inside the parser's box, on one line."""
     lines = [line.strip(" │") for line in said.splitlines()]
     rules = [i for i, line in enumerate(lines) if set(line) and set(line) <= set("-─╭╮╰╯")]
     first = rules[0] + 1 if rules else 0
@@ -67,7 +67,7 @@ def gist(said: str) -> str:
 
 
 def wrong_number(said: str) -> str:
-    """Return which option has no number where one should be; "" where the box is about more.
+    """Return a message for an option whose value is not a number; "" for any other problem.
 
     >>> wrong_number("Error parsing --seed: invalid literal for int() with base 10: '1.5'")
     '--seed 1.5: give a whole number'

@@ -1,4 +1,4 @@
-"""From words of a command line to the options of a command."""
+"""Parses the words of a command line into a command object."""
 
 import io
 import sys
@@ -13,15 +13,15 @@ from windup.tools.terminal.writing import STANDARD_OUTPUT, check_writable, writi
 
 
 def parse_options(name: str, kind: type, words: list[str]) -> Any:
-    """Return the command of this kind that the words mean; exits behind its help text.
+    """Return the command of class `kind` with its options; exit after printing its help.
 
     Args:
-        name: Of the command.
-        kind: Its class.
-        words: What stands behind the name.
+        name: Name of the command.
+        kind: Class of the command.
+        words: Words after the name.
 
     Raises:
-        UsageError: The words mean none, or ask for help where standard output is closed.
+        UsageError: The words are invalid, or ask for help while standard output is closed.
         OutputError: The help cannot be written.
     """
     said = io.StringIO()
@@ -34,7 +34,7 @@ def parse_options(name: str, kind: type, words: list[str]) -> Any:
     check_writable(STANDARD_OUTPUT)
     with writing(STANDARD_OUTPUT):
         try:
-            return _parse(name, kind, words)  # its help: again, as wide as the terminal is
+            return _parse(name, kind, words)  # print the help again, in the terminal's width
         finally:
             sys.stdout.flush()
 

@@ -1,10 +1,10 @@
-"""Which words of `windup sweep ...` are the sweep's own, and which are its command's."""
+"""Separates the options of `windup sweep` from those of the command that it runs."""
 
 OWN = ("--grid", "--random", "--seed", "--seeds", "--out", "--jobs")
 
 
 def separate(arguments: list[str]) -> list[str]:
-    """Return the command line with a sweep's own options before those of its command.
+    """Return the command line with a sweep's own options before its command.
 
     >>> separate(["sweep", "walk", "op3", "--rv", "up", "--out", "a.csv"])
     ['sweep', '--out', 'a.csv', '--', 'walk', 'op3', '--rv', 'up']

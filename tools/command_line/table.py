@@ -1,4 +1,4 @@
-"""Every subcommand: where it is, and what it does in a few words. None is imported here."""
+"""Table of all subcommands, with module and summary; their modules are imported on use only."""
 
 from importlib import import_module
 from typing import Any, Final, NamedTuple
@@ -8,9 +8,9 @@ class Entry(NamedTuple):
     """A subcommand.
 
     Attributes:
-        module: The module that has it, in `windup.tools`.
-        kind: Name of its class there, a `windup.tools.terminal.command.Command`.
-        gist: What it does.
+        module: Its module, relative to `windup.tools`.
+        kind: Name of its class, a `windup.tools.terminal.command.Command`.
+        gist: Summary of what it does.
     """
 
     module: str
@@ -18,7 +18,7 @@ class Entry(NamedTuple):
     gist: str
 
     def load(self) -> Any:
-        """Import and return its class."""
+        """Import and return the class."""
         return getattr(import_module(f"windup.tools.{self.module}"), self.kind)
 
 

@@ -1,10 +1,10 @@
-"""Which version is installed."""
+"""The installed version."""
 
 from importlib.metadata import PackageNotFoundError, version
 
 
 def installed_version() -> str:
-    """Return the version that is installed; "unknown" where only the files lie there."""
+    """Return the installed version; "unknown" if the package is not installed."""
     try:
         return version("windup-robotics")
     except PackageNotFoundError:

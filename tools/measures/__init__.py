@@ -1,1 +1,1 @@
-"""What is measured during runs, and said of them."""
+"""Measurements taken during runs, and their formatting."""

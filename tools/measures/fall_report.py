@@ -1,4 +1,4 @@
-"""What a fall did to a twin, for reports."""
+"""Reports the impacts and loads of a fall."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from windup.tools.measures.load_gauge import format_load
 
 
 def fall_result(gauge: ImpactGauge) -> dict[str, Any]:
-    """Return what was measured: speeds m/s into the floor, loads as shares of stall torque, s."""
+    """Return impact speeds, m/s, load as a share of stall torque, and time of overload, s."""
     return {
         "torso_impact_m_s": gauge.torso,
         "head_impact_m_s": gauge.head,
@@ -19,7 +19,7 @@ def fall_result(gauge: ImpactGauge) -> dict[str, Any]:
 
 
 def format_fall(result: dict[str, Any]) -> str:
-    """Return the same for people, from a result with it."""
+    """Return a sentence about a fall, from a result with these measurements."""
     return (
         f"torso hits the floor at {result['torso_impact_m_s']:.2f} m/s, "
         f"head at {result['head_impact_m_s']:.2f} m/s; "

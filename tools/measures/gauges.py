@@ -1,4 +1,4 @@
-"""What is measured at every tick of a walk: flights, mechanical work, how much the body shakes."""
+"""Measurements at every tick of a walk: flight phases, mechanical work, shaking of the base."""
 
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -10,20 +10,20 @@ from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Mask
 from windup.hal.observation import Observation
 
-SHORTEST_FLIGHT = 0.02  # s; less is a foot that chatters on the ground
+SHORTEST_FLIGHT = 0.02  # s; shorter ones are contact chatter
 
 
 @dataclass
 class Gauges:
-    """Adds up what the observations of a walk show.
+    """Accumulates measurements from the observations of a walk.
 
     Attributes:
         contacts: The robot's contact sensors.
-        flights: Times that no foot was on the ground, and one touched down again.
-        flight_time: Time in those flights, s.
-        touches: Which foot touched down, time after time.
-        work: Sum over the joints of the mechanical work, taken without sign, J.
-        time: s.
+        flights: Number of flight phases that ended with a touchdown.
+        flight_time: Time in those flight phases, s.
+        touches: Index of the foot of each touchdown, in order.
+        work: Sum over the joints of the absolute mechanical work, J.
+        time: Duration so far, s.
     """
 
     contacts: ContactSensors
@@ -37,7 +37,7 @@ class Gauges:
     _left: float | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
-        self._lifted = np.full(len(self.contacts.feet), np.inf)  # time, infinite while it is down
+        self._lifted = np.full(len(self.contacts.feet), np.inf)  # lift-off time; inf in stance
 
     @property
     def shake(self) -> float:
@@ -45,7 +45,7 @@ class Gauges:
         return float(np.sqrt(self._turning / self.time)) if self.time > 0.0 else 0.0
 
     def update(self, observation: Observation) -> None:
-        """Take the observation of a tick."""
+        """Process the observation of a tick."""
         now, joints, base = observation.time, observation.joints, observation.base
         dt = 0.0 if self._last is None else now - self._last
         self._last = now
@@ -58,12 +58,12 @@ class Gauges:
         self._fly(now, bool(down.any()))
 
     def cost_of_transport(self, mass: float, distance: float) -> float | None:
-        """Return work / (weight x way) for `mass` kg over `distance` m, or None on the spot."""
+        """Return work / (weight x distance) for `mass` kg over `distance` m, or None for 0 m."""
         return self.work / (mass * GRAVITY * distance) if distance > 0.0 else None
 
     @property
     def skips(self) -> float:
-        """Share of the touches that skip: twice on one foot, twice on the other, and so on."""
+        """Share of the touchdowns in a skipping pattern: twice on one foot, twice on the other."""
         same = [one == other for one, other in pairwise(self.touches)]
         turns = [one != other for one, other in pairwise(same)]
         return float(np.mean(turns)) if turns else 0.0

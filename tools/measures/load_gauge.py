@@ -1,4 +1,4 @@
-"""How hard the servos of a robot worked: the highest load, and how long one was loaded highly."""
+"""Measures the load of a robot's servos: the peak, and the longest time of high load."""
 
 from dataclasses import dataclass, field
 
@@ -7,13 +7,13 @@ import numpy as np
 from windup.hal.joints import Joints
 from windup.hal.observation import Observation
 
-HIGH = 0.5  # share of the stall torque that a geared servo bears for a moment only
+HIGH = 0.5  # share of the stall torque that a geared servo tolerates only briefly
 
 
 def format_load(share: float, joint: str) -> str:
-    """Return a greatest load, as a share of what the joint gives at stall, in words.
+    """Return a text about a peak load, given as a share of the joint's stall torque.
 
-    A servo that is turned backward bears more than it gives.
+    A servo that is driven backward can bear more than its stall torque.
 
     >>> format_load(0.43, "l_knee")
     'peak load 43 % of stall at l_knee'
@@ -27,13 +27,13 @@ def format_load(share: float, joint: str) -> str:
 
 @dataclass
 class LoadGauge:
-    """Adds up what the torque of a run shows, as shares of what each joint can give at most.
+    """Measures the torques of a run, as shares of each joint's torque limit.
 
     Attributes:
         joints: The robot's joints.
-        peak: The highest share seen; NaN where no joint has both a limit and a measure.
-        joint: Name of the joint that had it, or "".
-        high_time: The longest time without a break that one joint was above half, s.
+        peak: Highest share so far; NaN if no joint has both a limit and a measured torque.
+        joint: Name of the joint with that share, or "".
+        high_time: Longest uninterrupted time of one joint above half, s.
     """
 
     joints: Joints
@@ -46,7 +46,7 @@ class LoadGauge:
         self._high = np.zeros(len(self.joints))
 
     def update(self, observation: Observation) -> None:
-        """Take the observation of a tick."""
+        """Process the observation of a tick."""
         now = observation.time
         dt = 0.0 if self._last is None else now - self._last
         self._last = now

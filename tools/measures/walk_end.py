@@ -1,4 +1,4 @@
-"""When a walk ends: after enough steps, at its goal, and at rest where it shall stand."""
+"""Decides when a walk ends: after its steps, at its goal, and at rest if required."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ from windup.control.steering.navigation import PathFollower, PointFollower
 from windup.hal.errors import UsageError
 from windup.hal.observation import Observation
 
-# Called at the end of a step with its number and its speed, m/s.
+# Called at the end of each step with its number and speed, m/s.
 OnStep = Callable[[int, float], None]
 LONGEST_STOP = 60  # steps
 
@@ -20,9 +20,9 @@ class WalkEnd:
 
     Attributes:
         walker: The walking controller.
-        steps: Steps to walk, or to reach the goal in.
+        steps: Number of steps to walk, or within which to reach the goal.
         on_step: All are called at the end of each step.
-        rest: Come to rest first.
+        rest: Whether the robot must come to rest first.
     """
 
     walker: Balancer
@@ -38,7 +38,7 @@ class WalkEnd:
             )
 
     def __call__(self, observation: Observation) -> str | None:
-        """Return why the walk is over, or None."""
+        """Return the reason why the walk is over, or None."""
         walker = self.walker
         if walker.steps <= self._seen:
             return None
@@ -60,7 +60,7 @@ class WalkEnd:
         return self._rested(self.steps)
 
     def _rested(self, since: int) -> str | None:
-        """Return "done" at rest, or at once where nobody asked for it."""
+        """Return "done" at rest, or at once if rest is not required."""
         steering = self.walker.steering
         if not self.rest or steering.resting:
             return "done"

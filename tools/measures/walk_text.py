@@ -1,4 +1,4 @@
-"""A walk in one line for people, out of its result."""
+"""Formats the result of a walk as one line."""
 
 from typing import Any
 
@@ -6,7 +6,7 @@ Result = dict[str, Any]
 
 
 def format_walk(result: Result) -> str:
-    """Return the line; it says nothing of what was not measured."""
+    """Return the line; values that were not measured are omitted."""
     if result["sim_time_s"] <= 0.0:
         return f"{result['robot']} did not walk: {result['reason']}"
     ratio = result["sim_time_s"] / max(result["wall_time_s"], 1e-9)
@@ -19,7 +19,7 @@ def format_walk(result: Result) -> str:
 
 
 def format_summary(whole: Result) -> str:
-    """Return the line about several seeds."""
+    """Return the line about the walks of several seeds."""
     speed = whole["speed_mean_m_s"]
     pace = "" if speed is None else f", mean speed {speed:.3f} m/s"
     return (
@@ -30,7 +30,7 @@ def format_summary(whole: Result) -> str:
 
 
 def _end(result: Result) -> str:
-    """Return how it ended."""
+    """Return how the walk ended."""
     if result["fell"]:
         return f"fell in step {result['steps'] + 1} of {result['steps_requested']}"
     if result["reason"] == "done":
@@ -39,31 +39,31 @@ def _end(result: Result) -> str:
 
 
 def _pace(result: Result) -> str:
-    """Return the mean speed, which a short walk has none of."""
+    """Return the mean speed; "" for a walk too short to have one."""
     speed = result["speed_m_s"]
     return "" if speed is None else f" at {speed:.3f} m/s"
 
 
 def _flying(result: Result) -> str:
-    """Return how often the robot left the ground."""
+    """Return the number of flight phases, and their share of the time."""
     flights = result.get("flights", 0)
     share = result.get("flight_time_s", 0.0) / result["sim_time_s"]
     return f", {flights} flights ({share:.0%} of the time)" if flights else ""
 
 
 def _sliding(result: Result) -> str:
-    """Return whether the ground was felt to be slippery."""
+    """Return whether slipping was detected, so that the robot walked with care."""
     return ", with care since it slid" if result["slipped"] else ""
 
 
 def _caught(result: Result) -> str:
-    """Return how often steps caught the robot."""
+    """Return how often the robot was caught by steps."""
     catches = result["catches"]
     steps = sum(catch["steps"] for catch in catches)
     return f", {len(catches)} x caught by steps ({steps})" if catches else ""
 
 
 def _crossing(result: Result) -> str:
-    """Return a warning where the feet went through each other."""
+    """Return a warning if the feet interpenetrated."""
     clear = result["foot_clearance_mm"]
     return f", feet cross by {-clear:.0f} mm" if clear is not None and clear < 0.0 else ""

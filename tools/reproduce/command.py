@@ -7,8 +7,8 @@ from typing import Annotated
 import tyro
 
 from windup.hal.errors import UnknownNameError
-from windup.tools.reproduce.report import record, reproduce
 from windup.tools.reproduce.studies import studies
+from windup.tools.reproduce.study.report import record, reproduce
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.quantities import Jobs

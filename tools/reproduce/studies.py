@@ -1,6 +1,6 @@
 """The papers that can be reproduced. A new one is a package beside `laszlo` and a line here."""
 
-from windup.tools.reproduce.figure import Study
+from windup.tools.reproduce.study.figure import Study
 
 
 def studies() -> dict[str, Study]:

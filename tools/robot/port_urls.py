@@ -39,6 +39,9 @@ def port_urls(robot: RobotDescription, port: str) -> dict[str, str]:
         if set(given) - {IMU} != set(names):
             raise UsageError(f"--port names {', '.join(given)}; the buses are {', '.join(names)}")
         return given
+    if equals and first.isidentifier():
+        wanted = " or ".join(f"--port {name}=URL" for name in names)
+        raise UsageError(f"{robot.name} has no bus {first!r}; give {wanted}")
     if port.startswith(TWIN):
         also = [*names, IMU] if apart else names
         if len(also) == 1:

@@ -1,1 +1,1 @@
-"""What asks a run to stop, and who is in charge meanwhile."""
+"""Stop requests to a run, and supervision of the torque between runs."""

@@ -1,4 +1,4 @@
-"""Who is in charge of a robot's torque: this program, watched by a guardian, or the guardian."""
+"""Responsibility for a robot's torque: this program's, watched by a guardian, or the guardian's."""
 
 import logging
 from collections.abc import Callable
@@ -18,13 +18,13 @@ from windup.tools.stopping.idle import IdleKeeper
 
 
 class Custody:
-    """The guardian of an armed robot, its heartbeat, and what holds the robot between two runs.
+    """The guardian of an armed robot, its heartbeat, and the holding of the robot between two runs.
 
     Args:
         robot: The robot.
         backend: Its backend.
-        give_up: Stops the robot, when it is idle for too long or unwell.
-        motion: Its first motion; None where no servos are at stake.
+        give_up: Stops the robot when it has been idle for too long, or is unhealthy.
+        motion: Its first motion; None for a robot without servos.
 
     Attributes:
         guardian: The process that stops the robot when this one dies or hangs; None without torque,
@@ -39,22 +39,22 @@ class Custody:
         motion: FirstMotion | None = None,
     ) -> None:
         self._robot, self._backend = robot, backend
-        self._give_up = WeakMethod(give_up)  # a robot that is closed and forgotten is freed at once
+        self._give_up = WeakMethod(give_up)  # does not keep a robot that is closed alive
         self._motion = motion
         self.guardian: Guardian | None = None
         self._keeper: IdleKeeper | None = None
 
     def interrupt(self, by: str) -> None:
-        """Hold the robot no longer: its program was interrupted between two runs."""
+        """Hold the robot no longer, because its program was interrupted between two runs."""
         keeper = self._keeper
         if keeper is not None:
             keeper.interrupt(by)
 
     def begin(self) -> None:
-        """Have a guardian watch, before torque comes on.
+        """Start a guardian, before torque is switched on.
 
         Raises:
-            UsageError: Nobody could stop these servos.
+            UsageError: No guardian could stop these servos.
             HardwareError: The guardian does not start.
         """
         if self.guardian is not None and self.guardian.alive:
@@ -70,24 +70,24 @@ class Custody:
                 servos.heartbeat = self._alive
 
     def idle(self) -> None:
-        """Hold the robot from now on, until `busy`."""
+        """Hold the robot until `busy`."""
         if self._keeper is None and isinstance(self._backend.clock, WallClock):
             safety = self._robot.safety
             seconds = safety.hold if self._robot.stop == "hold" else safety.idle
             self._keeper = IdleKeeper(self._backend, seconds, self._beat, self._let_go)
 
     def busy(self) -> None:
-        """Hold it no more: somebody commands it from now on."""
+        """Stop holding the robot, because it is commanded from now on."""
         keeper, self._keeper = self._keeper, None
         if keeper is not None:
             self._alive()
             keeper.end()
 
     def end(self, off: bool) -> None:
-        """Let the guardian go, or leave the robot to it.
+        """Release the guardian, or hand the robot over to it.
 
         Args:
-            off: Torque was read back as off at every joint.
+            off: Whether torque was read back as off at every joint.
         """
         self.busy()
         guardian = self.guardian
@@ -105,7 +105,7 @@ class Custody:
         self._forget_guardian()
 
     def disown(self) -> None:
-        """Leave guardian and robot to the process that this one was forked from."""
+        """Leave guardian and robot to the parent process, after a fork."""
         self._keeper = None
         self._forget_guardian()
 
@@ -121,26 +121,26 @@ class Custody:
             self._backend.backend.heartbeat = no_heartbeat
 
     def _let_go(self, error: WindupError | None) -> None:
-        """Have the robot stopped, whose program holds on to it while it is armed."""
+        """Stop the robot by `give_up`, if it still exists."""
         give_up = self._give_up()
         if give_up is not None:
             give_up(error)
 
     def _beat(self) -> None:
-        """Tell the guardian that this process lives.
+        """Send the guardian an idle heartbeat, if there is one.
 
         Raises:
-            GuardianError: The guardian is gone.
+            GuardianError: The guardian has died.
         """
         if self.guardian is not None:
             self.guardian.idle()
 
     def _alive(self) -> None:
-        """The same, where a guardian that is gone must not be in the way of a stop."""
+        """Send an idle heartbeat; ignore a dead guardian, which must not prevent a stop."""
         with suppress(GuardianError):
             self._beat()
 
 
 def _tick(guardian: Guardian, motion: FirstMotion | None) -> None:
-    """Tell a guardian of a tick, and whether the robot has made its first motion."""
+    """Send the guardian the heartbeat of a tick, and whether the first motion is still due."""
     guardian.tick(first=motion is not None and not motion.made)

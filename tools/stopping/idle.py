@@ -1,8 +1,8 @@
-"""Holding an armed robot between two runs: a program may load a file, think, or wait for a key.
+"""Holds an armed robot between two runs, while the program loads a file or waits for a key.
 
-Nobody commands the servos then; they hold their last goals. A thread reads them, so that their
-state is judged and their bus watchdog fed, and tells the guardian that the program is alive. It
-never runs beside the loop: a run ends it before its first tick.
+The servos receive no commands then and hold their last goals. A thread reads them, which checks
+their state and feeds their bus watchdog, and sends heartbeats to the guardian. It never runs
+concurrently with the loop: a run ends it before its first tick.
 """
 
 import logging
@@ -15,20 +15,20 @@ from windup.tools.stopping.interrupts import note_interruption
 from windup.tools.stopping.stop_request import pressed_button
 
 LEAVE = 0.2
-"""What an interrupted program is given to end by itself, s."""
+"""Time for an interrupted program to end by itself, s."""
 PERIOD = 0.04
-"""Between two looks at the servos, s; their bus watchdog waits for 0.2 s."""
+"""Period of reading the servos, s; their bus watchdog has a time-out of 0.2 s."""
 
 
 class IdleKeeper:
-    """Holds a robot for a while, then switches its torque off; at once when a button asks for it.
+    """Holds a robot for a while, then switches its torque off; at once if a button is pressed.
 
     Args:
         backend: The robot.
-        seconds: How long it is held, s.
-        alive: Called again and again: this process lives.
-        give_up: Stops the robot; called in the thread when the time is over (None), or with what
-            went wrong.
+        seconds: Longest time for which it is held, s.
+        alive: Called periodically to send a heartbeat.
+        give_up: Stops the robot; called in the thread with None when the time is over or a button
+            was pressed, or with an error.
     """
 
     def __init__(
@@ -46,12 +46,12 @@ class IdleKeeper:
         self._thread.start()
 
     def interrupt(self, by: str) -> None:
-        """The program was interrupted, by whom in words: unless it takes the robot, it stops."""
+        """Stop soon because of the signal `by`, unless the program starts a run before that."""
         self._by = self._by or by
         self._until = min(self._until, self._backend.clock.now() + LEAVE)
 
     def end(self) -> None:
-        """End the thread; the caller has the robot from now on."""
+        """End the thread; the caller controls the robot from now on."""
         self._over.set()
         if self._thread is not threading.current_thread():
             self._thread.join()

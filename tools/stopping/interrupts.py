@@ -1,8 +1,8 @@
-"""Signals that ask a program to end, as a question that is asked each tick.
+"""Signals that ask a program to end, counted and polled at each tick of a run.
 
-An exception between any two instructions could come in the middle of switching the torque off. So
-while a robot runs or is being stopped, signals are only counted. Elsewhere they are what they
-always are: Ctrl-C raises KeyboardInterrupt, which ends a `with Robot.open(...)`.
+An exception could otherwise occur while the torque is being switched off. So while a robot runs or
+is being stopped, signals are only counted. At other times they have their usual effect: Ctrl-C
+raises KeyboardInterrupt, which ends a `with Robot.open(...)`.
 """
 
 import os
@@ -22,20 +22,20 @@ WORDS = {
     signal.SIGTERM: "SIGTERM",
     signal.SIGINT: "Ctrl-C",
 }
-"""The signals that end a run on servos. The last is given back last: it is the one that raises."""
+"""The signals that end a run on servos. SIGINT, which raises, is last, to be restored last."""
 IN_SIMULATION = (signal.SIGTERM, signal.SIGINT)
 """The signals that end a run on a twin, which may be suspended by Ctrl-Z."""
 LAST_STRAW = 10
-"""So many signals end a program that does not come to its end; a guardian stops its robot."""
+"""Number of signals that kill a program which does not end; its guardian stops the robot."""
 IMPATIENT = 3
-"""So many signals leave out the crouch of a stop."""
+"""Number of signals from which on a stop omits the crouch."""
 
 
 class RunInterruptedError(KeyboardInterrupt):
     """A run was ended by a signal, and its stop policy has been carried out.
 
     Attributes:
-        report: What had been measured until then.
+        report: Measurements of the run so far.
     """
 
     def __init__(self, report: Any, by: str) -> None:
@@ -45,11 +45,11 @@ class RunInterruptedError(KeyboardInterrupt):
 
 @dataclass
 class Asked:
-    """Who has asked the program to end.
+    """The requests to end the program.
 
     Attributes:
-        count: Number of signals, and of buttons and keys that count as one, so far.
-        by: The first of them, in words.
+        count: Number of signals, and of buttons and keys, which count as one, so far.
+        by: Name of the first of them.
     """
 
     count: int = 0
@@ -61,21 +61,21 @@ class Asked:
 
     @property
     def impatient(self) -> bool:
-        """True when the stop shall not take the time to crouch."""
+        """Whether the stop must omit the crouch."""
         return self.count >= IMPATIENT
 
     def remember(self, number: int, frame: Any) -> None:
-        """Count a signal: the handler."""
+        """Count a signal; this is the signal handler."""
         self.add(WORDS[signal.Signals(number)])
 
     def add(self, by: str) -> None:
-        """Count a wish of somebody, in words."""
+        """Count a request, given its name."""
         self.by = self.by or by
         self.count += 1
 
 
 class _Elsewhere(Asked):
-    """Asked in another thread: Python tells signals to the main thread alone, which then ends."""
+    """Requests to another thread: signals only reach the main thread, whose end is a request."""
 
     def __call__(self) -> bool:
         if not main_thread().is_alive():
@@ -91,10 +91,10 @@ _ignored = 0
 
 @contextmanager
 def counted_signals(wired: bool = True) -> Iterator[Asked]:
-    """Within, signals that ask this program to end are counted and interrupt nothing.
+    """Within the context, count the signals that ask this program to end.
 
     Args:
-        wired: Servos are at stake: also Ctrl-Z, SIGQUIT and the end of the terminal count.
+        wired: Whether servos are involved: Ctrl-Z, SIGQUIT and SIGHUP count too.
     """
     global _asked
     if current_thread() is not main_thread():
@@ -117,9 +117,9 @@ def counted_signals(wired: bool = True) -> Iterator[Asked]:
 
 
 def end_on_signals() -> None:
-    """Let the first of the signals that end a program raise KeyboardInterrupt, and no other.
+    """Make the first signal that ends a program raise KeyboardInterrupt, and ignore the others.
 
-    For a program that is about to end anyway: a key that repeats must not break its last words.
+    For a program that is about to end anyway: a repeating key must not interrupt its clean-up.
     """
     if current_thread() is main_thread():
         for number in (signal.SIGHUP, signal.SIGQUIT, signal.SIGTERM, signal.SIGINT):
@@ -127,9 +127,9 @@ def end_on_signals() -> None:
 
 
 def ignore_signals() -> None:
-    """Let no signal change the exit status of a program that has done everything.
+    """Ignore all signals, so that none changes the exit status of a finished program.
 
-    At its very end Python gives signals back their first meaning: death. Not of ignored ones.
+    At exit Python restores the default action of signals, which kills, but not of ignored ones.
     """
     if current_thread() is main_thread():
         for number in (signal.SIGHUP, signal.SIGQUIT, signal.SIGTERM, signal.SIGINT):
@@ -143,7 +143,7 @@ def _end_once(number: int, frame: Any) -> None:
 
 
 def _count_on(number: int, frame: Any) -> None:
-    """Ignore a signal, unless the program is too busy to end: ten of them kill it."""
+    """Ignore a signal, but exit at once after ten of them, if the program does not end."""
     global _ignored
     _ignored += 1
     if _ignored >= LAST_STRAW:
@@ -151,21 +151,21 @@ def _count_on(number: int, frame: Any) -> None:
 
 
 def note_interruption(by: str) -> None:
-    """From now on nothing arms by itself in this process, until `forget_interruption`."""
+    """Prevent all automatic arming in this process, until `forget_interruption`."""
     global _stopped_by
     _stopped_by = by
 
 
 def forget_interruption() -> None:
-    """Somebody wants to go on, and says so."""
+    """Allow arming again, after an explicit request to continue."""
     note_interruption("")
 
 
 def check_not_interrupted() -> None:
-    """Refuse to switch torque on in a program that was told to end.
+    """Check that this program has not been told to end, before torque is switched on.
 
     Raises:
-        UsageError: It was.
+        UsageError: It has.
     """
     if _stopped_by:
         raise UsageError(

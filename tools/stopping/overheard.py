@@ -1,8 +1,8 @@
-"""Ctrl-C between two runs of an armed robot: whoever has the robot hears of it first.
+"""Notifies armed robots of Ctrl-C and other signals between two runs.
 
-While a robot runs, signals are counted (`interrupts`). Between two runs one that raises is what it
-always was for the program; that its robot has to stop nevertheless, also if the program catches
-KeyboardInterrupt and goes on, is why it is overheard.
+While a robot runs, signals are counted (see `interrupts`). Between two runs a signal has its usual
+effect on the program. The robot must stop nevertheless, even if the program catches
+KeyboardInterrupt and continues; therefore listeners are notified first.
 """
 
 import signal
@@ -15,10 +15,10 @@ from windup.tools.stopping.interrupts import WORDS
 
 
 class Listener(Protocol):
-    """Who wants to be told."""
+    """An object that is notified of signals."""
 
     def hear(self, by: str) -> None:
-        """Take note of a signal, in words."""
+        """Process a signal, given its name."""
         ...
 
 
@@ -26,7 +26,7 @@ _listeners: "WeakSet[Listener]" = WeakSet()
 
 
 class _Overheard:
-    """A handler that tells the listeners of a signal, and does what was done before."""
+    """A signal handler that notifies the listeners, and then calls the previous handler."""
 
     def __init__(self, before: Callable[[int, Any], Any]) -> None:
         self.before = before
@@ -38,10 +38,10 @@ class _Overheard:
 
 
 def overhear(listener: Listener) -> None:
-    """From now on tell a listener of signals that this program handles.
+    """Notify a listener of the signals that this program handles, from now on.
 
-    Where it does not, a signal ends the process at once, and the guardian takes over. Nothing is
-    overheard where this is not called in the main thread: Python sets handlers in no other.
+    A signal without a handler ends the process at once, and the guardian takes over. Outside of the
+    main thread this has no effect on handlers, because Python can only set them there.
     """
     _listeners.add(listener)
     if current_thread() is not main_thread():
@@ -53,7 +53,7 @@ def overhear(listener: Listener) -> None:
 
 
 def forget(listener: Listener) -> None:
-    """Tell a listener no more; after the last one, signals are whose they were before."""
+    """Stop notifying a listener; after the last one, restore the previous handlers."""
     _listeners.discard(listener)
     if _listeners or current_thread() is not main_thread():
         return

@@ -1,4 +1,4 @@
-"""Whether a run is going on, in which thread, and a way to end it from elsewhere."""
+"""Tracks whether a run is in progress and in which thread, and ends it from another thread."""
 
 import threading
 from types import TracebackType
@@ -6,14 +6,14 @@ from types import TracebackType
 from windup.hal.errors import UsageError
 
 PATIENCE = 3.0
-"""What a run may take to see that it shall end, and to stop its robot, s."""
+"""Longest time for a run to react to a request and to stop its robot, s."""
 
 
 class Running:
-    """A context for the time of a run, of which there is one at a time.
+    """A context that is active during a run; only one run is possible at a time.
 
     Attributes:
-        asked: Who wants the run to end, in words; "" if nobody does.
+        asked: Name of the request to end the run; "" if there is none.
     """
 
     def __init__(self) -> None:
@@ -24,10 +24,10 @@ class Running:
         self._idle.set()
 
     def __enter__(self) -> None:
-        """Begin.
+        """Begin a run.
 
         Raises:
-            UsageError: Another run is going on.
+            UsageError: Another run is in progress.
         """
         if not self._lock.acquire(blocking=False):
             raise UsageError("this robot is in a run already: wait until it is over, or stop() it")
@@ -46,14 +46,14 @@ class Running:
         self._lock.release()
 
     def end(self, by: str) -> threading.Thread | None:
-        """Have the run end at its next tick; return its thread, or None where there is no run."""
+        """Request the end of the run at its next tick; return its thread, or None without a run."""
         thread = self._thread
         if thread is not None:
             self.asked = self.asked or by
         return thread
 
     def end_and_wait(self, by: str) -> bool:
-        """End the run, and wait for that; False where there is none, or it hangs."""
+        """End the run and wait for that; return False if there is none, or it hangs."""
         thread = self.end(by)
         if thread is None:
             return False

@@ -1,4 +1,4 @@
-"""What asks a run to stop beside a signal: a button of the robot, or a key of the terminal."""
+"""Stop requests other than signals: buttons of the robot, and keys of the terminal."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -10,7 +10,7 @@ from windup.tools.stopping.stop_keys import keyboard, stop_keys
 
 
 def pressed_button(backend: Backend) -> str | None:
-    """Return which button of the robot has been pressed since it was armed, for people."""
+    """Return the name of the robot's button that was pressed since arming, or None."""
     if isinstance(backend, ServoBackend) and backend.button.pressed is not None:
         return f"the {backend.button.pressed} button"
     return None
@@ -18,11 +18,11 @@ def pressed_button(backend: Backend) -> str | None:
 
 @contextmanager
 def stop_requests(backend: Backend, *, keys: bool) -> Iterator[Callable[[], str | None]]:
-    """Yield a function that returns who wants the robot to stop, or None; ask it once a tick.
+    """Yield a function that returns the name of a stop request, or None; call it once per tick.
 
     Args:
-        backend: Its buttons, where it has any, are a stop.
-        keys: So are keys of the terminal, where there is one.
+        backend: The robot, whose buttons, if any, are stop requests.
+        keys: Whether keys of the terminal, if any, are stop requests too.
     """
     with stop_keys(keyboard() if keys else None) as pressed_key:
 
@@ -33,10 +33,10 @@ def stop_requests(backend: Backend, *, keys: bool) -> Iterator[Callable[[], str 
 
 
 def check_released(backend: Backend) -> None:
-    """Raise if a button that stops the robot is down before it has torque.
+    """Check that no button that stops the robot is held down, before torque is switched on.
 
     Raises:
-        UsageError: One is; nothing has moved.
+        UsageError: One is held; nothing has moved.
     """
     if isinstance(backend, ServoBackend) and backend.board is not None:
         backend.read()
@@ -47,7 +47,7 @@ def check_released(backend: Backend) -> None:
 
 
 def how_to_stop(backend: Backend) -> str:
-    """Return what stops an armed robot, for people."""
+    """Return a text about what stops an armed robot."""
     ways = ["space", "q"] if keyboard() is not None else []
     if isinstance(backend, ServoBackend) and backend.board is not None:
         ways.append("a button on its back")

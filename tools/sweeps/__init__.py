@@ -1,1 +1,1 @@
-"""Any command over a grid of its options."""
+"""Runs any command over a grid of its options."""

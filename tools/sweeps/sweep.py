@@ -1,4 +1,4 @@
-"""`windup sweep`: any command over a grid of its options, or at random ones."""
+"""`windup sweep`: runs a command over a grid of its options, or at random values of them."""
 
 import shlex
 from collections.abc import Iterator
@@ -20,25 +20,25 @@ from windup.tools.terminal.quantities import Count, Jobs, Seed, Seeds
 from windup.tools.terminal.writing import check_writable, writing
 
 MOST = 1_000_000
-"""Runs of one sweep."""
+"""Largest number of runs in a sweep."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sweep(Command):
     """Run a command at many values of its options; one row for each run.
 
-    Rows that are in the file already are not run again: after Ctrl-C, or with a larger grid, the
-    same line goes on where it was.
+    Rows that the file already contains are not run again: after Ctrl-C, or with a larger grid, the
+    same command line continues the sweep.
 
     windup sweep walk human --rv up --grid target=.1:.4:7 --grid sampling=sp,fl,lf --seeds 8 --out
     walks.csv
     """
 
     line: Annotated[tuple[str, ...], tyro.conf.Positional, tyro.conf.arg(metavar="COMMAND ARGS")]
-    """The command and its options; all that is not an option of the sweep's own."""
+    """The command and its options: all words that are not options of the sweep."""
     grid: tyro.conf.UseAppendAction[tuple[str, ...]] = ()
     """An option and its values: name=v1,v2,.. or name=low:high:count; join several values of one
-    option with '+'. May stand often."""
+    option with '+'. May be given several times."""
     random: Count | None = None
     """Draw this many random points from the grid's ranges and lists, instead of all of them."""
     seed: Seed = 0
@@ -48,10 +48,10 @@ class Sweep(Command):
     out: Path
     """File for the rows, .csv or .parquet."""
     jobs: Jobs | None = None
-    """Processes; one a core by default."""
+    """Number of processes; one per core by default."""
 
     def check(self) -> None:
-        """Raise what cannot be; see `Command.check`."""
+        """Check the options; see `Command.check`."""
         super().check()
         axes = self._axes()
         count = self.seeds * (self.random or prod(len(axis.values) for axis in axes))
@@ -65,7 +65,7 @@ class Sweep(Command):
         return [parse_axis(text) for text in self.grid]
 
     def run(self) -> int:
-        """Sweep; returns 1 if a run ended in an error, else 0."""
+        """Run the sweep; return 1 if a run ended in an error, else 0."""
         places = points(self._axes(), self.random, self.seed)
         table = open_table(self.out)
         command = shlex.join(self.line)
@@ -81,7 +81,7 @@ class Sweep(Command):
         return 1 if errors else 0
 
     def _collect(self, table: Table, todo: list[Run]) -> list[str]:
-        """Run what is missing, put each row into the table, and return the errors."""
+        """Run the missing runs, add each row to the table, and return the errors."""
         errors = []
         try:
             for _, row in side_by_side(play, todo, label="runs", jobs=self.jobs):
@@ -97,7 +97,7 @@ class Sweep(Command):
 
 
 def _missing(runs: list[Run], rows: list[Row]) -> Iterator[Run]:
-    """Yield the runs that have no row, each once."""
+    """Yield the runs without a row, each once."""
     names = list(runs[0].key)
     seen = {tuple(row.get(name) for name in names) for row in rows}
     for run in runs:

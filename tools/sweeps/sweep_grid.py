@@ -15,13 +15,13 @@ Point = dict[str, str]
 
 @dataclass(frozen=True)
 class Axis:
-    """One option and its values, as the command line would write them.
+    """One option and its values, as written on the command line.
 
     Attributes:
-        name: The option, with underscores.
-        values: Values to take; empty where only random numbers can be taken.
+        name: Name of the option, with underscores.
+        values: The values; empty for a range without a count, which can only be drawn from.
         low: Lower end of a range; None for a list of values.
-        high: Its upper end.
+        high: Upper end of a range; None for a list of values.
     """
 
     name: str
@@ -31,7 +31,7 @@ class Axis:
 
     @property
     def checked(self) -> tuple[str, ...]:
-        """Values that stand for all when the command's parser has to like them."""
+        """Values that represent all others when the command's parser checks them."""
         return self.values or tuple(
             _written(end) for end in (self.low, self.high) if end is not None
         )
@@ -44,7 +44,7 @@ class Axis:
 
 
 def parse_axis(text: str) -> Axis:
-    """Return the axis that one --grid describes.
+    """Parse the argument of one --grid into an axis.
 
     >>> parse_axis("target=0.1:0.3:3").values
     ('0.1', '0.2', '0.3')
@@ -52,7 +52,7 @@ def parse_axis(text: str) -> Axis:
     ('sp', 'fl')
 
     Raises:
-        UsageError: It is written in another way.
+        UsageError: The text is malformed.
     """
     name, equals, rest = text.partition("=")
     name = name.strip().lstrip("-").replace("-", "_")
@@ -84,13 +84,13 @@ def _range(name: str, text: str, parts: list[str]) -> Axis:
 def points(axes: list[Axis], random: int | None, seed: int) -> list[Point]:
     """Return all points of the grid, or `random` of them drawn from its ranges and lists.
 
-    The first of N random points are those of a smaller N, so that a sweep can grow.
+    The first of N random points are those of a smaller N, so that a sweep can be extended.
 
     >>> points([parse_axis("a=1,2"), parse_axis("b=x")], None, 0)
     [{'a': '1', 'b': 'x'}, {'a': '2', 'b': 'x'}]
 
     Raises:
-        UsageError: An axis stands twice, or a range without a count is not drawn at random.
+        UsageError: An axis is given twice, or a range without a count is not drawn at random.
     """
     names = [axis.name for axis in axes]
     if len(set(names)) < len(names):

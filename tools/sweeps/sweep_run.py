@@ -1,4 +1,4 @@
-"""One run of a sweep: a command of ours, run in this process, and its result as a flat row."""
+"""One run of a sweep: runs a command in this process, and flattens its result into a row."""
 
 import io
 import json
@@ -19,14 +19,14 @@ from windup.tools.sweeps.sweep_grid import Axis, Point
 from windup.tools.sweeps.sweep_table import Row, typed
 from windup.tools.terminal.output import plain
 
-OURS = ("seed", "seeds", "json", "plot")  # what the sweep itself gives a command
+OURS = ("seed", "seeds", "json", "plot")  # options that the sweep itself sets
 YES, NO = ("true", "yes", "on", "1"), ("false", "no", "off", "0")
 LEFT_OUT = ("schema", "command", "seed")
 
 
 @dataclass(frozen=True)
 class Run:
-    """One run: a command line, the sweep's values on top of it, and a seed."""
+    """One run: a command line, the values of the swept options, and a seed."""
 
     command: str
     point: Point
@@ -34,17 +34,17 @@ class Run:
 
     @property
     def key(self) -> dict[str, Any]:
-        """Return the columns that say which run a row is of."""
+        """Return the columns that identify the run of a row."""
         values = {name: typed(value) for name, value in self.point.items()}
         return {"command": self.command, **values, "seed": self.seed}
 
 
 def check_line(line: list[str], axes: list[Axis]) -> None:
-    """Raise what is wrong with the command or the grid before anything runs.
+    """Check the command and the grid before anything runs.
 
     Raises:
-        UsageError: The command cannot be swept, or its parser does not like a value.
-        UnknownNameError: A name on the grid is none of its options.
+        UsageError: The command cannot be swept, or its parser rejects a value.
+        UnknownNameError: A name on the grid is not one of its options.
     """
     command = parse_quietly(line)
     check_numbers(command, "--")
@@ -67,10 +67,10 @@ def check_line(line: list[str], axes: list[Axis]) -> None:
 
 
 def arguments(kind: type, point: Point) -> list[str]:
-    """Return a point as arguments of a command of this kind.
+    """Return a point as arguments of a command of class `kind`.
 
     Raises:
-        UsageError: A switch is neither on nor off.
+        UsageError: The value of a switch is not true or false.
     """
     hints = get_type_hints(kind)
     words = []
@@ -88,7 +88,7 @@ def arguments(kind: type, point: Point) -> list[str]:
 
 
 def play(run: Run) -> Row:
-    """Run a command and return its row; whatever goes wrong is in the row's `error`."""
+    """Run a command and return its row; any failure is in the row's `error`."""
     row: Row = {**run.key, "exit_status": None, "error": None}
     try:
         line = shlex.split(run.command)
@@ -103,7 +103,7 @@ def play(run: Run) -> Row:
     except WindupError as error:
         row |= {"exit_status": error.exit_status, "error": str(error)}
         return row
-    except Exception as error:  # one run's bug is its row's; a night's sweep goes on
+    except Exception as error:  # the bug of one run must not end the whole sweep
         row |= {"exit_status": 1, "error": f"{type(error).__name__}: {error}"}
         return row
     for name, value in flat({k: v for k, v in result.items() if k not in LEFT_OUT}).items():
@@ -112,7 +112,7 @@ def play(run: Run) -> Row:
 
 
 def flat(value: Any, name: str = "") -> Row:
-    """Return nested results as one level: names joined by dots, list items by name or index.
+    """Flatten nested results: names joined by dots, list items by name or index.
 
     >>> flat({"a": {"b": 1}, "rv": [{"name": "up", "mean": 0.2}], "path": [3, 4]})
     {'a.b': 1, 'rv.up.mean': 0.2, 'path.0': 3, 'path.1': 4}
@@ -136,10 +136,10 @@ def _item(index: int, item: Any) -> tuple[str, Any]:
 
 
 def parse_quietly(line: list[str]) -> Any:
-    """Return the command that a line means.
+    """Return the command of a command line, without printing anything.
 
     Raises:
-        UsageError: It means none.
+        UsageError: The command line is invalid.
     """
     said = io.StringIO()
     try:

@@ -1,4 +1,4 @@
-"""The file of a sweep: rows that outlive Ctrl-C, as CSV or Parquet."""
+"""The file of a sweep: rows as CSV or Parquet, which survive Ctrl-C."""
 
 import csv
 import io
@@ -12,28 +12,28 @@ from windup.hal.errors import UsageError
 
 Row = dict[str, Any]
 KEY = ("command", "seed")  # columns that every row has
-EVERY = 5.0  # s between writes of a Parquet file, which cannot be appended to
+EVERY = 5.0  # interval of writing a Parquet file, which cannot be appended to, s
 
 
 class Table(Protocol):
-    """Rows in a file."""
+    """Rows that are stored in a file."""
 
     rows: list[Row]
 
     def append(self, row: Row) -> None:
-        """Add a row; it is in the file at once, or soon after."""
+        """Add a row; it is written at once, or soon after."""
         ...
 
     def close(self) -> None:
-        """See to it that every row is in the file."""
+        """Ensure that every row is in the file."""
         ...
 
 
 def open_table(path: Path) -> Table:
-    """Return the table at `path` with the rows that are there already.
+    """Return the table at `path`, with the rows that it already contains.
 
     Raises:
-        UsageError: The suffix is another one, or the file is no sweep's.
+        UsageError: The suffix is unknown, or the file is not a sweep's.
     """
     if os.path.exists(path) and not os.path.isfile(path):
         raise UsageError(f"--out {path}: this is no file")
@@ -45,7 +45,7 @@ def open_table(path: Path) -> Table:
 
 
 def typed(text: str) -> Any:
-    """Return what a cell stands for.
+    """Return the value of a CSV cell, with its type.
 
     >>> [typed(text) for text in ("", "true", "3", "0.25", "sp")]
     [None, True, 3, 0.25, 'sp']
@@ -61,17 +61,17 @@ def typed(text: str) -> Any:
 
 
 class CsvTable:
-    """A CSV file, appended to row by row; rewritten whole only for a column that is new.
+    """A CSV file to which rows are appended; it is rewritten only for new columns.
 
     Args:
-        path: The file; it need not be there.
+        path: The file; it need not exist.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         try:
             text = path.read_text(encoding="utf-8") if os.path.exists(path) else ""
-            whole = text[: text.rfind("\n") + 1]  # without a row that a kill has torn
+            whole = text[: text.rfind("\n") + 1]  # without a last row cut off by a kill
             reader = csv.DictReader(io.StringIO(whole))
             self.columns = list(reader.fieldnames or [])
             self.rows: list[Row] = [{k: typed(v or "") for k, v in row.items()} for row in reader]
@@ -82,7 +82,7 @@ class CsvTable:
             self._write_all()
 
     def append(self, row: Row) -> None:
-        """Add a row; it is in the file when this returns."""
+        """Add a row; it is in the file on return."""
         self.rows.append(row)
         new = [name for name in row if name not in self.columns]
         if new:
@@ -93,7 +93,7 @@ class CsvTable:
             file.write(self._text([row]))
 
     def close(self) -> None:
-        """Do nothing: every row is in the file."""
+        """Do nothing: every row is in the file already."""
 
     def _write_all(self) -> None:
         whole = self.path.with_name(self.path.name + ".new")
@@ -106,13 +106,13 @@ class CsvTable:
 
 
 class ParquetTable:
-    """A Parquet file, rewritten every few seconds and at the end.
+    """A Parquet file that is rewritten every few seconds and at the end.
 
     Args:
-        path: The file; it need not be there.
+        path: The file; it need not exist.
 
     Raises:
-        UsageError: polars is not installed, or the file is no sweep's.
+        UsageError: polars is not installed, or the file is not a sweep's.
     """
 
     def __init__(self, path: Path) -> None:
@@ -135,7 +135,7 @@ class ParquetTable:
             self.rows = frame.to_dicts()
 
     def append(self, row: Row) -> None:
-        """Add a row; it is in the file within a few seconds."""
+        """Add a row; it is in the file after a few seconds, or after `close`."""
         self.rows.append(row)
         if monotonic() > self._written + EVERY:
             self.close()
@@ -156,7 +156,7 @@ def _check(path: Path, columns: list[str], *, empty: bool) -> None:
 
 
 def _column(values: list[Any]) -> list[Any]:
-    """Return a column of one type: text where numbers and words are mixed."""
+    """Return a column of one type: text if it mixes numbers and text."""
     kinds = {type(value) for value in values if value is not None}
     if str in kinds and len(kinds) > 1:
         return [None if value is None else _cell(value) for value in values]
@@ -174,4 +174,4 @@ def _cell(value: Any) -> str:
         return ""
     if isinstance(value, bool):
         return "true" if value else "false"
-    return " ".join(str(value).splitlines())  # a row is one line
+    return " ".join(str(value).splitlines())  # without line breaks: a row is one line

@@ -1,4 +1,4 @@
-"""`windup synthesise`: an optimiser finds or improves the gait of a robot."""
+"""`windup synthesise`: optimises or finds the gait of a robot."""
 
 from windup.tools.synthesis.command import Synthesise
 

@@ -37,50 +37,50 @@ Positional = Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")
 class Synthesise(Command):
     """Improve a gait, or find one, with CMA-ES: `windup walk ROBOT --gait FILE` walks the result.
 
-    Trials are kept beside the result in FILE.trials: after Ctrl-C the same line goes on where it
-    was, and a larger --trials searches on. In the end the best trials walk again from other starts,
-    and the best of these is written.
+    Trials are stored beside the result in FILE.trials: after Ctrl-C the same command line continues
+    the search, and a larger --trials extends it. In the end the best trials are walked again from
+    other starts, and the best of these is written.
 
     windup synthesise op3 --speed 0.2 --aim 0.2 --objective falls speed effort --out thrifty.toml
     """
 
     robot: Positional
-    """A robot's name, or the path of a folder with your own."""
+    """Name of a robot, or path of a folder with your own."""
     gait: str = "walk"
-    """The gait to begin with: its name, or the path of a gait file."""
+    """Initial gait: its name, or the path of a gait file."""
     vary: tuple[str, ...] | None = None
-    """What may change, * for anything: pose.STATE.JOINT, hold.STATE, target.VARIABLE, limit.NAME,
-    change.NAME.JOINT. By default the angles of joints that move, hold times, and targets."""
+    """Numbers that may change, * for any: pose.STATE.JOINT, hold.STATE, target.VARIABLE,
+    limit.NAME, change.NAME.JOINT. By default angles of moving joints, hold times, and targets."""
     objective: tuple[str, ...] = ()
-    """What counts, TERM or TERM=WEIGHT: falls, speed, effort, shake, drift, cross,
+    """Terms of the cost, TERM or TERM=WEIGHT: falls, speed, effort, shake, drift, cross,
     flight, air, skip."""
     aim: Speed | None = None
-    """The speed that `speed` wants, m/s."""
+    """Desired speed for the term `speed`, m/s."""
     speed: Speed | None = None
     """Commanded speed, m/s; the gait's own by default."""
     trials: Count = 300
-    """How many gaits to try."""
+    """Number of gaits to try."""
     steps: Count = 40
-    """Steps of a walk."""
+    """Steps of each walk."""
     seeds: Some = 3
-    """Noisy starts of each trial."""
+    """Number of noisy starts of each trial."""
     noise: Noise = 0.2
     """Standard deviation of noise on the start pose, degrees."""
     seed: Seed = 0
     """Seed of the search."""
     population: Annotated[int, Range(4, 10_000)] | None = None
-    """Trials in a generation."""
+    """Number of trials per generation."""
     spread: Annotated[float, Range(0.0, 100.0, above=True)] = 1.0
-    """How far the first trials are from the gait: one is 4 degrees, 0.02 s, 0.03 of a target."""
+    """Scale of the first changes of the gait: 1 is 4 degrees, 0.02 s, 0.03 of a target."""
     out: Path
     """Gait file to write, .toml."""
     jobs: Jobs | None = None
-    """Processes; one a core by default."""
+    """Number of processes; one per core by default."""
     json: Path | None = None
-    """Write what came of it as JSON to a file, or to standard output with '-'."""
+    """Write the result as JSON to a file, or to standard output with '-'."""
 
     def run(self) -> int:
-        """Search; returns 0 if the gait written walks from all starts, else 1."""
+        """Search; return 0 if the written gait walks from all starts, else 1."""
         robot = load_robot(self.robot)
         check_walks(robot)
         start = load_toml(gait_path(robot, self.gait), GaitFile)
@@ -105,7 +105,7 @@ class Synthesise(Command):
         return self._conclude(search, genome, finals)
 
     def check(self) -> None:
-        """Raise what cannot be; see `Command.check`."""
+        """Check the options; see `Command.check`."""
         super().check()
         if self.out.suffix != ".toml":
             raise UsageError(f"--out {self.out}: name it .toml")
@@ -115,7 +115,7 @@ class Synthesise(Command):
         return self.out.with_suffix(".trials")
 
     def _setup(self, start: GaitFile, genes: list[str], aim: Objective) -> dict[str, Any]:
-        """Return what has to be the same for a search to go on."""
+        """Return the settings that must be equal for a search to continue."""
         names = ("robot", "speed", "steps", "seeds", "noise", "seed", "population", "spread")
         options = {name: getattr(self, name) for name in names}
         told = {"objective": aim.weights, "aim": aim.aim, "vary": genes}
@@ -127,7 +127,7 @@ class Synthesise(Command):
     def _finals(
         self, search: Search, genome: Genome, aim: Objective, workers: Workers
     ) -> dict[int, Entry]:
-        """Walk the gait that was there, and the best ones, from starts they were not chosen by."""
+        """Walk the initial gait and the best ones again, from starts not used in the search."""
         seeds = tuple(range(self.seeds, 3 * self.seeds))
         numbers = list(dict.fromkeys([0, *search.ranking()[:FINALISTS]]))
         trials = [self._trial(n, genome.express(search.values(n)), seeds) for n in numbers]

@@ -1,4 +1,4 @@
-"""Writing gait files: what differs from the format's defaults, as TOML."""
+"""Writes gait files as TOML, without values that equal the format's defaults."""
 
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,7 @@ from windup.tools.terminal.writing import writing
 
 
 def write_gait(path: Path, file: GaitFile) -> None:
-    """Write a gait file that `windup walk ROBOT --gait PATH` takes.
+    """Write a gait file for `windup walk ROBOT --gait PATH`.
 
     Raises:
         UsageError: tomli-w is not installed.
@@ -28,7 +28,7 @@ def write_gait(path: Path, file: GaitFile) -> None:
 
 
 def sparse(value: Any) -> Any:
-    """Return a record as plain types without the keys that say no more than a default."""
+    """Return a record as plain types, without the keys whose values equal their defaults."""
     if isinstance(value, msgspec.Struct):
         fields = msgspec.structs.fields(value)
         kept = {f.name: getattr(value, f.name) for f in fields}

@@ -1,14 +1,14 @@
-"""What an optimiser may change in a gait file, by name.
+"""Numbers of a gait file that an optimiser may change (genes), by name.
 
     pose.STATE.JOINT       an angle of a state, degrees
     hold.STATE             its hold time, s
     target.VARIABLE        the target of a regulation variable
-    limit.PERTURBATION     how far balance may go with a perturbation
-    change.PERTURBATION.JOINT   what a perturbation does to a joint, degrees a degree
+    limit.PERTURBATION     the largest amount of a perturbation that balance may apply
+    change.PERTURBATION.JOINT   the effect of a perturbation on a joint, degrees per degree
 
-A graph whose second half is the first on the other foot stays so: its genes carry the names of the
-first half and change both. Where all poses are their own mirror images, the genes of the left side
-change both sides.
+If the second half of a graph is the first on the other foot, that is preserved: its genes have the
+names of the first half and change both. If all poses are their own mirror images, the genes of the
+left side change both sides.
 """
 
 from collections.abc import Iterable
@@ -27,7 +27,7 @@ from windup.hal.mirror import Mirror, other_side
 
 SPREAD = {"pose": 4.0, "hold": 0.02, "target": 0.03, "limit": 4.0, "change": 0.2}
 DIGITS = {"pose": 2, "hold": 4, "target": 4, "limit": 2, "change": 3}
-LONGEST = 2.0  # s in a state
+LONGEST = 2.0  # longest time in a state, s
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class Gene:
     """One number of a gait file.
 
     Attributes:
-        name: Its name.
-        value: What the file says.
-        spread: How far a first guess is from it, one standard deviation.
+        name: Name of the gene.
+        value: Value in the file.
+        spread: Standard deviation of the first guesses around it.
         lower: Smallest value.
         upper: Largest value.
     """
@@ -50,11 +50,11 @@ class Gene:
 
     @property
     def kind(self) -> str:
-        """What it is of: pose, hold and so on."""
+        """Kind of the number: pose, hold and so on."""
         return self.name.partition(".")[0]
 
     def round(self, value: float) -> float:
-        """Return `value` as it stands in a file: within the bounds, with a few digits."""
+        """Return `value` as written to a file: within the bounds, and rounded."""
         return round(float(np.clip(value, self.lower, self.upper)), DIGITS[self.kind])
 
 
@@ -64,7 +64,7 @@ class Genome:
     Args:
         file: The gait file.
         joints: The robot's joints.
-        mirror: Its left and right.
+        mirror: The robot's left-right symmetry.
     """
 
     def __init__(self, file: GaitFile, joints: Joints, mirror: Mirror) -> None:
@@ -76,13 +76,13 @@ class Genome:
         self.genes = {gene.name: gene for gene in self._all()}
 
     def choose(self, patterns: Iterable[str] | None = None) -> list[Gene]:
-        """Return the genes that `patterns` name, where * stands for anything.
+        """Return the genes that match `patterns`, where * stands for anything.
 
         Without patterns: the angles of the joints that the graph moves, the hold times, and the
         targets.
 
         Raises:
-            UsageError: A pattern fits no gene.
+            UsageError: A pattern matches no gene.
         """
         if patterns is None:
             return self._usual()
@@ -95,7 +95,7 @@ class Genome:
         return list(chosen.values())
 
     def express(self, values: dict[str, float]) -> GaitFile:
-        """Return the gait file in which the genes named have these values."""
+        """Return the gait file with these values of the named genes."""
         data = msgspec.to_builtins(self.file)
         names = [state.name for state in self.file.state]
         for name, value in values.items():
@@ -146,11 +146,11 @@ class Genome:
         return usual
 
     def _odd(self, j: int) -> bool:
-        """Is joint `j` in the middle, and straight in every pose that is its own mirror image?"""
+        """Return whether joint `j` is central, and 0 in every pose that is its own mirror image."""
         return int(self.mirror.perm[j]) == j and self.mirror.sign[j] < 0.0
 
     def _both(self, index: int) -> list[int]:
-        """Return the state and, in a graph of two halves, its partner."""
+        """Return the index of a state and, in a graph of two halves, of its partner."""
         twice = self._half < len(self.file.state)
         return [index, index + self._half] if twice else [index]
 
@@ -172,7 +172,7 @@ def _named(state: State) -> dict[str, float]:
 
 
 def _with_tables(file: GaitFile) -> GaitFile:
-    """Return the file with poses by name, instead of rows of columns."""
+    """Return the file with poses by joint name instead of rows of columns."""
     states = []
     for state in file.state:
         pose = state.pose
@@ -183,7 +183,7 @@ def _with_tables(file: GaitFile) -> GaitFile:
 
 
 def _half(file: GaitFile) -> int:
-    """Return how many states have genes: half of them if the other half is their mirror image."""
+    """Return the number of states with genes: half if the other half is their mirror image."""
     count = len(file.state) // 2
     one, other = file.state[:count], file.state[count:]
     if file.mirror or len(one) != len(other):
@@ -204,14 +204,14 @@ def _perturb(items: list[dict[str, Any]], kind: str, where: str, value: float) -
 
 
 def _hint(pattern: str, names: Iterable[str]) -> str:
-    """Return that nothing fits a pattern, and what would."""
+    """Return a message for a pattern that matches nothing, with a suggestion."""
     near = get_close_matches(pattern, names, n=1)
     kinds = ", ".join(f"'{kind}.*'" for kind in SPREAD)
     return f"fits nothing; did you mean {near[0]!r}?" if near else f"fits nothing; try {kinds}"
 
 
 def shape(genes: list[Gene]) -> tuple[Array, Array, Array]:
-    """Return (g,) values and bounds of genes, in spreads away from what the file says."""
+    """Return values and bounds (g,) of genes, in spreads relative to the file's values."""
     value, spread = np.array([g.value for g in genes]), np.array([g.spread for g in genes])
     lower, upper = np.array([g.lower for g in genes]), np.array([g.upper for g in genes])
     return np.zeros(len(genes)), (lower - value) / spread, (upper - value) / spread

@@ -1,4 +1,4 @@
-"""The file of a search: a line for what is searched, then one for each trial."""
+"""The file of a search: one line with its settings, then one for each trial."""
 
 import json
 from pathlib import Path
@@ -12,17 +12,17 @@ Entry = dict[str, Any]
 
 
 class SearchLog:
-    """Trials by number, each in the file as soon as it has been walked.
+    """Stored trials by number; each is written to the file as soon as it has been walked.
 
-    The optimiser is deterministic: given its seed and the costs it goes the same way again, so that
-    the costs are all that has to be kept to go on where a search broke off.
+    The optimiser is deterministic: with the same seed and costs it repeats the same search, so that
+    only the costs must be stored to continue an interrupted search.
 
     Args:
-        path: The file; it need not be there.
-        setup: What is searched.
+        path: The file; it need not exist.
+        setup: Settings of the search.
 
     Raises:
-        UsageError: The file holds another search, or cannot be read or written.
+        UsageError: The file contains another search, or cannot be read or written.
     """
 
     def __init__(self, path: Path, setup: dict[str, Any]) -> None:
@@ -31,7 +31,7 @@ class SearchLog:
         setup = json.loads(json.dumps(plain(setup)))
         try:
             text = path.read_text(encoding="utf-8") if path.exists() else ""
-            whole = text[: text.rfind("\n") + 1]  # without a line that a kill has torn
+            whole = text[: text.rfind("\n") + 1]  # without a last line cut off by a kill
             if whole:
                 self._read(whole.splitlines(), setup)
             else:
@@ -41,7 +41,7 @@ class SearchLog:
             raise UsageError(f"{path}: {error.strerror}") from None
 
     def add(self, number: int, entry: Entry) -> None:
-        """Keep a trial; it is in the file when this returns."""
+        """Store a trial; it is in the file on return."""
         entry = plain(entry)
         self.entries[number] = entry
         with writing(self.path), self.path.open("a", encoding="utf-8") as file:

@@ -1,4 +1,4 @@
-"""What a gait is worth: a weighted sum of terms, each about 1 for a gait that is poor in it."""
+"""The cost of a gait: a weighted sum of terms, each about 1 for a gait that is poor in it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,8 +11,8 @@ from windup.hal.ranges import Range, read_number
 
 WEIGHT = Range(0.0, 1e6)
 Row = dict[str, Any]
-CROSSED = 20.0  # mm that feet pass through each other, for a cost of 1
-AIR = 0.2  # share of the time in the air that counts as flying
+CROSSED = 20.0  # interpenetration of the feet for a cost of 1, mm
+AIR = 0.2  # share of the flight time for a cost of 0
 
 
 def _speed(row: Row, aim: float) -> float:
@@ -52,13 +52,13 @@ def _skip(row: Row, _: float) -> float:
 TERMS: dict[str, Callable[[Row, float], float]] = {
     "falls": lambda row, _: 1.0 - row["steps"] / row["steps_requested"],  # share not walked
     "speed": _speed,  # error of the speed, as a share of --aim
-    "effort": _effort,  # log (1 + cost of transport), work / (weight x way)
+    "effort": _effort,  # log (1 + cost of transport): work / (weight x distance)
     "shake": lambda row, _: row["shake_rad_s"],  # rms of the base's angular velocity, rad/s
-    "drift": _drift,  # heading of 90 degrees, or as far sideways as forward
-    "cross": _cross,  # feet that pass through each other
-    "flight": _flight,  # share of the steps without a flight
-    "skip": _skip,  # share of the touches that do not skip: left, left, right, right
-    "air": _air,  # short of a fifth of the time in the air
+    "drift": _drift,  # 1 for a heading of 90 degrees, or for as far sideways as forward
+    "cross": _cross,  # interpenetration of the feet
+    "flight": _flight,  # share of the steps without a flight phase
+    "skip": _skip,  # share of the touchdowns that do not skip: left, left, right, right
+    "air": _air,  # lack of flight time, compared with a fifth of the time
 }
 USUAL = {"falls": 10.0, "speed": 1.0, "effort": 1.0, "shake": 0.2, "drift": 0.2}
 
@@ -69,18 +69,18 @@ class Objective:
 
     Attributes:
         weights: Weight of each term.
-        aim: Speed to walk at, m/s.
+        aim: Desired walking speed, m/s.
     """
 
     weights: dict[str, float]
     aim: float | None = None
 
     def cost(self, rows: list[Row]) -> float:
-        """Return the mean cost of several runs; smaller is better."""
+        """Return the mean cost of several runs; lower is better."""
         return float(np.mean([self._of(row) for row in rows]))
 
     def terms(self, rows: list[Row]) -> dict[str, float]:
-        """Return the mean of each term, without its weight."""
+        """Return the mean of each term, unweighted."""
         return {
             name: float(np.mean([TERMS[name](row, self.aim or 0.0) for row in rows]))
             for name in self.weights
@@ -92,11 +92,11 @@ class Objective:
 
 
 def objective(given: tuple[str, ...], aim: float | None) -> Objective:
-    """Return the objective from "TERM" or "TERM=WEIGHT", or the usual one.
+    """Return the objective given as "TERM" or "TERM=WEIGHT", by default the usual one.
 
     Raises:
         UnknownNameError: There is no such term.
-        UsageError: A weight is no number of 0 or more, or the speed has no aim.
+        UsageError: A weight is not a number of 0 or more, or the term `speed` has no aim.
     """
     weights = {}
     for text in given:

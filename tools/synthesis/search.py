@@ -1,4 +1,4 @@
-"""The search itself: CMA-ES asks for gaits, they are walked, and it is told what they cost."""
+"""The search: CMA-ES proposes gaits, they are walked, and their costs are returned to it."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from windup.tools.synthesis.genes import Gene, shape
 from windup.tools.synthesis.log import Entry, SearchLog
 
 Values = dict[str, float]
-# Walks gaits, given by their numbers and the values of their genes, and yields what came of each.
+# Walks gaits, given by number and gene values, and yields the result of each.
 Walker = Callable[[list[tuple[int, Values]]], Iterator[tuple[int, Entry]]]
 
 
@@ -21,15 +21,15 @@ class Search:
     """A search over genes.
 
     Hansen 2016, "The CMA evolution strategy: a tutorial". Every gene is scaled by its spread.
-    Trial 0 is the gait as it stands in its file.
+    Trial 0 is the unchanged gait file.
 
     Attributes:
-        genes: What may change.
-        log: Trials, also of an earlier run.
+        genes: The genes that may change.
+        log: The trials, including those of an earlier run.
         walk: Walks gaits.
-        trials: How many, at least; the last generation is always whole.
+        trials: Smallest number of trials; the last generation is always completed.
         seed: Seed of the optimiser.
-        population: Trials in a generation; by default what CMA-ES takes for so many genes.
+        population: Number of trials per generation; by default CMA-ES's for so many genes.
         spread: Scale of all spreads.
     """
 
@@ -43,7 +43,7 @@ class Search:
     _next: int = field(default=0, init=False)
 
     def run(self) -> None:
-        """Search until there were enough trials.
+        """Search until the number of trials is reached, or CMA-ES stops.
 
         Raises:
             UsageError: cma is not installed.
@@ -56,17 +56,17 @@ class Search:
             strategy.tell(candidates, self._costs(candidates))
 
     def values(self, number: int) -> Values:
-        """Return the values of the genes in a trial."""
+        """Return the gene values of a trial."""
         kept: Values = self.log.entries[number]["values"]
         return kept
 
     def ranking(self) -> list[int]:
-        """Return the numbers of the trials, the best one first."""
+        """Return the numbers of the trials, from best to worst."""
         entries = self.log.entries
         return sorted(entries, key=lambda number: (entries[number]["cost"], number))
 
     def _costs(self, candidates: list[Array]) -> list[float]:
-        """Return the costs of a generation; what the log has is not walked again."""
+        """Return the costs of a generation; trials in the log are not walked again."""
         numbers = range(self._next, self._next + len(candidates))
         self._next += len(candidates)
         todo = [
@@ -97,7 +97,7 @@ class Search:
         options: dict[str, Any] = {
             "bounds": [_finite(lower), _finite(upper)],
             "randn": lambda *size: random.standard_normal(size),
-            "seed": float("nan"),  # the generator above is the only one
+            "seed": float("nan"),  # cma must not seed NumPy: `randn` is its only generator
             "verbose": -9,
         }
         if self.population is not None:

@@ -1,4 +1,4 @@
-"""One trial of a search: a gait file, walked from several noisy starts."""
+"""One trial of a search: walks a gait from several noisy starts."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,9 +37,9 @@ class Trial:
         number: Number of the trial.
         robot: Name or folder of the robot.
         file: The gait.
-        steps: Steps to walk.
-        noise: Noise of the start poses, degrees.
-        seeds: One walk for each.
+        steps: Number of steps to walk.
+        noise: Standard deviation of the noise on the start pose, degrees.
+        seeds: Seeds of the walks, one walk each.
         speed: Commanded speed, m/s, or None for the gait's own.
     """
 
@@ -53,9 +53,9 @@ class Trial:
 
 
 def walk_trial(trial: Trial) -> list[dict[str, Any]]:
-    """Walk a trial and return a row for each seed.
+    """Walk a trial and return one row per seed.
 
-    A gait that cannot be walked at all, or whose twin diverges, has walked no step.
+    A gait that cannot be walked, or whose twin diverges, counts as having walked no step.
     """
     with TemporaryDirectory(prefix="windup-") as folder:
         path = Path(folder) / "trial.toml"
@@ -74,7 +74,7 @@ def _walk(trial: Trial, gait: str, seed: int) -> dict[str, Any]:
 
 
 def _nothing(steps: int) -> dict[str, Any]:
-    """Return the row of a walk that did not even begin."""
+    """Return the row of a walk that could not begin."""
     row: dict[str, Any] = dict.fromkeys(KEPT, 0.0)
     return row | {
         "steps": 0,

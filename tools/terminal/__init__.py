@@ -1,1 +1,1 @@
-"""What people read and programs write: output, pictures, progress, numbers that are checked."""
+"""Input and output of commands: messages, JSON, pictures, progress, ranges of numbers."""

@@ -1,4 +1,4 @@
-"""What every subcommand is: a dataclass of options that is checked, then run."""
+"""Base class of all subcommands: a dataclass of options that is checked, then run."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -8,21 +8,21 @@ from windup.hal.ranges import check_numbers
 
 @dataclass(frozen=True)
 class Command(ABC):
-    """The base of every subcommand."""
+    """Base class of all subcommands."""
 
     def check(self) -> None:
-        """Raise what cannot be, before a port is opened, a world is built, or anything moves.
+        """Check the options before a port is opened, a world is built, or anything moves.
 
         Raises:
-            UsageError: A number is not finite or outside its range, or options do not fit.
-            ConfigError: A file that is named says something that cannot be.
+            UsageError: A number is not finite or outside its range, or options do not fit together.
+            ConfigError: The content of a named file is invalid.
         """
         check_numbers(self, "--")
 
     def warn(self) -> None:
-        """Say what is doubtful, once all is checked and before anything moves."""
+        """Warn about doubtful options, after all checks and before anything moves."""
         return None
 
     @abstractmethod
     def run(self) -> int:
-        """Do it; returns the exit status."""
+        """Execute the command; return the exit status."""

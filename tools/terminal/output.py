@@ -1,4 +1,4 @@
-"""What people read (standard error) and what programs read (JSON)."""
+"""Output for people (on standard error) and for programs (JSON)."""
 
 import json
 import sys
@@ -19,7 +19,7 @@ console = Console(file=cast(IO[str], StandardError()), highlight=False)
 
 
 def plain(value: Any) -> Any:
-    """Return `value` in plain JSON types; numbers that are none become null."""
+    """Return `value` in plain JSON types; NaN and infinity become null."""
     if isinstance(value, dict):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
@@ -36,9 +36,9 @@ def plain(value: Any) -> Any:
 def write_json(target: Path | None, command: str, result: dict[str, Any]) -> None:
     """Write one JSON object to `target`: a file, standard output for "-", or nowhere for None.
 
-    Where a robot was run, what there was to warn about, and what the driver of its servos has
-    clamped, are part of it. What cannot be written is told in the command's last lines, and makes
-    its status 1.
+    If a robot was run, the object includes the warnings of the run and the clamp counts of the
+    servo driver. A failure to write is reported at the end of the command, and makes its exit
+    status 1.
     """
     if target is None:
         return
@@ -56,12 +56,12 @@ def write_json(target: Path | None, command: str, result: dict[str, Any]) -> Non
 
 
 def print_result(text: str) -> None:
-    """Write to standard output, all of it, now.
+    """Write a text to standard output and flush it.
 
     Raises:
-        UsageError: It is closed.
-        OutputError: That is not possible.
-        BrokenPipeError: Whoever read it has gone.
+        UsageError: Standard output is closed.
+        OutputError: It cannot be written.
+        BrokenPipeError: Its reader has closed it.
     """
     check_writable(STANDARD_OUTPUT)
     with writing(STANDARD_OUTPUT):
@@ -74,6 +74,6 @@ def print_result(text: str) -> None:
 
 
 def error_record(error: WindupError) -> dict[str, Any]:
-    """Return an error as programs read it."""
+    """Return an error as a record for JSON."""
     kind = type(error).__name__.removesuffix("Error")
     return {"error": {"kind": kind, "message": str(error), "exit_status": error.exit_status}}

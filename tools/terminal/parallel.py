@@ -1,4 +1,4 @@
-"""Many runs side by side: one process a core, a progress bar, and a clean end on Ctrl-C."""
+"""Runs many items in parallel: one process per core, a progress bar, a clean end on Ctrl-C."""
 
 import logging
 import multiprocessing
@@ -35,17 +35,17 @@ def side_by_side(
 ) -> Iterator[tuple[Item, Result]]:
     """Yield each item with its result, in the order in which they finish.
 
-    Whoever takes the results can save each one at once: Ctrl-C ends the processes and loses only
-    what they were at.
+    The caller can save each result at once: Ctrl-C ends the processes and loses only the items in
+    progress.
 
     Args:
-        work: A function of a module, run in another process.
-        items: What to run it on.
-        label: What the progress bar says.
-        jobs: Number of processes; one a core by default.
+        work: A module-level function, run in another process.
+        items: Its arguments.
+        label: Text of the progress bar.
+        jobs: Number of processes; one per core by default.
 
     Raises:
-        WindupError: From `work`, or a process has died.
+        WindupError: Raised by `work`, or a process has died.
     """
     if not items:
         return
@@ -54,13 +54,13 @@ def side_by_side(
 
 
 class Workers:
-    """Processes that stay for several lists of items, under one progress bar.
+    """Processes that work on several lists of items, with one progress bar.
 
     Args:
-        label: What the progress bar says.
-        total: Items to come, in all the lists.
-        done: Items of them that were done before.
-        jobs: Number of processes; one a core by default, and never more than items.
+        label: Text of the progress bar.
+        total: Number of items in all lists.
+        done: Number of them that were done before.
+        jobs: Number of processes; one per core by default, and never more than items.
     """
 
     def __init__(self, label: str, *, total: int, done: int = 0, jobs: int | None = None) -> None:
@@ -75,13 +75,13 @@ class Workers:
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         self._progress.stop()
-        # An interrupt may come while the first items are being submitted, with none of them known.
+        # An interrupt may come while the first items are being submitted, before any is recorded.
         if kind is None and all(future.done() for future in self._futures):
             self._pool.shutdown()
             return
         self._pool.shutdown(wait=False, cancel_futures=True)
         for process in multiprocessing.active_children():
-            process.kill()  # a run that it is at would only take SIGTERM for a wish to end
+            process.kill()  # a run would treat SIGTERM as a request to end only
 
     def run(
         self, work: Callable[[Item], Result], items: list[Item]
@@ -89,10 +89,10 @@ class Workers:
         """Yield each item with its result, in the order in which they finish.
 
         Raises:
-            WindupError: From `work`, or a process has died.
+            WindupError: Raised by `work`, or a process has died.
         """
-        # Submitted before the bar starts its thread: a process forked under it could inherit a
-        # lock that nobody will ever release.
+        # Submit before the progress bar starts its thread: a process forked while that holds a lock
+        # would inherit a lock that is never released.
         futures = {self._pool.submit(work, item): item for item in items}
         self._futures = set(futures)
         self._progress.start()
@@ -106,12 +106,12 @@ class Workers:
             ) from None
 
     def say(self, text: str) -> None:
-        """Let the progress bar say how it is going."""
+        """Set the status text of the progress bar."""
         self._progress.update(self._bar, said=text)
 
 
 def _quiet_worker() -> None:
-    """Leave Ctrl-C to the parent, which ends us; print nothing."""
+    """Initialise a worker: ignore Ctrl-C, which the parent handles, and print nothing."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     mujoco.set_mju_user_warning(logging.getLogger("mujoco").debug)

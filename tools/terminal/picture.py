@@ -1,4 +1,4 @@
-"""Pictures of runs: whether one can be drawn is asked before anything moves."""
+"""Pictures of runs, with a check before anything moves that they can be written."""
 
 from importlib.util import find_spec
 from pathlib import Path
@@ -8,15 +8,15 @@ from windup.hal.errors import UsageError
 from windup.tools.terminal.writing import check_writable, writing
 
 SUFFIXES: Final = (".png", ".pdf", ".svg", ".jpg", ".jpeg", ".webp")
-"""How the names of picture files end."""
+"""Suffixes of picture files."""
 
 
 def check_picture(path: Path | None) -> None:
-    """Raise before anything runs if no picture could be drawn into a file.
+    """Check that a picture can be written to a file, before anything runs.
 
     Raises:
-        UsageError: There is no matplotlib, the suffix is none of a picture, or the file cannot be
-            written.
+        UsageError: matplotlib is not installed, the suffix is not a picture's, or the file cannot
+            be written.
     """
     if path is None:
         return
@@ -27,10 +27,10 @@ def check_picture(path: Path | None) -> None:
 
 
 def load_pyplot(wanted_by: str = "--plot") -> Any:
-    """Return `matplotlib.pyplot`, drawing into memory.
+    """Return `matplotlib.pyplot` with a backend that draws into memory.
 
     Raises:
-        UsageError: There is no matplotlib.
+        UsageError: matplotlib is not installed.
     """
     _check_installed(wanted_by)
     import matplotlib
@@ -42,10 +42,10 @@ def load_pyplot(wanted_by: str = "--plot") -> Any:
 
 
 def save_picture(path: Path, figure: Any, **options: Any) -> None:
-    """Write a figure into a file.
+    """Write a figure to a file.
 
     Raises:
-        OutputError: It cannot be written.
+        OutputError: The file cannot be written.
     """
     with writing(path):
         figure.savefig(path, **options)

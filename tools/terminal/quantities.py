@@ -1,14 +1,14 @@
-"""What the numbers of commands and calls are numbers of, and in which range they make sense.
+"""Types of the numbers of commands and calls: their units and plausible ranges.
 
-The ranges are wide: they stop what can only be a mistake. What a robot or a gait can do is narrower
-and is checked where that is known.
+The ranges are wide and exclude only obvious mistakes. The narrower limits of a robot or a gait are
+checked elsewhere.
 """
 
 from typing import Annotated
 
 from windup.hal.ranges import Range
 
-LONGEST = 1e7  # s, four months
+LONGEST = 1e7  # about four months, s
 
 Seed = Annotated[int, Range(0, 2**32 - 1)]
 Count = Annotated[int, Range(1, 1_000_000)]

@@ -1,7 +1,7 @@
-"""What the runs of a command had to warn about: for its last line and its JSON, whatever it is.
+"""Collects the warnings of a command's runs, for its last line and its JSON.
 
-A session leaves its warnings here when it is closed, and they are merged: the same cause in eight
-runs is one warning. A command begins with none.
+A session adds its warnings when it is closed, and they are merged: the same cause in eight runs is
+one warning. Each command begins without warnings.
 """
 
 from collections import Counter
@@ -22,16 +22,16 @@ class RunNotes:
     """The warnings of the robots that were run since `begin`.
 
     Attributes:
-        ran: Has there been a robot at all?
-        driver_clamps: Clamp of the servos' driver to the number of commands it changed.
-        lost: Results that could not be written, and why; "" where nobody was there to read one.
+        ran: Whether any robot was run.
+        driver_clamps: Number of commands changed by each clamp of the servo driver.
+        lost: Reasons why results could not be written; "" for a reader that closed its pipe.
     """
 
     def __init__(self) -> None:
         self.begin()
 
     def begin(self) -> None:
-        """Forget everything: a command begins."""
+        """Clear everything, at the beginning of a command."""
         self.ran = False
         self.driver_clamps: Counter[str] = Counter()
         self.lost: list[str] = []
@@ -40,7 +40,7 @@ class RunNotes:
         self._rows: list[Row] = []
 
     def add(self, findings: Iterable[Finding], slowness: Slowness, backend: object = None) -> None:
-        """Take in what a session had to warn about, and what its backend has clamped."""
+        """Add the warnings of a session, and the clamp counts of its backend."""
         self.ran = True
         if isinstance(backend, BusHealth):
             self.driver_clamps.update(backend.clamps)
@@ -56,14 +56,14 @@ class RunNotes:
             self._slowness.merge(slowness)
 
     def add_row(self, row: Row) -> None:
-        """Take in the result of a run in another process, with `warnings` and `driver_clamps`."""
+        """Add the result of a run in another process, with `warnings` and `driver_clamps`."""
         self.ran = True
         self.driver_clamps.update(row.get("driver_clamps", {}))
         self._rows.append(row)
 
     @contextmanager
     def losing(self) -> Iterator[None]:
-        """Note a result that cannot be written, and go on: there may be others."""
+        """Record a failure to write a result, and continue: there may be other results."""
         try:
             yield
         except (OutputError, UsageError) as error:
@@ -72,7 +72,7 @@ class RunNotes:
             self.lost.append("")
 
     def records(self) -> list[Row]:
-        """Return all warnings for programs."""
+        """Return all warnings as plain data."""
         own = [finding.record() for finding in self._findings.values()]
         late = self._slowness.records() if self._slowness else []
         others = [
@@ -81,10 +81,10 @@ class RunNotes:
         return own + late + others
 
     def said(self, ended_by: str = "") -> str:
-        """Return the warnings in one line for people, or "".
+        """Return the warnings in one line, or "".
 
         Args:
-            ended_by: Kind of what ended the run, which is said anyhow.
+            ended_by: Kind of the finding that ended the run, which is reported separately.
         """
         kinds = [finding for kind, finding in self._findings.items() if kind != ended_by]
         said = [str(finding) for finding in kinds]
@@ -98,4 +98,4 @@ class RunNotes:
 
 
 NOTES = RunNotes()
-"""Those of this process' command."""
+"""The warnings of the command of this process."""

@@ -1,24 +1,24 @@
-"""Is the computer fast enough? Ticks and plans that came late in a run, and what to do about it."""
+"""Detects a computer or bus that is too slow, from late ticks and plans, and gives advice."""
 
 from dataclasses import dataclass
 from typing import Any
 
 TICKS, PLANS = 0.01, 0.05
-"""Shares of late ticks, and of late plans, from which on it is said."""
+"""Shares of late ticks and of late plans above which a warning is given."""
 
 
 @dataclass
 class Slowness:
-    """What came late.
+    """Counts of late ticks and plans.
 
     Attributes:
         rate_hz: Rate of the loop, Hz.
-        simulated: Time was simulated: ticks are late because of the bus, never of the computer.
-        ticks: Ticks that were run.
-        missed: Ticks that came too late and were left out.
-        plans: Steps that were planned.
-        late: Plans that came too late to act in time, or never.
-        library: Plans came from learnt step models already.
+        simulated: Whether time is simulated: ticks are then late because of the bus only.
+        ticks: Number of ticks that were run.
+        missed: Number of ticks that were late and therefore skipped.
+        plans: Number of steps that were planned.
+        late: Number of plans that arrived too late to take effect, or never.
+        library: Whether the plans already come from learnt step models.
     """
 
     rate_hz: float
@@ -31,16 +31,16 @@ class Slowness:
 
     @property
     def missed_share(self) -> float:
-        """Share of the ticks that came late."""
+        """Share of the ticks that were late."""
         return _share(self.missed, self.ticks + self.missed)
 
     @property
     def late_share(self) -> float:
-        """Share of the plans that did."""
+        """Share of the plans that were late."""
         return _share(self.late, self.plans)
 
     def __bool__(self) -> bool:
-        """Return whether there is something to say."""
+        """Return whether a warning is due."""
         return self.missed_share > TICKS or self.late_share > PLANS
 
     def __str__(self) -> str:
@@ -48,7 +48,7 @@ class Slowness:
 
     @property
     def what(self) -> str:
-        """What came late."""
+        """Description of what was late."""
         parts = []
         if self.missed_share > TICKS:
             parts.append(f"{100.0 * self.missed_share:.0f} % of the ticks")
@@ -58,7 +58,7 @@ class Slowness:
 
     @property
     def do(self) -> str:
-        """Why, and what to do about it: plans are the computer's, ticks may be the bus' as well."""
+        """Cause and advice: late plans are due to the computer, late ticks possibly to the bus."""
         if self.simulated:
             return f"the bus is too slow for {self.rate_hz:g} Hz: try a lower --rate"
         if self.late_share <= PLANS:
@@ -73,12 +73,12 @@ class Slowness:
         self.plans, self.late, self.library = self.plans + plans, self.late + late, library
 
     def merge(self, other: "Slowness") -> None:
-        """Take in another run."""
+        """Add the counts of another run."""
         self.ticks, self.missed = self.ticks + other.ticks, self.missed + other.missed
         self.plans, self.late = self.plans + other.plans, self.late + other.late
 
     def records(self) -> list[dict[str, Any]]:
-        """Return what there is to say, for programs; when it began is unknown."""
+        """Return the warnings as plain data; their beginning is unknown."""
         late = [
             ("late ticks", self.missed, self.missed_share, TICKS),
             ("late plans", self.late, self.late_share, PLANS),

@@ -1,4 +1,4 @@
-"""Standard input, output and error that may be closed, full, or read by nobody."""
+"""Handles standard streams that are closed, full, or without a reader."""
 
 import os
 import sys
@@ -7,54 +7,54 @@ from typing import IO, Any
 
 
 def fill_closed_streams() -> None:
-    """Open the null device in the place of standard streams that are closed.
+    """Open the null device in place of closed standard streams.
 
-    The next file that is opened would get their number: what a library prints, or the traceback
-    that the guardian asks for, would go to a servo bus.
+    Otherwise the next opened file would get their number: output of a library, or the traceback
+    that the guardian requests, would be sent to a servo bus.
     """
     for number in range(3):
         try:
             os.fstat(number)
         except OSError:
-            os.open(os.devnull, os.O_RDWR)  # gets the lowest number that is free: this one
+            os.open(os.devnull, os.O_RDWR)  # gets the lowest free number, which is this one
 
 
 def drop_unwritten(stream: IO[str] | None) -> None:
-    """Let what a stream still holds, and all that comes, go nowhere, if it cannot be written.
+    """Discard the unwritten text of a stream and all later text, if it cannot be written.
 
-    The interpreter would try once more at its end, and complain.
+    The interpreter would otherwise try to flush it at exit, and print an error.
     """
     if stream is None:
         return
     try:
         stream.flush()
     except (OSError, ValueError):
-        with suppress(OSError, ValueError):  # it is none of the system's
+        with suppress(OSError, ValueError):  # a stream without a descriptor
             null = os.open(os.devnull, os.O_WRONLY)
             os.dup2(null, stream.fileno())
             os.close(null)
 
 
 class StandardError:
-    """Standard error as it is at the moment; writing to it never fails.
+    """The present standard error; writing to it never raises.
 
-    A full disk behind `2>log`, or a pager that has quit, is no reason to stop a robot.
+    A full disk behind `2>log`, or a pager that has quit, must not stop a robot.
     """
 
     def write(self, text: str) -> int:
-        """Write what can be written; returns how much there was."""
+        """Write the text if possible; return its length."""
         with suppress(OSError, ValueError, AttributeError):
             self._stream.write(text)
         return len(text)
 
     def flush(self) -> None:
-        """Flush, if that is possible."""
+        """Flush if possible."""
         with suppress(OSError, ValueError, AttributeError):
             self._stream.flush()
 
     @property
     def _stream(self) -> Any:
-        """What is behind; a progress bar of `rich` puts itself before it. None where closed."""
+        """The underlying stream, behind a progress bar of `rich` if any; None if closed."""
         return getattr(sys.stderr, "rich_proxied_file", sys.stderr)
 
     def __getattr__(self, name: str) -> Any:

@@ -1,4 +1,4 @@
-"""Whether a result can be written: asked before anything moves, and told afterwards in one line."""
+"""Checks that results can be written before anything moves, and reports failures in one line."""
 
 import os
 import stat
@@ -13,13 +13,13 @@ STANDARD_OUTPUT = Path("-")
 
 
 def check_writable(*targets: Path | None) -> None:
-    """Raise before anything runs if one of the result files could not be written.
+    """Check that the result files can be written, before anything runs.
 
     Args:
-        *targets: The files; "-" is standard output, None nothing.
+        *targets: The files; "-" is standard output, None is ignored.
 
     Raises:
-        UsageError: It is a folder or closed, its folder is missing, or it may not be written.
+        UsageError: One is a folder or closed, its folder is missing, or permission is denied.
     """
     for target in targets:
         if target is not None and (why := _problem(target)):
@@ -27,10 +27,10 @@ def check_writable(*targets: Path | None) -> None:
 
 
 def check_folder(folder: Path) -> None:
-    """Raise before anything runs if files could not be put into a folder, or it not be made.
+    """Check that a folder exists and is writable, or can be created, before anything runs.
 
     Raises:
-        UsageError: They could not.
+        UsageError: It is not writable, or cannot be created.
     """
     if not os.path.isdir(folder):
         check_writable(folder)
@@ -42,11 +42,11 @@ def check_folder(folder: Path) -> None:
 
 @contextmanager
 def writing(target: Path) -> Iterator[None]:
-    """Turn what goes wrong while a result is written into one line.
+    """Convert an error while writing a result into a one-line `OutputError`.
 
     Raises:
-        OutputError: It cannot be written.
-        BrokenPipeError: Whoever read it has gone.
+        OutputError: The result cannot be written.
+        BrokenPipeError: Its reader has closed the pipe.
     """
     try:
         yield
@@ -58,7 +58,7 @@ def writing(target: Path) -> Iterator[None]:
 
 
 def _problem(target: Path) -> str:
-    """Return why a file cannot be written; "" where nothing says so."""
+    """Return the reason why a file cannot be written; "" if none is known."""
     if target == STANDARD_OUTPUT:
         return "it is closed" if sys.stdout is None else ""
     folder = os.path.dirname(os.path.realpath(target))

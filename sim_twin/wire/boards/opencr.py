@@ -1,8 +1,8 @@
-"""The OpenCR board of the OP3: IMU, voltage, buttons and the switch of the servo power.
+"""The OpenCR board of the OP3: IMU, supply voltage, buttons and the servo power switch.
 
-A Dynamixel protocol 2 device, id 200. Its registers are those of the OP3's firmware
-(`dxl_node_op3.cpp` of ROBOTIS' OpenCR); roll, pitch and yaw are signed tenths of a degree, whatever
-the device file of the ROBOTIS framework says. The fourth button, reset (bit 3), which switches the
+A Dynamixel protocol 2 device with id 200. Its registers are those of the OP3's firmware
+(`dxl_node_op3.cpp` of ROBOTIS' OpenCR). Roll, pitch and yaw are signed tenths of a degree, unlike
+in the device file of the ROBOTIS framework. The fourth button, reset (bit 3), which switches the
 servo power off when it is held for 0.1 s, is not emulated.
 """
 
@@ -27,8 +27,8 @@ from windup.sim_twin.wire.servos.register_file import (
 )
 from windup.sim_twin.wire.servos.x_series import BAUD_RATES
 
-GYRO_UNIT = math.radians(2000.0 / 32800.0)  # rad/s a count
-ACCELERATION_UNIT = 2.0 / 32768.0 * STANDARD_GRAVITY  # m/s2 a count
+GYRO_UNIT = math.radians(2000.0 / 32800.0)  # rad/s per count
+ACCELERATION_UNIT = 2.0 / 32768.0 * STANDARD_GRAVITY  # m/s2 per count
 MODE_BUTTON, START_BUTTON, USER_BUTTON = 0x01, 0x02, 0x04
 PRESENT = (30, 49)
 
@@ -59,20 +59,20 @@ REGISTERS = (
 
 
 class OpenCr:
-    """The board.
+    """An emulated OpenCR board.
 
     Args:
-        imu: Where its IMU gets its motion from.
-        servos: What hangs on its servo power.
-        baud: Its baud rate.
+        imu: Source of the motion that its IMU measures.
+        servos: The devices that its servo power supplies.
+        baud: Baud rate.
         supply: Battery voltage, V.
-        powered: Whether the servos have power from the start; on the robot they do not.
-        mounting: How its chip is turned in the body.
+        powered: Whether the servos are powered from the start; on the robot they are not.
+        mounting: Orientation of its chip in the body.
 
     Attributes:
-        buttons: The buttons that are pressed.
-        dead: Servos that work no more, whatever power they get.
-        on_power: Called when the servo power is switched.
+        buttons: Bit mask of the pressed buttons.
+        dead: Servos that stay broken even when they are powered again.
+        on_power: Called with the new state when the servo power is switched.
     """
 
     def __init__(
@@ -97,56 +97,56 @@ class OpenCr:
 
     @property
     def name(self) -> str:
-        """What people call it."""
+        """Name for messages."""
         return "OpenCR"
 
     @property
     def identifier(self) -> int:
-        """Its id."""
+        """Bus id."""
         return self.registers.memory[3]
 
     @property
     def shadow(self) -> int:
-        """It has no second id."""
+        """No secondary id."""
         return 255
 
     @property
     def protocol(self) -> int:
-        """It speaks protocol 2."""
+        """Protocol version, 2."""
         return 2
 
     @property
     def baud(self) -> int:
-        """Its baud rate."""
+        """Baud rate."""
         return BAUD_RATES[self.registers.memory[4]]
 
     @property
     def return_delay(self) -> float:
-        """From the end of an instruction to its answer, s."""
+        """Delay from the end of an instruction to the status packet, s."""
         return self.registers.memory[5] * 2e-6
 
     @property
     def return_level(self) -> int:
-        """What it answers: 0 pings, 1 reads as well, 2 everything."""
+        """Status return level: 0 answers pings, 1 also reads, 2 all instructions."""
         return self.registers.memory[16]
 
     @property
     def fast(self) -> bool:
-        """It does not know fast sync read."""
+        """False: fast sync read is not supported."""
         return False
 
     @property
     def busy(self) -> bool:
-        """It controls nothing."""
+        """False: there is no control loop to step."""
         return False
 
     @property
     def driving(self) -> bool:
-        """It has no motor."""
+        """False: there is no motor."""
         return False
 
     def listens(self, now: float) -> bool:
-        """Whether it has power; with its IMU all of it is silent."""
+        """Whether the board is powered; it does not respond at all while its IMU is silent."""
         return self.supply > 0.0 and not self.imu.silent
 
     def ping(self) -> bytes:
@@ -154,14 +154,14 @@ class OpenCr:
         return bytes(self.registers.memory[0:3])
 
     def sample(self) -> None:
-        """Look at the IMU."""
+        """Sample the IMU for the next `read`."""
         motion = self._motion
         motion[0:3] = self._chip(self.imu.angular_velocity) / GYRO_UNIT
         motion[3:6] = self._chip(self.imu.acceleration) / ACCELERATION_UNIT
         motion[6:9] = 10.0 * np.degrees(roll_pitch_yaw(self.imu.orientation))
 
     def read(self, address: int, count: int, now: float) -> tuple[int, bytes]:
-        """Return the error byte and the data of a read."""
+        """Return the error byte and the data of a read instruction."""
         if self.registers.touches(address, count, *PRESENT):
             memory = self.registers.memory
             memory[30], memory[31] = self.buttons, min(255, round(self.supply * 10.0))
@@ -171,7 +171,7 @@ class OpenCr:
         return (OK, data) if data is not None else (BAD_ACCESS, b"")
 
     def write(self, address: int, data: bytes, now: float) -> int:
-        """Do a write and return the error byte."""
+        """Execute a write and return the error byte."""
         error, writes = self.registers.check(address, data, locked=False)
         if not error:
             self.registers.commit(writes)
@@ -181,62 +181,62 @@ class OpenCr:
         return error
 
     def register_write(self, address: int, data: bytes) -> int:
-        """Keep a write for `action` and return the error byte."""
+        """Store a write for `action` and return the error byte."""
         error, _ = self.registers.check(address, data, locked=False)
         if not error:
             self._registered = (address, data)
         return error
 
     def action(self, now: float) -> int:
-        """Do the write that is kept and return the error byte."""
+        """Execute the stored write and return the error byte."""
         if self._registered is None:
             return BAD_INSTRUCTION
         (address, data), self._registered = self._registered, None
         return self.write(address, data, now)
 
     def reboot(self, now: float) -> None:
-        """Start again: the servos lose their power."""
+        """Reboot; this switches the servo power off."""
         self._switch(False, now)
 
     def factory_reset(self, option: int, broadcast: bool, now: float) -> int:
-        """It has none."""
+        """Reject the instruction: the board does not support it."""
         return BAD_INSTRUCTION
 
     def clear(self, parameters: bytes) -> int:
-        """It has nothing to clear."""
+        """Reject the instruction: there is nothing to clear."""
         return BAD_RANGE
 
     def backup(self, parameters: bytes, now: float) -> int:
-        """It has no backup."""
+        """Reject the instruction: the board has no backup."""
         return BAD_INSTRUCTION
 
     def overload(self, now: float) -> None:
-        """It drives nothing that could be too heavy."""
+        """Do nothing: there is no motor to overload."""
 
     def heat(self, degrees: float) -> None:
-        """It has no motor."""
+        """Do nothing: there is no motor to heat."""
 
     def press(self, buttons: int) -> None:
-        """Press buttons, bits of `MODE_BUTTON` and the others."""
+        """Press buttons, given as bits such as `MODE_BUTTON`."""
         self.buttons |= buttons
 
     def release(self, buttons: int) -> None:
-        """Release buttons."""
+        """Release buttons, given as bits."""
         self.buttons &= ~buttons
 
     def control(self, now: float, dt: float) -> None:
-        """It controls nothing."""
+        """Do nothing: there is no control loop."""
 
     def watch(self, now: float, dt: float, heard: float) -> None:
-        """It has no watchdog."""
+        """Do nothing: there is no watchdog."""
 
     def set_supply(self, volts: float, now: float) -> None:
-        """Change the battery voltage."""
+        """Change the battery voltage, V."""
         self.supply = volts
         self._switch(bool(self.registers.get("dynamixel_power")), now)
 
     def _switch(self, on: bool, now: float) -> None:
-        """Switch the servo power; servos that get it boot."""
+        """Switch the servo power; servos that become powered boot."""
         self.registers.set("dynamixel_power", int(on))
         for servo in self.servos:
             servo.set_supply(self.supply if on and servo not in self.dead else 0.0, now)
@@ -245,7 +245,7 @@ class OpenCr:
 
 
 def roll_pitch_yaw(quaternion: Array) -> Array:
-    """Return (3,) rad: the turns about x, then y, then z of a wxyz quaternion."""
+    """Return the rotations (3,) about x, then y, then z of a wxyz quaternion, rad."""
     w, x, y, z = quaternion
     return np.array(
         [

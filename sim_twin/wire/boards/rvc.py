@@ -1,9 +1,10 @@
-"""A BNO08x IMU in UART-RVC mode: it sends a frame a hundred times a second, and hears nothing.
+"""A BNO08x IMU in UART-RVC mode: it sends 100 frames a second and receives nothing.
 
 Frame: ``AA AA, index, yaw, pitch, roll, acceleration x y z, three reserved bytes, checksum``. Words
 are signed, low byte first; angles in 0.01 degrees; accelerations in 0.001 g. The checksum is the
-sum of what lies between it and the header. The chip turns yaw about z, then pitch about x, then
-roll about y: the data sheet's example, pitch -1.10 and roll 20.85 degrees, feels -0.371 g along x.
+sum of the bytes between the header and itself. The chip rotates yaw about z, then pitch about x,
+then roll about y: the data sheet's example, pitch -1.10 and roll 20.85 degrees, measures -0.371 g
+along x.
 """
 
 import math
@@ -24,12 +25,12 @@ BAUD: Final = 115_200
 PERIOD: Final = 0.01  # s
 ANGLE_UNIT = math.radians(0.01)  # rad
 ACCELERATION_UNIT = 1e-3 * STANDARD_GRAVITY  # m/s2
-BUFFER = 4096  # bytes that a host's driver keeps
+BUFFER = 4096  # capacity of the host driver's receive buffer, bytes
 _BODY = struct.Struct("<B6h3x")
 
 
 def encode_rvc(index: int, imu: ImuSource) -> bytes:
-    """Return the frame of what `imu` feels now."""
+    """Return the frame with the present readings of `imu`."""
     angles = [angle / ANGLE_UNIT for angle in yaw_pitch_roll(imu.orientation)]
     words = [*angles, *(imu.acceleration / ACCELERATION_UNIT)]
     body = _BODY.pack(index & 0xFF, *(max(-32768, min(32767, round(word))) for word in words))
@@ -37,7 +38,7 @@ def encode_rvc(index: int, imu: ImuSource) -> bytes:
 
 
 def yaw_pitch_roll(quaternion: Array) -> tuple[float, float, float]:
-    """Return the turns about z, then x, then y of a wxyz quaternion, rad."""
+    """Return the rotations about z, then x, then y of a wxyz quaternion, rad."""
     w, x, y, z = quaternion
     return (
         math.atan2(2.0 * (w * z - x * y), 1.0 - 2.0 * (x * x + z * z)),
@@ -47,7 +48,7 @@ def yaw_pitch_roll(quaternion: Array) -> tuple[float, float, float]:
 
 
 class Mute:
-    """The language of who does not listen."""
+    """The protocol of a bus whose only device ignores all bytes from the host."""
 
     id_at, length_at, data_at, tail = 2, 2, 3, 1
 
@@ -56,22 +57,22 @@ class Mute:
         return frame[:-1] + bytes((sum(frame[2:-1]) & 0xFF,))
 
     def meet(self, devices: Sequence[Device]) -> None:
-        """There are none."""
+        """Do nothing: there are no addressable devices."""
 
     def feed(self, chunk: bytes) -> list[Heard]:
-        """Hear nothing."""
+        """Ignore the bytes and return no frames."""
         return []
 
     def reset(self) -> None:
-        """Nothing has begun."""
+        """Do nothing: there is no partial frame."""
 
     def execute(self, frame: Heard, bus: Bus) -> bool:
-        """Do nothing."""
+        """Do nothing; return False."""
         return False
 
 
 def start_rvc(bus: Bus, imu: ImuSource, start: float = PERIOD) -> None:
-    """Let an IMU send on `bus` from `start` s on, for ever."""
+    """Make an IMU send on `bus` periodically from `start`, s, without end."""
     bus.schedule.at(start, partial(_send, bus, imu, 0, start))
 
 

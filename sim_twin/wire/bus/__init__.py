@@ -1,1 +1,1 @@
-"""An emulated half-duplex bus: bytes in time, collisions, the host's adapter."""
+"""An emulated half-duplex bus: byte timing, collisions, the host's adapter."""

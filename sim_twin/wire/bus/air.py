@@ -1,4 +1,4 @@
-"""What is on a wire at one time, and what becomes of it where two senders overlap."""
+"""The bytes in transit on a wire, which are corrupted where two senders overlap."""
 
 import math
 from collections.abc import Callable
@@ -7,22 +7,22 @@ from typing import Final
 from windup.sim_twin.wire.bus.inbox import Burst
 
 EPSILON: Final = 1e-9
-"""Overlaps that are shorter are none, s."""
+"""Shorter overlaps do not count as collisions, s."""
 
 
 class Air:
-    """The bursts that are on a wire now or soon."""
+    """The bursts that are or soon will be in transit on a wire."""
 
     def __init__(self) -> None:
         self._bursts: list[Burst] = []
 
     def add(self, new: Burst, now: float, noise: Callable[[int], bytes]) -> int:
-        """Put a burst there, make noise of what overlaps; return how often it collides.
+        """Add a burst, corrupt the bytes that overlap with others, and return the collision count.
 
         Args:
             new: The burst.
-            now: Time, s: what has ended before is forgotten.
-            noise: Returns so many bytes as of a collision.
+            now: Time, s; bursts that ended before are removed.
+            noise: Returns the given number of random bytes.
         """
         collisions = 0
         air = [old for old in self._bursts if old.end > now]

@@ -1,7 +1,7 @@
-"""A half-duplex bus: bytes in time, at a baud rate, from one sender at a time.
+"""A half-duplex bus that carries bytes in time, at a baud rate, from one sender at a time.
 
-What two senders say at the same time is noise for everybody. A device hears the host only at its
-own baud rate, and the other way round.
+Bytes that two senders send at the same time arrive as noise. A device receives the host only at its
+own baud rate, and the host receives a device only at the host's.
 """
 
 import math
@@ -19,20 +19,20 @@ from windup.sim_twin.wire.imu.bno055 import Bno055Registers
 from windup.sim_twin.wire.imu.imu_faults import FaultyImu
 from windup.sim_twin.wire.schedule import Schedule
 
-BITS = 10  # start, eight, stop
-FORGET = 0.1  # s; a frame that has been interrupted for longer is forgotten
+BITS = 10  # per byte: one start, eight data, one stop
+FORGET = 0.1  # pause after which an incomplete frame is discarded, s
 BAUD_TOLERANCE = 0.03
-PIECE = 4096  # bytes of the host that are taken apart together
+PIECE = 4096  # largest number of host bytes that are parsed at once
 
 
 class Language(Protocol):
     """A protocol: how bytes become frames, and what devices do with a frame.
 
     Attributes:
-        id_at: Where a frame has its id.
-        length_at: Where it has its length, the low byte.
-        data_at: Where a status has its data.
-        tail: Bytes of its checksum.
+        id_at: Index of the id in a frame.
+        length_at: Index of the length (its low byte) in a frame.
+        data_at: Index of the data in a status packet.
+        tail: Number of bytes of the checksum.
     """
 
     id_at: int
@@ -41,68 +41,68 @@ class Language(Protocol):
     tail: int
 
     def seal(self, frame: bytes, /) -> bytes:
-        """Return `frame` with the checksum that it should have."""
+        """Return `frame` with the correct checksum."""
         ...
 
     def meet(self, devices: Sequence[Device], /) -> None:
-        """Take note of who is on the bus; called whenever registers below 64 may have changed."""
+        """Register the devices; called whenever registers below 64 may have changed."""
         ...
 
     def feed(self, chunk: bytes) -> list[Heard]:
-        """Return the frames that end in `chunk`."""
+        """Return the frames that `chunk` completes."""
         ...
 
     def reset(self) -> None:
-        """Forget a frame that has begun."""
+        """Discard an incomplete frame."""
         ...
 
     def execute(self, frame: Heard, bus: "Bus") -> bool:
-        """Do what a frame says; False if it was dropped."""
+        """Execute a frame; return False if it was dropped."""
         ...
 
 
 class Disturbance(Protocol):
-    """What goes wrong on a bus.
+    """The faults of a bus, applied to what is sent on it.
 
     Attributes:
-        active: Whether there is anything to go wrong.
+        active: Whether any fault is configured.
     """
 
     active: bool
 
     def answer(self, bus: "Bus", data: bytes, baud: int, identifier: int) -> float:
-        """Put an answer on the wire with what goes wrong now; return when it ends, s."""
+        """Send a status packet with the faults that hit it now; return when it ends, s."""
         ...
 
     def asked(self, bus: "Bus") -> bool:
-        """Whether the adapter gives the host back what it sends now."""
+        """Return whether the adapter echoes the host's present bytes back to it."""
         ...
 
     def noise(self, count: int) -> bytes:
-        """Return bytes as of a collision or a wrong baud rate."""
+        """Return random bytes, as received in a collision or at a wrong baud rate."""
         ...
 
 
 class Bus:
-    """One bus and its host side.
+    """One bus, with its devices and its host adapter.
 
     Attributes:
-        name: Its name.
-        devices: What hangs on it. Call `refresh` after changing ids from outside.
+        name: Name of the bus.
+        devices: The devices on it. Call `refresh` after changing ids from outside.
         baud: Baud rate of the host.
-        schedule: The world's.
+        schedule: The schedule of the world.
         timing: Latencies.
-        faults: What goes wrong; the world sets it.
-        heard: When the last good instruction ended, s.
-        began: When the last bytes of the host began, s.
-        counts: "frames" executed, "dropped", "collisions".
-        plugged: Whether the host's adapter is there.
-        plugs: How often it has been pulled out or put in.
-        spoken: The protocol of the frame that is being executed: who speaks another one does not
-            hear it. None: all devices speak the same.
-        imu: The IMU that a board on it reports, or that sends on it by itself.
-        chip: The chip that the IMU is where this is an I2C bus, which carries no bytes of servos.
-        tap: Called with the direction (">" from the host), the baud rate and each burst of bytes.
+        faults: The faults; set by the world.
+        heard: Time at which the last valid instruction ended, s.
+        began: Time at which the host's last bytes began, s.
+        counts: Numbers of "frames" executed, frames "dropped", and "collisions".
+        plugged: Whether the host's adapter is plugged in.
+        plugs: Number of times that the adapter was pulled out or plugged in.
+        spoken: Protocol version of the frame being executed; devices with another version do not
+            receive it. None: all devices have the same version.
+        imu: IMU that a board on the bus reports, or that sends on the bus by itself.
+        chip: The IMU's registers where this is an I2C bus, which carries no servo bytes.
+        tap: Called with the direction (">" from the host), the baud rate and each burst.
     """
 
     def __init__(
@@ -126,8 +126,8 @@ class Bus:
         self.tap: Callable[[str, int, Burst], None] | None = None
         self._dice = random.Random(0)
         self._baud = baud
-        self._sent = -math.inf  # when the host's last byte ends
-        self._out = -math.inf  # until when the adapter is pulled out
+        self._sent = -math.inf  # end of the host's last byte, s
+        self._out = -math.inf  # time until which the adapter stays pulled out, s
         self._air = Air()
         self.inbox = Inbox(self.timing.latency)
         self._by_id: dict[int, list[Device]] = {}
@@ -135,7 +135,7 @@ class Bus:
 
     @property
     def disturbance(self) -> Disturbance | None:
-        """What goes wrong now, if anything."""
+        """The faults, or None while none is active."""
         return self.faults if self.faults is not None and self.faults.active else None
 
     @property
@@ -150,7 +150,7 @@ class Bus:
             self.language.reset()
 
     def refresh(self) -> None:
-        """Look up again who has which id, and who speaks what."""
+        """Update the tables of ids and protocols from the devices."""
         self.language.meet(self.devices)
         self._by_id.clear()
         for device in self.devices:
@@ -161,7 +161,7 @@ class Bus:
     # The host's side
 
     def write(self, data: bytes) -> None:
-        """Send bytes, now or behind those that are still going out."""
+        """Send bytes from the host, now or after those that are still in transit."""
         start = max(self.schedule.now, self._sent)
         if start - self._sent > FORGET:
             self.language.reset()
@@ -184,15 +184,15 @@ class Bus:
 
     @property
     def backlog(self) -> float:
-        """Until when the host's bytes keep the wire busy, s from now."""
+        """Time for which the host's bytes still occupy the wire, s."""
         return max(self._sent - self.schedule.now, 0.0)
 
     def available(self) -> int:
-        """Return the number of bytes that the host has got and not read."""
+        """Return the number of bytes that the host has received and not read."""
         return self.inbox.available(self.schedule.now)
 
     def arrival(self, count: int) -> float:
-        """Return when the host has `count` bytes, s; infinity if they are not on the way yet."""
+        """Return when the host has `count` bytes, s; infinity if fewer are in transit."""
         return self.inbox.arrival(count)
 
     def read(self, count: int) -> bytes:
@@ -201,15 +201,15 @@ class Bus:
 
     @property
     def queued(self) -> int:
-        """Bytes that the host has not read, arrived or on the way."""
+        """Number of bytes that the host has not read, received or in transit."""
         return self.inbox.queued
 
     def discard(self) -> None:
-        """Throw away what has arrived and was not read."""
+        """Discard the bytes that the host has received and not read."""
         self.read(self.available())
 
     def plug(self, there: bool) -> None:
-        """Pull the host's adapter out, or put it in again; open ports stay dead all the same."""
+        """Pull the host's adapter out or plug it in; ports opened before stay dead in any case."""
         if there != self.plugged:
             self.plugged = there
             self.plugs += 1
@@ -217,7 +217,7 @@ class Bus:
             self.language.reset()
 
     def unplug(self, seconds: float) -> None:
-        """Pull the adapter out, and put it in again after some seconds (infinity: never)."""
+        """Pull the adapter out, and plug it in after some seconds (infinity: never)."""
         self.plug(False)
         back = self.schedule.now + seconds
         self._out = max(self._out, back)
@@ -225,22 +225,22 @@ class Bus:
             self.schedule.at(back, self._plug_in)
 
     def _plug_in(self) -> None:
-        if self.schedule.now >= self._out:  # it was not pulled out for longer since
+        if self.schedule.now >= self._out:  # no later call of `unplug` lasts longer
             self.plug(True)
 
     # The devices' side
 
     def listeners(self, identifier: int) -> list[Device]:
-        """Return who hears the host and has this id, or has it as a shadow."""
+        """Return the devices that hear the host and have this id or secondary id."""
         found = self._by_id.get(identifier)
         return [device for device in found if self.hears(device)] if found else []
 
     def everybody(self) -> list[Device]:
-        """Return who hears the host."""
+        """Return all devices that hear the host."""
         return [device for device in self.devices if self.hears(device)]
 
     def hears(self, device: Device) -> bool:
-        """Whether a device understands what the host sends now."""
+        """Return whether a device receives the host at its present baud rate and protocol."""
         mine, its = self._baud, device.baud
         same = its == mine or abs(its - mine) <= BAUD_TOLERANCE * mine
         if self.spoken is not None and device.protocol != self.spoken:
@@ -248,28 +248,28 @@ class Bus:
         return same and device.listens(self.schedule.now)
 
     def answer(self, data: bytes, baud: int, identifier: int) -> float:
-        """Put an answer on the wire, now; return when it ends, s."""
+        """Send a status packet now, with faults; return when it ends, s."""
         wrong = self.disturbance
         if wrong is None:
             return self.put(data, baud)
         return wrong.answer(self, data, baud, identifier)
 
     def _noise(self, count: int) -> bytes:
-        """Return bytes as of a collision or a wrong baud rate."""
+        """Return random bytes, as received in a collision or at a wrong baud rate."""
         return self._dice.randbytes(count) if self.faults is None else self.faults.noise(count)
 
     def answers(self, data: Sequence[bytes]) -> None:
-        """Put answers on the wire, without gaps and faults, at the host's baud rate."""
+        """Send status packets without gaps and faults, at the host's baud rate."""
         self.put(b"".join(data), self._baud)
 
     def put(self, data: bytes, baud: int, got: bytes | None = None, held: float = 0.0) -> float:
-        """Put bytes of a device on the wire, now; return when they end, s.
+        """Send bytes of a device now; return when they end, s.
 
         Args:
-            data: What the device sends.
-            baud: How fast.
-            got: What the host gets of it, where that is something else.
-            held: Before when the host's adapter does not give it away, s.
+            data: The bytes that the device sends.
+            baud: Baud rate of the device.
+            got: The bytes that the host receives instead, if a fault changed them.
+            held: Time before which the host's adapter does not deliver them, s.
         """
         burst = Burst(self.schedule.now, BITS / baud, bytearray(data), held=held)
         end = burst.end
@@ -285,7 +285,7 @@ class Bus:
         return end
 
     def _hear(self, item: Heard, burst: Burst, end: float) -> None:
-        """Execute a frame of the host, unless a collision has ruined it since."""
+        """Execute a frame of the host, unless a collision has corrupted it since."""
         if end > burst.ruined or not self.language.execute(item, self):
             self.counts["dropped"] += 1
             return

@@ -1,17 +1,17 @@
-"""What a protocol has understood of the bytes on a bus."""
+"""Interface of what a protocol parser returns: frames, and bytes that it dropped."""
 
 from typing import Protocol
 
 
 class Heard(Protocol):
-    """A frame, or something that was dropped, with the bytes of the chunk that it ends at."""
+    """A frame or a dropped item, and where in the parsed chunk it ends."""
 
     @property
     def end(self) -> int:
-        """Bytes of the chunk up to its end."""
+        """Number of bytes of the chunk up to its end."""
         ...
 
     @property
     def noise(self) -> bool:
-        """Whether it is nothing that anybody could answer to."""
+        """Whether it contains no frame that a device could respond to."""
         ...

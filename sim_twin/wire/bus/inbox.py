@@ -1,4 +1,4 @@
-"""What a host has got, or will get, from a bus."""
+"""The receive queue of a host: bytes received from a bus or still in transit."""
 
 import math
 from collections import deque
@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 @dataclass(slots=True)
 class Burst:
-    """Bytes on the wire, one after the other.
+    """Consecutive bytes on the wire.
 
     Attributes:
-        start: When the first one begins, s.
-        byte: How long each takes, s.
-        data: What they are.
-        ruined: From when on they are noise, s.
-        held: Before when the host's adapter does not give them away, s.
+        start: Start of the first byte, s.
+        byte: Duration of each byte, s.
+        data: The bytes.
+        ruined: Time from which a collision has corrupted them, s.
+        held: Time before which the host's adapter does not deliver them, s.
     """
 
     start: float
@@ -25,41 +25,41 @@ class Burst:
 
     @property
     def end(self) -> float:
-        """When the last one ends, s."""
+        """End of the last byte, s."""
         return self.start + len(self.data) * self.byte
 
 
 class Inbox:
-    """Bursts in the order in which the host gets them.
+    """Bursts in the order in which the host receives them.
 
     Attributes:
-        latency: From a byte's end on the wire to the host having it, s.
-        queued: Bytes that the host has not read, arrived or on the way.
+        latency: Latency from a byte's end on the wire until the host has it, s.
+        queued: Number of bytes that the host has not read, received or in transit.
     """
 
     def __init__(self, latency: float) -> None:
         self.latency = latency
         self.queued = 0
         self._bursts: deque[Burst] = deque()
-        self._taken = 0  # bytes of the first burst that the host has
+        self._taken = 0  # number of bytes of the first burst that the host has read
 
     def append(self, burst: Burst) -> None:
-        """Put a burst behind the others."""
+        """Append a burst."""
         self._bursts.append(burst)
         self.queued += len(burst.data)
 
     @property
     def last(self) -> Burst | None:
-        """The burst that came last, unless the host has read it."""
+        """The burst appended last, or None if the host has read all of it."""
         return self._bursts[-1] if self._bursts else None
 
     def clear(self) -> None:
-        """Lose everything."""
+        """Discard all bytes."""
         self._bursts.clear()
         self.queued = self._taken = 0
 
     def available(self, now: float) -> int:
-        """Return the number of bytes that the host has at `now` s and has not read."""
+        """Return the number of bytes that the host has received by `now`, s, and not read."""
         total = -self._taken
         for burst in self._bursts:
             if burst.held > now:
@@ -71,7 +71,7 @@ class Inbox:
         return max(total, 0)
 
     def arrival(self, count: int) -> float:
-        """Return when the host has `count` bytes, s; infinity if they are not on the way yet."""
+        """Return when the host has `count` bytes, s; infinity if fewer are in transit."""
         if count > self.queued:
             return math.inf
         count += self._taken
@@ -84,7 +84,7 @@ class Inbox:
         return math.inf
 
     def read(self, count: int, now: float) -> bytes:
-        """Return up to `count` bytes of those that the host has at `now` s."""
+        """Return up to `count` bytes that the host has received by `now`, s."""
         count = min(count, self.available(now))
         data = bytearray()
         while count > 0:

@@ -1,15 +1,15 @@
-"""What can be wrong with the bytes of an answer, with or without a checksum that fits."""
+"""Corruptions of the bytes of a status packet, with or without a valid checksum."""
 
 import random
 from collections.abc import Callable
 from typing import Final, Protocol
 
 IDS = 253
-MOST = 3  # bytes that an answer is too long, or too short
+MOST = 3  # largest number of bytes that are added or removed
 
 
 class Layout(Protocol):
-    """Where a protocol's frames have what; see `windup.sim_twin.wire.bus.bus.Language`."""
+    """Positions of the parts of a frame; see `windup.sim_twin.wire.bus.bus.Language`."""
 
     id_at: int
     length_at: int
@@ -17,12 +17,12 @@ class Layout(Protocol):
     tail: int
 
     def seal(self, frame: bytes, /) -> bytes:
-        """Return `frame` with the checksum that it should have."""
+        """Return `frame` with the correct checksum."""
         ...
 
 
 def spoil(kind: str, data: bytes, layout: Layout, dice: random.Random) -> bytes:
-    """Return an answer with one of the faults that change its bytes."""
+    """Return a status packet with one of the faults that change its bytes."""
     return _SPOIL[kind](data, layout, dice)
 
 
@@ -86,7 +86,7 @@ def _jump(data: bytes, layout: Layout, dice: random.Random) -> bytes:
 
 
 def _flip(data: bytes, at: int, dice: random.Random) -> bytes:
-    """Return `data` with another byte at `at`."""
+    """Return `data` with a different byte at index `at`."""
     return _with(data, at, data[at] ^ dice.randrange(1, 256))
 
 

@@ -1,16 +1,16 @@
-"""How long adapters and servos take."""
+"""Latencies of adapters and servos."""
 
 from typing import NamedTuple
 
 
 class Timing(NamedTuple):
-    """What differs between adapters and between servos, and no manual says.
+    """Timing that differs between adapters and between servos, and that no manual states.
 
     Attributes:
-        latency: From a byte's end on the wire to the host having it, s.
-        turnaround: Added to every return delay, s.
-        waits: Behind a missing servo in a sync read: True, the others wait for it for ever;
-            False, they answer when its slot has passed.
+        latency: Latency from a byte's end on the wire until the host has it, s.
+        turnaround: Time added to every return delay, s.
+        waits: Behaviour after a missing servo in a sync read. True: the later servos wait for it
+            for ever; False: they answer when its slot has passed.
     """
 
     latency: float = 0.0

@@ -1,1 +1,1 @@
-"""What goes wrong on emulated buses, as text, as calls, and as it happens."""
+"""Faults of emulated buses: their text form, their methods and their effects."""

@@ -1,4 +1,4 @@
-"""What goes wrong with an answer on its way from a device to the host."""
+"""Faults that hit a status packet between a device and the host."""
 
 import math
 import random
@@ -12,15 +12,15 @@ from windup.sim_twin.wire.bus.spoilt import spoil
 
 @dataclass
 class Fate:
-    """What becomes of one answer.
+    """The faults that apply to one status packet.
 
     Attributes:
-        got: What the host gets of it.
-        before: The device's last answer of this length.
-        late: By how much it leaves the device later, s.
-        held: Until when the adapter holds it back, s.
-        glued: How long at most it waits for the next one, s.
-        torn: From which byte on the adapter holds it back, and for how long, s.
+        got: The bytes that the host receives.
+        before: The device's previous status packet of the same length.
+        late: Additional delay before the device sends it, s.
+        held: Time until which the adapter holds it back, s.
+        glued: Longest time for which the adapter waits to deliver it with the next one, s.
+        torn: Index of the first byte that the adapter holds back, and for how long, s.
     """
 
     got: bytes
@@ -31,7 +31,7 @@ class Fate:
     torn: tuple[int, float] | None = None
 
     def suffer(self, kind: str, seconds: float, bus: Bus, dice: random.Random) -> None:
-        """Have one fault of `fault_rule.ANSWERS` done to it."""
+        """Apply one fault of `fault_rule.ANSWERS`."""
         if kind == "late":
             self.late += seconds
         elif kind == "delay":
@@ -47,13 +47,13 @@ class Fate:
 
 
 class Sender:
-    """Puts answers on their buses as their fate has it."""
+    """Sends status packets on their buses with the faults that apply to them."""
 
     def __init__(self) -> None:
         self._glued: dict[str, Burst] = {}
 
     def send(self, bus: Bus, data: bytes, baud: int, fate: Fate) -> float:
-        """Put an answer on the wire; return when it ends, s."""
+        """Send a status packet; return when it ends, s."""
         put = partial(self._put, bus, data, baud, fate)
         if fate.late <= 0.0:
             return put()
@@ -62,7 +62,7 @@ class Sender:
         return start + len(data) * 10.0 / baud
 
     def _put(self, bus: Bus, data: bytes, baud: int, fate: Fate) -> float:
-        """Put it there; one that was glued to it comes with its last byte."""
+        """Send it now; a packet glued to it is delivered together with its last byte."""
         if fate.torn is not None:
             return self._tear(bus, data, baud, fate)
         end = bus.put(data, baud, fate.got, math.inf if fate.glued else fate.held)
@@ -79,7 +79,7 @@ class Sender:
         return end
 
     def _tear(self, bus: Bus, data: bytes, baud: int, fate: Fate) -> float:
-        """Put it there, and what the adapter holds back of it behind it."""
+        """Send it now; the adapter delivers the bytes from `torn` on later."""
         assert fate.torn is not None
         at, seconds = fate.torn
         end = bus.put(data, baud, fate.got[:at], fate.held)
@@ -89,6 +89,6 @@ class Sender:
 
 
 def _release(burst: Burst, time: float) -> None:
-    """Stop waiting for an answer to glue to."""
+    """Deliver a glued packet if no other one followed in time."""
     if burst.held == math.inf:
         burst.held = time

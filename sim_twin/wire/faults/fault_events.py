@@ -1,4 +1,4 @@
-"""What befalls servos, supply, adapter, IMU and board: whom an event can befall, and how."""
+"""Fault events of servos, supply, adapter, IMU and board: their targets and their effects."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -15,11 +15,11 @@ EVERYBODY = -1
 OF_BUS: Final = frozenset(("unplug", "brown_out"))
 OF_IMU: Final = frozenset(("imu_silent", "imu_frozen", "imu_spin"))
 SILENCING: Final = frozenset(("dead", "reset", "brown_out", "unplug", "imu_silent"))
-"""Events by which an answer that is just beginning is lost."""
+"""Events that also suppress the status packet at whose start they happen."""
 
 
 class Circuit(Protocol):
-    """The world as faults see it: its buses, its time and its supply."""
+    """The part of the world that faults act on: its buses, its time and its supply."""
 
     @property
     def buses(self) -> Mapping[str, Bus]:
@@ -28,7 +28,7 @@ class Circuit(Protocol):
 
     @property
     def schedule(self) -> Schedule:
-        """What will happen."""
+        """The schedule of future actions."""
         ...
 
     @property
@@ -37,20 +37,20 @@ class Circuit(Protocol):
         ...
 
     def sag(self, volts: float) -> None:
-        """Let the supply sink to some voltage, V."""
+        """Lower the supply to a voltage, V."""
         ...
 
     def recover(self, volts: float) -> None:
-        """End a sag to that voltage, V."""
+        """End the sag to that voltage, V."""
         ...
 
     def kill(self, device: Device) -> None:
-        """Let a device never work again."""
+        """Break a device permanently."""
         ...
 
 
 def victims(rule: Rule, bus: Bus) -> Sequence[int]:
-    """Return the ids on a bus that an event concerns; `EVERYBODY` stands for the bus itself."""
+    """Return the ids on a bus that an event hits; `EVERYBODY` stands for the bus itself."""
     if rule.bus not in (None, bus.name):
         return []
     if rule.kind in OF_BUS:
@@ -58,14 +58,14 @@ def victims(rule: Rule, bus: Bus) -> Sequence[int]:
     if rule.kind in OF_IMU and bus.imu is None:
         return []
     boards = rule.kind in OF_IMU or rule.kind == "button"
-    if rule.kind in OF_IMU and not bus.devices:  # it talks by itself, and has no id
+    if rule.kind in OF_IMU and not bus.devices:  # an IMU that streams by itself has no id
         return [EVERYBODY] if rule.ids is None else []
     ids = [d.identifier for d in bus.devices if not boards or isinstance(d, OpenCr)]
     return [id for id in ids if rule.concerns(bus.name, id)]
 
 
 def befall(rule: Rule, bus: Bus, identifier: int, world: Circuit) -> None:
-    """Do an event to one device of a bus, or to all of it."""
+    """Apply an event to one device of a bus, or to the whole bus."""
     if rule.kind == "unplug":
         bus.unplug(rule.seconds)
     elif rule.kind == "brown_out":
@@ -80,7 +80,7 @@ def befall(rule: Rule, bus: Bus, identifier: int, world: Circuit) -> None:
 
 
 def _hit(rule: Rule, bus: Bus, device: Device, world: Circuit) -> None:
-    """Do an event to one device."""
+    """Apply an event to one device."""
     now = bus.schedule.now
     if rule.kind == "reset":
         device.reboot(now)
@@ -98,7 +98,7 @@ def _hit(rule: Rule, bus: Bus, device: Device, world: Circuit) -> None:
 
 
 def _fail(rule: Rule, bus: Bus) -> None:
-    """Let the IMU of a bus fail."""
+    """Make the IMU of a bus fail."""
     imu = bus.imu
     assert imu is not None
     if rule.kind == "imu_silent":
@@ -110,6 +110,6 @@ def _fail(rule: Rule, bus: Bus) -> None:
 
 
 def _end(bus: Bus, rule: Rule, undo: Callable[[], None]) -> None:
-    """Undo an event when its time is over, if it ever is."""
+    """Schedule `undo` for the end of an event, unless it lasts for ever."""
     if rule.seconds < math.inf:
         bus.schedule.at(bus.schedule.now + rule.seconds, undo)

@@ -1,4 +1,4 @@
-"""One fault: what goes wrong, how often or when, and for whom."""
+"""One fault: its kind, its rate or times, and its targets."""
 
 import math
 import random
@@ -9,7 +9,7 @@ from typing import Final
 from windup.hal.errors import UsageError, suggest
 from windup.hal.ranges import Range, check_number
 
-# What befalls an answer on its way, and the seconds that some of them take by default.
+# Faults of status packets in transit, with the default duration of those that have one, s.
 ANSWERS: Final = {
     "drop": 0.0,
     "corrupt": 0.0,
@@ -28,9 +28,9 @@ ANSWERS: Final = {
     "twice": 0.0,
     "late_byte": 0.02,
 }
-# What befalls what the host sends.
+# Faults of the bytes that the host sends.
 REQUESTS: Final = {"echo": 0.0}
-# What befalls servos, supply, adapter, IMU or board.
+# Events of servos, supply, adapter, IMU or board, with their default durations, s.
 EVENTS: Final = {
     "dead": 0.0,
     "reset": 0.0,
@@ -45,10 +45,10 @@ EVENTS: Final = {
 }
 SECONDS: Final = {**ANSWERS, **REQUESTS, **EVENTS}
 KINDS: Final = tuple(SECONDS)
-LAST_ID: Final = 253  # 254 is everybody's
+LAST_ID: Final = 253  # 254 is the broadcast id
 SHARE: Final = Range(0.0, 1.0)
 TIME: Final = Range(0.0, 1e9, "s")
-# Keys that only one kind takes, with their defaults.
+# Keys that only one kind of fault takes, with that kind and the default value.
 EXTRA: Final = {
     "volts": ("brown_out", 0.0),
     "degrees": ("heat", 75.0),
@@ -59,7 +59,7 @@ RANGES: Final = {
     "degrees": Range(-273.0, 255.0, "degrees C"),
     "speed": Range(-100.0, 100.0, "rad/s"),
 }
-RATE = 0.01  # where neither rate nor time is given
+RATE = 0.01  # default share of answers that are hit, if neither rate nor time is given
 
 Times = float | Sequence[float]
 
@@ -71,13 +71,13 @@ class Rule:
     Attributes:
         kind: One of `KINDS`.
         rate: Share of the answers, or requests, that it hits.
-        at: The times that are left, s, in order; where there were any, `rate` does not count.
-        ids: Whom it hits; None: everybody.
-        bus: On which bus; None: on all.
-        seconds: How late, or how long.
-        volts: Supply in a brown-out, V.
-        degrees: How hot a motor gets at least, degrees C.
-        speed: What a spinning gyroscope reads about x, rad/s.
+        at: Remaining times, s, in order; a fault created with times ignores `rate`.
+        ids: Ids that it can hit; None: all.
+        bus: Name of the bus that it is limited to; None: all buses.
+        seconds: Delay or duration, s.
+        volts: Supply voltage in a brown-out, V.
+        degrees: Lowest temperature of a heated motor, degrees C.
+        speed: Angular rate about x that a spinning gyroscope reports, rad/s.
     """
 
     kind: str
@@ -94,15 +94,15 @@ class Rule:
         self._scripted = bool(self.at)
 
     def concerns(self, bus: str, identifier: int) -> bool:
-        """Whether this servo can be hit."""
+        """Return whether the fault can hit the device with this id on this bus."""
         here = self.bus is None or self.bus == bus
         return here and (self.ids is None or identifier in self.ids)
 
     def check_target(self, buses: Mapping[str, Sequence[int]]) -> None:
-        """Raise what could never happen on `buses`, name to ids.
+        """Check that the fault can happen on `buses`, a mapping from names to ids.
 
         Raises:
-            UsageError: There is no such bus, or nobody on it has one of the ids.
+            UsageError: There is no such bus, or no device on it has any of the ids.
         """
         if self.bus is not None and self.bus not in buses:
             raise UsageError(
@@ -114,7 +114,7 @@ class Rule:
             raise UsageError(f"faults: {self.kind}: nobody has id {given}; there are {known}")
 
     def strikes(self, dice: random.Random, bus: str, identifier: int, now: float) -> bool:
-        """Whether the answer that a servo begins at `now` s is hit."""
+        """Return whether it hits the answer that a device begins at `now`, s."""
         if not self.concerns(bus, identifier):
             return False
         if not self._scripted:
@@ -135,19 +135,19 @@ def make_rule(
     seconds: float | None = None,
     **extra: float | None,
 ) -> Rule:
-    """Return a checked rule; what is left out, or None, has its default.
+    """Return a checked rule; arguments that are omitted or None get their defaults.
 
     Args:
         kind: One of `KINDS`.
         rate: Share of the answers that it hits.
-        at: Instead of a rate the time, s, or several.
-        ids: Whom it hits.
-        bus: On which bus.
-        seconds: How late, or how long; infinity: for ever.
+        at: One or several times instead of a rate, s.
+        ids: Ids that it can hit.
+        bus: Name of the bus that it is limited to.
+        seconds: Delay or duration, s; infinity: for ever.
         **extra: The keys of `EXTRA`.
 
     Raises:
-        UsageError: A value that cannot be.
+        UsageError: A value is out of range, or this kind does not take it.
     """
     check_kind(kind)
     if at is None:
@@ -161,7 +161,7 @@ def make_rule(
     for time in times:
         check_number(f"faults: {kind}: at", time, TIME)
     lasts = SECONDS[kind] if seconds is None else seconds
-    if not (kind in EVENTS and lasts == math.inf):  # it may last for ever
+    if not (kind in EVENTS and lasts == math.inf):  # an event may last for ever
         check_number(f"faults: {kind}: seconds", lasts, TIME)
     if seconds is not None and not SECONDS[kind]:
         takers = ", ".join(other for other in KINDS if SECONDS[other])
@@ -173,17 +173,17 @@ def make_rule(
 
 
 def check_kind(kind: str) -> None:
-    """Raise if there is no such kind of fault.
+    """Check that a kind of fault exists.
 
     Raises:
-        UsageError: There is none.
+        UsageError: It does not.
     """
     if kind not in KINDS:
         raise UsageError(f"faults: unknown kind {kind!r}{suggest(kind, KINDS)}")
 
 
 def _extra(kind: str, given: Mapping[str, float | None]) -> dict[str, float]:
-    """Return the keys of `EXTRA` that `kind` takes, with their values."""
+    """Return the `EXTRA` keys that `kind` takes, with given or default values."""
     for key, value in given.items():
         taker = EXTRA[key][0]
         if value is not None and kind != taker:

@@ -1,4 +1,4 @@
-"""Faults as a URL, a command line or an injected text has them."""
+"""Parses the text form of faults, as used in URLs, on the command line and in injections."""
 
 from typing import Final
 
@@ -19,19 +19,19 @@ EXAMPLE = "'drop:0.01,late:0.02:seconds=0.003:ids=1-6,unplug:at=2.5:seconds=0.5'
 def parse_rules(text: str, live: bool = False) -> list[Rule]:
     """Return the faults of a text: ``KIND[:RATE][:KEY=VALUE...]``, joined by commas.
 
-    Keys are rate (may stand alone), at (s; several joined by ';'), ids ("1-6;9"), bus, seconds,
-    volts, degrees and speed. Spaces around commas and colons do not count.
+    Keys are rate (its key may be omitted), at (s; several joined by ';'), ids ("1-6;9"), bus,
+    seconds, volts, degrees and speed. Spaces around commas and colons are ignored.
 
     >>> parse_rules("drop:0.02:ids=1-2;7")[0].ids == {1, 2, 7}
     True
 
     Args:
         text: The text.
-        live: It is said to a world that runs: an event without rate and time is meant for now,
-            and times count from now.
+        live: The text is injected into a running world: an event without rate and time happens
+            now, and times count from now.
 
     Raises:
-        UsageError: The text says something else.
+        UsageError: The text is malformed or a value is out of range.
     """
     return [_parse(part.strip(), live) for part in text.split(",") if part.strip()]
 

@@ -1,4 +1,4 @@
-"""Faults of answers, servos, supply and adapter, seeded, so that a run can be had again."""
+"""Seeded, repeatable faults of status packets, servos, supply, adapter, IMU and board."""
 
 import random
 from collections import deque
@@ -23,11 +23,11 @@ from windup.sim_twin.wire.faults.fault_methods import FaultMethods
 from windup.sim_twin.wire.faults.fault_rule import EVENTS, KINDS, REQUESTS, Rule
 from windup.sim_twin.wire.faults.fault_text import parse_rules
 
-REMEMBERED = 10_000  # hits
+REMEMBERED = 10_000  # number of latest hits that are kept
 
 
 class Hit(NamedTuple):
-    """One fault that happened: when (s), what, on which bus, to which id (-1: everybody)."""
+    """One fault that happened: time (s), kind, bus and id (-1: the whole bus)."""
 
     time: float
     kind: str
@@ -36,15 +36,15 @@ class Hit(NamedTuple):
 
 
 class Faults(FaultMethods):
-    """What goes wrong on the buses of a world.
+    """The faults on the buses of a world.
 
     Args:
-        seed: Seed of the dice.
+        seed: Seed of the random numbers.
 
     Attributes:
-        active: Whether there is anything to go wrong.
-        counts: Kind to the number of times it happened.
-        hits: What happened, the last 10,000 of it.
+        active: Whether any fault is configured.
+        counts: Number of times that each kind happened.
+        hits: The last 10,000 faults that happened.
     """
 
     def __init__(self, seed: int = 0) -> None:
@@ -55,14 +55,14 @@ class Faults(FaultMethods):
         self._dice = random.Random(seed)
         self._of: ReferenceType[Circuit] | None = None
         self._sender = Sender()
-        self._said: dict[tuple[str, int, int], bytes] = {}  # bus, id, length to the last answer
+        self._said: dict[tuple[str, int, int], bytes] = {}  # (bus, id, length) -> last answer
 
     @classmethod
     def parse(cls, text: str, seed: int = 0) -> "Faults":
         """Return the faults of a text like ``drop:0.01,reset:at=2.5:ids=7``; see `parse_rules`.
 
         Raises:
-            UsageError: The text says something else.
+            UsageError: The text is malformed or a value is out of range.
         """
         faults = cls(seed)
         for rule in parse_rules(text):
@@ -77,24 +77,24 @@ class Faults(FaultMethods):
         return self
 
     def inject(self, rules: Sequence[Rule], now: float) -> None:
-        """Add faults whose times count from `now` s; see `parse_rules`."""
+        """Add faults whose times count from `now`, s; see `parse_rules`."""
         for rule in rules:
             self.add(replace(rule, at=[now + time for time in rule.at]))
 
     def clear(self) -> Self:
-        """Let nothing go wrong any more; what is broken stays broken."""
+        """Remove all faults; devices that are broken already stay broken."""
         self._rules.clear()
         self.active = False
         return self
 
     def attach(self, world: Circuit) -> None:
-        """Take the world into which scripted faults go.
+        """Connect the faults to a world and schedule its timed events.
 
         Raises:
-            UsageError: A fault concerns a bus, servos or an IMU that are not in it.
+            UsageError: A fault refers to a bus, servos or an IMU that the world does not have.
         """
         if self._world is None:
-            self._of = ref(world)  # the world has the buses, and they have us
+            self._of = ref(world)  # a weak reference: the world's buses refer to the faults
             self.check(self._rules)
             for rule in self._rules:
                 self._script(rule)
@@ -104,10 +104,10 @@ class Faults(FaultMethods):
         return None if self._of is None else self._of()
 
     def check(self, rules: Sequence[Rule]) -> None:
-        """Raise what could never happen in the world.
+        """Check that faults can happen in the world.
 
         Raises:
-            UsageError: A fault concerns a bus, servos or an IMU that are not in it.
+            UsageError: A fault refers to a bus, servos or an IMU that the world does not have.
         """
         buses = self._world.buses.values() if self._world is not None else ()
         there = {bus.name: [device.identifier for device in bus.devices] for bus in buses}
@@ -120,18 +120,18 @@ class Faults(FaultMethods):
                 raise UsageError(f"faults: {rule.kind}: there is no {what} that it could hit")
 
     def noise(self, count: int) -> bytes:
-        """Return bytes as of a collision or a wrong baud rate."""
+        """Return random bytes, as received in a collision or at a wrong baud rate."""
         return self._dice.randbytes(count)
 
     def answer(self, bus: Bus, data: bytes, baud: int, identifier: int) -> float:
-        """Put an answer on the wire with what goes wrong now; return when it ends, s."""
+        """Send a status packet with the faults that hit it now; return when it ends, s."""
         key, now = (bus.name, identifier, len(data)), bus.schedule.now
         fate, self._said[key] = Fate(data, self._said.get(key, data)), data
         for rule in [*self._rules]:
             if rule.kind in REQUESTS:
                 continue
             if not rule.strikes(self._dice, bus.name, identifier, now) or not fate.got:
-                continue  # what is lost already has nothing more to fear
+                continue  # a packet that is lost already cannot be hit again
             if rule.kind in EVENTS:
                 self._begin(rule, bus, identifier, fate)
                 continue
@@ -140,7 +140,7 @@ class Faults(FaultMethods):
         return self._sender.send(bus, data, baud, fate)
 
     def asked(self, bus: Bus) -> bool:
-        """Whether the adapter gives the host back what it sends now."""
+        """Return whether the adapter echoes the host's present bytes back to it."""
         echoes = False
         for rule in self._rules:
             now = bus.schedule.now
@@ -150,7 +150,7 @@ class Faults(FaultMethods):
         return echoes
 
     def _begin(self, rule: Rule, bus: Bus, identifier: int, fate: Fate) -> None:
-        """Let an event begin with an answer of whom it can befall."""
+        """Apply an event at the start of an answer, if it can hit the answering device."""
         concerned = victims(rule, bus)
         if EVERYBODY not in concerned and identifier not in concerned:
             return
@@ -159,13 +159,13 @@ class Faults(FaultMethods):
             fate.got = b""
 
     def _script(self, rule: Rule) -> None:
-        """Note in the world's schedule what happens by itself."""
+        """Schedule the timed events of a fault."""
         if self._world is not None and rule.kind in EVENTS:
             for time in rule.at:
                 self._world.schedule.at(time, partial(self._strike, rule))
 
     def _strike(self, rule: Rule) -> None:
-        """Let a scripted event happen, unless it has been cleared; forget it after the last."""
+        """Apply a timed event unless it was cleared; remove its rule after the last time."""
         if self._world is None or not any(known is rule for known in self._rules):
             return
         self.happen(rule)
@@ -174,16 +174,16 @@ class Faults(FaultMethods):
             self.active = bool(self._rules)
 
     def happen(self, rule: Rule) -> None:
-        """Let an event happen now, to all whom it concerns; before `attach`, to nobody."""
+        """Apply an event now to all its targets; before `attach` there are none."""
         for bus in self._world.buses.values() if self._world is not None else ():
             concerned = victims(rule, bus)
             for identifier in concerned:
                 self._happen(rule, bus, identifier)
-            if concerned and rule.kind == "brown_out":  # everything has one supply
+            if concerned and rule.kind == "brown_out":  # all buses share one supply
                 return
 
     def _happen(self, rule: Rule, bus: Bus, identifier: int) -> None:
-        """Do an event to one device, or to the bus."""
+        """Record an event, and apply it to one device or to the bus."""
         self._note(rule.kind, bus.name, identifier)
         if self._world is not None:
             befall(rule, bus, identifier, self._world)

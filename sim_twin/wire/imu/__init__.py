@@ -1,1 +1,1 @@
-"""What an emulated IMU feels, and how it fails."""
+"""The motion that an emulated IMU measures, and its faults."""

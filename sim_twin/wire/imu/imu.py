@@ -1,4 +1,4 @@
-"""Where an emulated IMU gets its motion from."""
+"""Sources of the motion that an emulated IMU measures."""
 
 from typing import Protocol
 
@@ -11,31 +11,31 @@ from windup.hal.joints import Array
 
 
 class ImuSource(Protocol):
-    """The motion that an IMU reports, in the body frame."""
+    """Motion that an IMU reports, in the body frame."""
 
     @property
     def silent(self) -> bool:
-        """Whether it reports nothing now."""
+        """Whether the IMU reports nothing now."""
         ...
 
     @property
     def angular_velocity(self) -> Array:
-        """(3,) rad/s."""
+        """Angular velocity (3,), rad/s."""
         ...
 
     @property
     def acceleration(self) -> Array:
-        """(3,) m/s2; a robot at rest reads +9.81 up."""
+        """Proper acceleration (3,), m/s2; +9.81 upward at rest."""
         ...
 
     @property
     def orientation(self) -> Array:
-        """(4,) wxyz, body to world."""
+        """Orientation (4,), wxyz quaternion from body to world."""
         ...
 
 
 class RestingImu:
-    """An IMU that lies on the bench."""
+    """An IMU at rest, level on the bench."""
 
     silent = False
     angular_velocity: Array = np.zeros(3)

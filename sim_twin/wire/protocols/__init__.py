@@ -1,1 +1,1 @@
-"""Protocols as an emulated device speaks them."""
+"""The servo protocols, on the device's side."""

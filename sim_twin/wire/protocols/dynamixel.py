@@ -1,7 +1,6 @@
-"""Dynamixels on one bus, of which each speaks the protocol that its Protocol Type(13) says.
+"""A bus of Dynamixels, each of which uses the protocol set in its Protocol Type(13).
 
-AX and old MX servos know protocol 1 alone; `world.families` puts them on a bus of
-their own.
+AX and old MX servos support protocol 1 only; `world.families` puts them on a bus of their own.
 """
 
 from collections.abc import Sequence
@@ -18,9 +17,9 @@ OLD: Final = 1
 
 
 class Dynamixel:
-    """Protocol 2, and protocol 1 as soon as one of the devices speaks it.
+    """Protocol 2, and also protocol 1 while one of the devices uses it.
 
-    What frames look like is as of the protocol in which the host has spoken last.
+    The frame layout attributes are those of the protocol that the host used last.
     """
 
     def __init__(self) -> None:
@@ -29,13 +28,13 @@ class Dynamixel:
         self._speak(self._new)
 
     def meet(self, devices: Sequence[Device]) -> None:
-        """Take note of what the devices speak now."""
+        """Check which protocols the devices use now."""
         self._mixed = any(device.protocol == OLD for device in devices)
 
     def feed(self, chunk: bytes) -> list[Heard]:
-        """Return the frames of both protocols that end in `chunk`.
+        """Return the frames of both protocols that `chunk` completes.
 
-        To who speaks protocol 1, frames of protocol 2 are noise, and nothing to make a fuss of.
+        Frames of protocol 2 are noise to the parser of protocol 1, so its noise is not reported.
         """
         found = self._new.feed(chunk)
         if not self._mixed:
@@ -44,12 +43,12 @@ class Dynamixel:
         return sorted([*found, *old], key=lambda item: item.end)
 
     def reset(self) -> None:
-        """Forget a frame that has begun."""
+        """Discard incomplete frames."""
         self._new.reset()
         self._old.reset()
 
     def execute(self, frame: Heard, bus: Bus) -> bool:
-        """Have who speaks its protocol do what a frame says; False if it was dropped."""
+        """Let the devices of its protocol execute a frame; return False if it was dropped."""
         old = isinstance(frame, Frame1 | Frame1Error)
         half = self._old if old else self._new
         bus.spoken = OLD if old else 2
@@ -58,6 +57,6 @@ class Dynamixel:
         return half.execute(frame, bus)
 
     def _speak(self, half: Dynamixel2 | Protocol1) -> None:
-        """Have the frames of one protocol."""
+        """Take over the frame layout of one protocol."""
         self.id_at, self.length_at = half.id_at, half.length_at
         self.data_at, self.tail, self.seal = half.data_at, half.tail, half.seal

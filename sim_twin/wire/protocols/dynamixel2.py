@@ -1,4 +1,4 @@
-"""The instructions of Dynamixel protocol 2: who does what, who answers, and when."""
+"""Instructions of Dynamixel protocol 2: which devices act, which answer, and when."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -35,15 +35,15 @@ SYNC_READ, SYNC_WRITE, FAST_SYNC_READ = 0x82, 0x83, 0x8A
 BULK_READ, BULK_WRITE, FAST_BULK_READ = 0x92, 0x93, 0x9A
 
 WRITES = 2
-STATUS_BYTES = 11  # of a status frame around its data
+STATUS_BYTES = 11  # bytes of a status packet without its data
 PING_GAP = 0.003  # s between the slots of a broadcast ping, which SDKs allow for each id
 
 
 class Dynamixel2:
-    """Protocol 2, as a bus full of devices takes it.
+    """Protocol 2 on a bus with several devices.
 
     Attributes:
-        errors: Reason to the number of times something was dropped.
+        errors: Number of dropped items for each reason.
     """
 
     id_at, length_at = ID_AT, LENGTH_AT
@@ -63,18 +63,18 @@ class Dynamixel2:
         }
 
     def meet(self, devices: Sequence[Device]) -> None:
-        """All devices speak protocol 2."""
+        """Do nothing: all devices use protocol 2."""
 
     def feed(self, chunk: bytes) -> list[Heard]:
-        """Return the frames that end in `chunk`."""
+        """Return the frames that `chunk` completes."""
         return [*self._parser.feed(chunk)]
 
     def reset(self) -> None:
-        """Forget a frame that has begun."""
+        """Discard an incomplete frame."""
         self._parser.reset()
 
     def execute(self, frame: Heard, bus: Bus) -> bool:
-        """Do what a frame says; False if it was dropped."""
+        """Execute a frame; return False if it was dropped."""
         if not isinstance(frame, Frame):
             reason = getattr(frame, "reason", "unknown")
             self.errors[reason] = self.errors.get(reason, 0) + 1
@@ -98,9 +98,9 @@ class Dynamixel2:
 
 
 def _complain(identifier: int, bus: Bus) -> None:
-    """Have the servo whose id stands in a frame with a wrong CRC say so: CRC Error, 0x03.
+    """Let the servo whose id is in a frame with a wrong CRC answer with CRC Error, 0x03.
 
-    What the instruction was cannot be trusted, so only servos that answer everything do.
+    The instruction in such a frame is unknown, so only servos at return level 2 answer.
     """
     for device in bus.listeners(identifier):
         if device.identifier == identifier and device.return_level >= WRITES:
@@ -126,14 +126,14 @@ def _one(frame: Frame, bus: Bus) -> None:
 
 
 def _changes_eeprom(frame: Frame) -> bool:
-    """Whether an instruction is one that a Secondary(Shadow) ID(12) does not give access to."""
+    """Return whether an instruction is not allowed through a Secondary(Shadow) ID(12)."""
     if frame.instruction in (WRITE, REG_WRITE):
         return len(frame.parameters) > 1 and _word(frame.parameters, 0) < EEPROM_END
     return frame.instruction in (FACTORY_RESET, BACKUP)
 
 
 def _act(device: Device, frame: Frame, bus: Bus, broadcast: bool = False) -> tuple[int, bytes]:
-    """Let a device do an instruction; return the error byte and the data of its answer."""
+    """Let a device execute an instruction; return the error byte and data of its status packet."""
     now, instruction, parameters = bus.schedule.now, frame.instruction, frame.parameters
     if instruction == PING:
         device.sample()
@@ -178,14 +178,14 @@ def _write(device: Device, address: int, data: bytes, bus: Bus) -> int:
 
 
 def _write_to(identifier: int, address: int, data: bytes, bus: Bus) -> None:
-    """Let everybody with an id, or with a shadow id as far as that goes, take a write."""
+    """Write to all devices with an id; through a secondary id, only outside of the EEPROM."""
     for device in bus.listeners(identifier):
         if device.identifier == identifier or address >= EEPROM_END:
             _write(device, address, data, bus)
 
 
 def _ping_all(bus: Bus) -> None:
-    """Every device answers in the slot of its id."""
+    """Let every device answer a broadcast ping in the slot of its id."""
     now = bus.schedule.now
     for device in bus.everybody():
         data = encode_status(device.identifier, device.read(0, 1, now)[0], device.ping())
@@ -230,9 +230,9 @@ def _take(turns: list[Turn], bus: Bus) -> None:
 
 
 def _chained(turns: list[Turn], bus: Bus) -> None:
-    """Answer a fast read: all devices build one status frame, without stuffing.
+    """Answer a fast read: all devices contribute to one status packet, without byte stuffing.
 
-    Every part ends with a CRC over everything so far; the last one is the frame's.
+    Each part ends with a CRC over all bytes so far; the last one is the packet's CRC.
     """
     who = [answering(turn, bus, fast=True) for turn in turns]
     for devices in who:
@@ -248,10 +248,10 @@ def _chained(turns: list[Turn], bus: Bus) -> None:
 def _chain_on(
     left: Iterator[tuple[Turn, list[Device]]], head: bytes, crc: int, bus: Bus, end: float
 ) -> None:
-    """Let the next device add its part, beginning with `head` if it is the first."""
+    """Schedule the next device's part; it begins with `head` if it is the first."""
     for turn, devices in left:
         if devices:
-            # Only the first device waits for its return delay: the frame has no gaps.
+            # Only the first device applies its return delay: the packet has no gaps.
             delay = devices[0].return_delay + bus.timing.turnaround if head else 0.0
             part = partial(_add_part, turn, devices[0], left, head, crc, bus)
             bus.schedule.at(end + delay, part)

@@ -1,7 +1,7 @@
-"""Frames of Dynamixel protocol 2, as a servo reads and writes them.
+"""Frames of Dynamixel protocol 2, encoded and parsed as a servo does.
 
-Written from the manual and sharing nothing with the driver's codec, so that the two check each
-other. A servo is strict: a frame with a wrong CRC, or with an unstuffed header inside, is dropped.
+Written from the manual and independent of the driver's codec, so that each tests the other. A servo
+is strict: it drops a frame with a wrong CRC, or with an unstuffed header inside.
 
 Frame: ``FF FF FD 00, id, length (2), instruction, parameters..., CRC (2)``; the length counts from
 the instruction to the CRC. Between instruction and CRC, ``FF FF FD`` is sent as ``FF FF FD FD``.
@@ -17,15 +17,15 @@ STATUS: Final = 0x55
 ID_AT: Final = 4
 LENGTH_AT: Final = 5
 
-LENGTH_MAX = 4096  # bytes; longer frames are taken for noise
-SMALLEST = 3  # instruction and CRC
+LENGTH_MAX = 4096  # bytes; longer frames are treated as noise
+SMALLEST = 3  # smallest length: instruction and CRC
 
 _BARE_HEADER = re.compile(rb"\xff\xff\xfd(?!\xfd)")
 _PATTERN, _STUFFED = b"\xff\xff\xfd", b"\xff\xff\xfd\xfd"
 
 
 def _crc_table() -> tuple[int, ...]:
-    """Return the CRCs of all pairs of bytes: CRC-16/BUYPASS, polynomial 0x8005, start 0."""
+    """Return the CRCs of all byte pairs: CRC-16/BUYPASS, polynomial 0x8005, initial value 0."""
     single = []
     for byte in range(256):
         crc = byte << 8
@@ -42,7 +42,7 @@ _HEADS: dict[tuple[int, int], tuple[bytes, int]] = {}
 
 
 def crc16(data: bytes | bytearray, crc: int = 0) -> int:
-    """Return the CRC of `data`, going on from `crc`.
+    """Return the CRC of `data`, continuing from `crc`.
 
     >>> hex(crc16(bytes.fromhex("FFFFFD0001030001")))
     '0x4e19'
@@ -57,7 +57,7 @@ def crc16(data: bytes | bytearray, crc: int = 0) -> int:
 
 
 def stuff(body: bytes) -> bytes:
-    """Return `body` with every header inside it broken up."""
+    """Return `body` with byte stuffing: an FD after every header pattern."""
     return body.replace(_PATTERN, _STUFFED) if _PATTERN in body else body
 
 
@@ -69,7 +69,7 @@ def encode(identifier: int, instruction: int, parameters: bytes = b"") -> bytes:
 
 
 def encode_status(identifier: int, error: int, parameters: bytes = b"") -> bytes:
-    """Return a status frame; its head and the CRC of that are kept for the next one."""
+    """Return a status packet; its head and the CRC of the head are cached."""
     body = bytes((error,)) + parameters
     if _PATTERN in body:
         return encode(identifier, STATUS, body)
@@ -82,18 +82,18 @@ def encode_status(identifier: int, error: int, parameters: bytes = b"") -> bytes
 
 
 def seal(frame: bytes) -> bytes:
-    """Return `frame` with the CRC that it should have."""
+    """Return `frame` with the correct CRC."""
     return frame[:-2] + crc16(frame[:-2]).to_bytes(2, "little")
 
 
 class Frame(NamedTuple):
-    """One good frame.
+    """One valid frame.
 
     Attributes:
-        identifier: Whom it is for (instruction) or from (status).
-        instruction: The instruction's number.
-        parameters: What follows it, unstuffed.
-        end: Bytes of the chunk just fed that had been taken when the frame was complete.
+        identifier: Id that it is addressed to (instruction) or comes from (status).
+        instruction: Instruction number.
+        parameters: Parameters, unstuffed.
+        end: Number of bytes of the latest chunk up to the end of the frame.
     """
 
     identifier: int
@@ -103,17 +103,17 @@ class Frame(NamedTuple):
 
     @property
     def noise(self) -> bool:
-        """It is not."""
+        """False: a valid frame is not noise."""
         return False
 
 
 class FrameError(NamedTuple):
-    """Something that was dropped.
+    """A sequence of bytes that was dropped.
 
     Attributes:
         reason: "crc", "stuffing" or "length".
         end: As in `Frame`.
-        identifier: Whom it would have been for, where only the CRC is wrong.
+        identifier: Id in the frame, where only the CRC is wrong.
     """
 
     reason: str
@@ -133,11 +133,11 @@ class Parser:
         self._pending = bytearray()
 
     def reset(self) -> None:
-        """Forget a frame that has begun."""
+        """Discard an incomplete frame."""
         self._pending.clear()
 
     def feed(self, chunk: bytes) -> list[Frame | FrameError]:
-        """Take `chunk` and return what it completes, in order."""
+        """Parse `chunk` and return the items that it completes, in order."""
         found: list[Frame | FrameError] = []
         before = len(self._pending)
         self._pending += chunk
@@ -151,7 +151,7 @@ class Parser:
             found.append(item)
 
     def _next(self, offset: int) -> tuple[Frame | FrameError | None, int]:
-        """Return the first complete item and the bytes it uses up; `offset` is where it starts."""
+        """Return the first complete item and the bytes used; the data starts at `offset`."""
         data = self._pending
         start = data.find(HEADER)
         if start < 0:
@@ -164,8 +164,8 @@ class Parser:
         end = start + 7 + length
         body = bytes(data[start + 7 : end - 2])
         if bare := _BARE_HEADER.search(body):
-            # Another frame may begin here: the one before it was cut short, or not stuffed.
-            # Two bytes of body decide nothing yet; the byte behind the pattern has to be known.
+            # Another frame may begin here: the present one is truncated or not stuffed.
+            # Two bytes of the pattern are not enough; the byte after it must be known.
             known = start + 7 + bare.end()
             if len(data) > known or len(data) >= end:
                 return FrameError(
@@ -180,7 +180,7 @@ class Parser:
 
 
 def _useless(data: bytearray) -> int:
-    """Return how many bytes at the front of `data` cannot be part of a header."""
+    """Return the number of leading bytes of `data` that cannot be part of a header."""
     for keep in (3, 2, 1):
         if data.endswith(HEADER[:keep]):
             return len(data) - keep

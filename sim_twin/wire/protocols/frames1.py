@@ -1,24 +1,24 @@
 """Frames of protocol 1, as Dynamixel AX and MX and Feetech servos read and write them.
 
 Frame: ``FF FF, id, length, instruction, parameters..., checksum``; the length counts from the
-instruction to the checksum, which is the complement of the sum from the id on. A status has the
-error byte where the instruction was. There is no stuffing: a frame that was cut short swallows the
-beginning of the next one, and the checksum lets one in 256 of such accidents through.
+instruction to the checksum, which is the complement of the sum from the id on. A status packet has
+the error byte in place of the instruction. There is no byte stuffing: a truncated frame consumes
+the beginning of the next one, and the checksum accepts one in 256 of such accidents.
 """
 
 from typing import Final, NamedTuple
 
 HEADER: Final = b"\xff\xff"
 BROADCAST: Final = 0xFE
-SMALLEST: Final = 2  # instruction and checksum
-STATUS_BYTES: Final = 6  # of a status around its data
+SMALLEST: Final = 2  # smallest length: instruction and checksum
+STATUS_BYTES: Final = 6  # bytes of a status packet without its data
 ID_AT: Final = 2
 LENGTH_AT: Final = 3
-MOST: Final = 253  # parameters; the length byte counts two more
+MOST: Final = 253  # largest number of parameters; the length byte counts two more
 
 
 def checksum(data: bytes | bytearray) -> int:
-    """Return the checksum of what lies between header and checksum.
+    """Return the checksum of the bytes between header and checksum.
 
     >>> hex(checksum(bytes.fromhex("0101") + bytes([2])))
     '0xfb'
@@ -27,9 +27,9 @@ def checksum(data: bytes | bytearray) -> int:
 
 
 def encode(identifier: int, instruction: int, parameters: bytes = b"") -> bytes:
-    """Return an instruction frame; a status, where `instruction` is an error byte.
+    """Return an instruction frame, or a status packet if `instruction` is an error byte.
 
-    More parameters than the length byte can say are left out: a servo that is asked for 254 bytes
+    Parameters that exceed the length byte are omitted: a servo that is asked for 254 bytes
     answers without data.
 
     >>> encode(1, 1).hex(" ")
@@ -42,18 +42,18 @@ def encode(identifier: int, instruction: int, parameters: bytes = b"") -> bytes:
 
 
 def seal(frame: bytes) -> bytes:
-    """Return `frame` with the checksum that it should have."""
+    """Return `frame` with the correct checksum."""
     return frame[:-1] + bytes((checksum(frame[2:-1]),))
 
 
 class Frame1(NamedTuple):
-    """One good frame.
+    """One valid frame.
 
     Attributes:
-        identifier: Whom it is for.
-        instruction: The instruction's number.
-        parameters: What follows it.
-        end: Bytes of the chunk just fed that had been taken when the frame was complete.
+        identifier: Id that it is addressed to.
+        instruction: Instruction number.
+        parameters: Parameters.
+        end: Number of bytes of the latest chunk up to the end of the frame.
     """
 
     identifier: int
@@ -63,16 +63,16 @@ class Frame1(NamedTuple):
 
     @property
     def noise(self) -> bool:
-        """It is not."""
+        """False: a valid frame is not noise."""
         return False
 
 
 class Frame1Error(NamedTuple):
-    """Something that was dropped.
+    """A sequence of bytes that was dropped.
 
     Attributes:
         reason: "checksum" or "length".
-        identifier: Whom it seems to have been for.
+        identifier: Id that the bytes seem to address.
         end: As in `Frame1`.
     """
 
@@ -90,7 +90,7 @@ class Parser1:
     """Turns a stream of bytes, in chunks of any size, into frames and errors.
 
     Args:
-        longest: Bytes of the longest frame that the servos' buffers hold.
+        longest: Length of the longest frame that fits into the servos' buffers, bytes.
     """
 
     def __init__(self, longest: int = 259) -> None:
@@ -98,11 +98,11 @@ class Parser1:
         self._pending = bytearray()
 
     def reset(self) -> None:
-        """Forget a frame that has begun."""
+        """Discard an incomplete frame."""
         self._pending.clear()
 
     def feed(self, chunk: bytes) -> list[Frame1 | Frame1Error]:
-        """Take `chunk` and return what it completes, in order."""
+        """Parse `chunk` and return the items that it completes, in order."""
         found: list[Frame1 | Frame1Error] = []
         before = len(self._pending)
         self._pending += chunk
@@ -116,12 +116,12 @@ class Parser1:
             found.append(item)
 
     def _next(self, offset: int) -> tuple[Frame1 | Frame1Error | None, int]:
-        """Return the first complete item and the bytes it uses up; `offset` is where it starts."""
+        """Return the first complete item and the bytes used; the data starts at `offset`."""
         data = self._pending
         start = data.find(HEADER)
         if start < 0:
             return None, len(data) - 1 if data.endswith(b"\xff") else len(data)
-        while data[start + 2 : start + 3] == b"\xff":  # no id: the header is further on
+        while data[start + 2 : start + 3] == b"\xff":  # 0xFF is no id: the header starts later
             start += 1
         if len(data) < start + 4:
             return None, start

@@ -23,22 +23,22 @@ from windup.sim_twin.wire.servos.register_file import EEPROM_END
 
 PING, READ, WRITE, REG_WRITE, ACTION, RESET, REBOOT = 0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x08
 SYNC_READ, SYNC_WRITE, BULK_READ = 0x82, 0x83, 0x92
-WRITES = 2  # return level from which everything is answered
+WRITES = 2  # status return level from which all instructions are answered
 CHECKSUM_ERROR, INSTRUCTION_ERROR = 0x10, 0x40  # bits of a Dynamixel's error byte
-LONGEST_READ = 244  # bytes; an answer of 250 is the longest
-IDENTITY_END = 14  # below lie ids, baud rate and protocol
+LONGEST_READ = 244  # data bytes of a read; the longest status packet has 250 bytes
+IDENTITY_END = 14  # end of the registers with ids, baud rate and protocol
 PING_SLOT = 0.001  # s for each id of a broadcast ping, assumed: SDKs allow three times as much
 
 
 class Variant(NamedTuple):
-    """What one maker's servos make of protocol 1.
+    """Differences between the makers' implementations of protocol 1.
 
     Attributes:
-        name: As a robot's file calls it.
-        many: The instructions for many that it knows.
-        longest: Bytes of the longest frame that fits into a servo.
-        complains: Whether a wrong checksum or instruction is answered, with an error bit.
-        slots: Whether a broadcast ping is answered in turn; else all answer at once.
+        name: Name in a robot's file.
+        many: The supported instructions that address several servos.
+        longest: Length of the longest frame that fits into a servo's buffer, bytes.
+        complains: Whether it answers a wrong checksum or instruction with an error bit.
+        slots: Whether broadcast pings are answered in the slots of the ids; else all at once.
     """
 
     name: str
@@ -53,11 +53,11 @@ FEETECH: Final = Variant("feetech", frozenset((SYNC_READ, SYNC_WRITE)), 250, Fal
 
 
 class Protocol1:
-    """Protocol 1, as a bus full of devices takes it.
+    """Protocol 1 on a bus with several devices.
 
     Attributes:
-        dialect: Whose.
-        errors: Reason to the number of times something was dropped.
+        dialect: The maker's variant.
+        errors: Number of dropped items for each reason.
     """
 
     id_at, length_at = ID_AT, LENGTH_AT
@@ -75,18 +75,18 @@ class Protocol1:
         }
 
     def meet(self, devices: Sequence[Device]) -> None:
-        """All devices speak protocol 1."""
+        """Do nothing: all devices use protocol 1."""
 
     def feed(self, chunk: bytes) -> list[Heard]:
-        """Return the frames that end in `chunk`."""
+        """Return the frames that `chunk` completes."""
         return [*self._parser.feed(chunk)]
 
     def reset(self) -> None:
-        """Forget a frame that has begun."""
+        """Discard an incomplete frame."""
         self._parser.reset()
 
     def execute(self, frame: Heard, bus: Bus) -> bool:
-        """Do what a frame says; False if it was dropped."""
+        """Execute a frame; return False if it was dropped."""
         if not isinstance(frame, Frame1):
             self._drop(frame, bus)
             return False
@@ -104,7 +104,7 @@ class Protocol1:
         return True
 
     def _drop(self, item: Heard, bus: Bus) -> None:
-        """Count what was wrong; a Dynamixel whose id stands in it answers with an error."""
+        """Count the reason; a Dynamixel whose id is in the frame answers a checksum error."""
         reason = getattr(item, "reason", "unknown")
         self.errors[reason] = self.errors.get(reason, 0) + 1
         if self.dialect.complains and isinstance(item, Frame1Error) and reason == "checksum":
@@ -127,7 +127,7 @@ class Protocol1:
                 _later(device, bus, status, delay, baud)
 
     def _act(self, device: Device, frame: Frame1, bus: Bus) -> tuple[int, bytes] | None:
-        """Let a device do an instruction; return error byte and data, None where it is mute."""
+        """Let a device execute an instruction; return error byte and data, None for no answer."""
         now, instruction, parameters = bus.schedule.now, frame.instruction, frame.parameters
         if instruction == READ and len(parameters) == 2:
             if parameters[1] > LONGEST_READ:
@@ -163,7 +163,7 @@ class Protocol1:
         return error
 
     def _ping_all(self, bus: Bus) -> None:
-        """Everybody answers: in the slot of its id, or all over each other."""
+        """Let all devices answer a broadcast ping: each in the slot of its id, or all at once."""
         slot = PING_SLOT + STATUS_BYTES * BITS / bus.baud if self.dialect.slots else 0.0
         now = bus.schedule.now
         for device in bus.everybody():
@@ -172,7 +172,7 @@ class Protocol1:
 
 
 def _changes_eeprom(frame: Frame1) -> bool:
-    """Whether an instruction is one that the second id of an X does not give access to."""
+    """Return whether an instruction is not allowed through an X servo's secondary id."""
     if frame.instruction in (WRITE, REG_WRITE):
         return frame.parameters[:1] < bytes((EEPROM_END,))
     return frame.instruction == RESET
@@ -181,7 +181,7 @@ def _changes_eeprom(frame: Frame1) -> bool:
 def _later(
     device: Device, bus: Bus, status: bytes, delay: float | None = None, baud: int = 0
 ) -> None:
-    """Have an answer sent after the return delay."""
+    """Schedule a status packet after the return delay."""
     delay = device.return_delay if delay is None else delay
     start = bus.schedule.now + delay + bus.timing.turnaround
     bus.schedule.at(start, partial(bus.answer, status, baud or device.baud, status[ID_AT]))
@@ -197,7 +197,7 @@ def _sync(parameters: bytes) -> list[Turn]:
 
 
 def _bulk(parameters: bytes) -> list[Turn]:
-    """Behind a zero: length, id and address of each."""
+    """Return the turns of a bulk read: a zero, then length, id and address of each."""
     return [
         Turn(parameters[at + 1], parameters[at + 2], parameters[at])
         for at in range(1, len(parameters) - 2, 3)

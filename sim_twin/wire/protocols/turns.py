@@ -1,4 +1,4 @@
-"""Sync and bulk reads: devices that answer one after the other, each when its turn comes."""
+"""Sync and bulk reads, which devices answer one after the other."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
@@ -8,8 +8,8 @@ from windup.sim_twin.wire.bus.bus import BITS, Bus
 from windup.sim_twin.wire.device import Device
 
 Encode = Callable[[int, int, bytes], bytes]
-PIECE = 4  # answers that are worked out together
-READS = 1  # return level from which reads are answered
+PIECE = 4  # number of answers that are computed together
+READS = 1  # status return level from which reads are answered
 
 
 class Turn(NamedTuple):
@@ -21,12 +21,12 @@ class Turn(NamedTuple):
 
 
 class Round(NamedTuple):
-    """What all turns of one read share.
+    """Data that all turns of one read share.
 
     Attributes:
         bus: The bus.
-        encode: From id, error and data to a status frame.
-        overhead: Bytes of a status around its data.
+        encode: Builds a status packet from id, error and data.
+        overhead: Bytes of a status packet without its data.
     """
 
     bus: Bus
@@ -38,9 +38,9 @@ Turns = Sequence[tuple[Turn, list[Device]]]
 
 
 def take_turns(turns: Sequence[Turn], round_: Round) -> None:
-    """Answer a sync or bulk read: one status frame after the other.
+    """Answer a sync or bulk read with one status packet after the other.
 
-    Everybody samples its shaft when the request ends, as real servos do.
+    All devices sample their shafts when the request ends, as real servos do.
     """
     bus = round_.bus
     who = [(turn, answering(turn, bus)) for turn in turns]
@@ -54,7 +54,7 @@ def take_turns(turns: Sequence[Turn], round_: Round) -> None:
 
 
 def answering(turn: Turn, bus: Bus, fast: bool = False) -> list[Device]:
-    """Return who will answer a turn."""
+    """Return the devices that will answer a turn."""
     return [
         device
         for device in bus.listeners(turn.identifier)
@@ -65,7 +65,7 @@ def answering(turn: Turn, bus: Bus, fast: bool = False) -> list[Device]:
 
 
 def _gapless(who: Turns, bus: Bus) -> bool:
-    """Whether the answers will follow each other without a gap and without an accident."""
+    """Return whether the answers follow each other without gaps, faults or collisions."""
     return (
         bus.disturbance is None
         and bus.timing.turnaround == 0.0
@@ -76,9 +76,9 @@ def _gapless(who: Turns, bus: Bus) -> bool:
 
 
 def _in_pieces(who: Turns, first: int, round_: Round) -> None:
-    """Put answers on the wire, several at once: nobody has to wait for anything.
+    """Send gapless answers, a few at once.
 
-    Not all at once, because somebody may be waiting for the first of them in real time.
+    Not all at once, because the host may be waiting for the first of them in real time.
     """
     bus, encode = round_.bus, round_.encode
     now, byte = bus.schedule.now, BITS / bus.baud
@@ -94,7 +94,7 @@ def _in_pieces(who: Turns, first: int, round_: Round) -> None:
 
 
 def _go_on(left: Iterator[tuple[Turn, list[Device]]], round_: Round, end: float) -> None:
-    """Let the next device answer; the one before it was through at `end` s."""
+    """Schedule the next device's answer; the previous one ended at `end`, s."""
     bus = round_.bus
     for turn, devices in left:
         if devices:

@@ -1,1 +1,1 @@
-"""Emulated buses for other programs: pseudo-terminals, TCP, traces."""
+"""Emulated buses for other programs: pseudo-terminals, TCP ports, traces."""

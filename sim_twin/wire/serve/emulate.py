@@ -1,7 +1,7 @@
-"""Serves a world in real time to programs that are not ours, or not in this process.
+"""Serves a world in real time to other programs or processes.
 
-The loop sleeps until something is due and does the work of a reply before its time, so that bytes
-leave when the modelled wire would have carried them. One process for one world.
+The loop sleeps until an action is due and computes replies ahead of their time, so that bytes leave
+when the modelled wire would have carried them. Each world needs a process of its own.
 """
 
 import contextlib
@@ -28,19 +28,19 @@ from windup.sim_twin.wire.world.build import build_world
 from windup.sim_twin.wire.world.bus_world import BusWorld
 
 CHUNK = 4096
-AHEAD = 0.002  # s by which replies may be worked out before their time
-MARGIN = 0.0005  # s before its time that the next reply has to be worked out at the latest
-QUIET = 0.00015  # s without anything due, that a step of the physics may take
-SPIN = 0.00008  # s before the ends of an answer that are not slept through
-HOP = 0.000025  # s that a pseudo-terminal takes each way, which the wire does not have
-SLIP = 0.1  # s behind the wall, from which time stands still instead
-IDLE = 0.002  # s; the longest sleep
+AHEAD = 0.002  # longest time by which replies may be computed ahead, s
+MARGIN = 0.0005  # shortest time by which the next reply must be computed ahead, s
+QUIET = 0.00015  # a step of the physics waits while bytes are due sooner than this, s
+SPIN = 0.00008  # time before the ends of an answer that is polled, not slept, s
+HOP = 0.000025  # latency of a pseudo-terminal each way, which the wire does not have, s
+SLIP = 0.1  # lag behind the wall clock above which simulated time is delayed instead, s
+IDLE = 0.002  # longest sleep, s
 PR_SET_TIMERSLACK = 29
-PRIORITY = 10  # among real-time processes; servos do not wait for other programs
+PRIORITY = 10  # real-time priority, so that other programs do not delay the servos
 
 
 class Emulator:
-    """A world that runs by the wall clock, with plugs.
+    """Runs a world by the wall clock and connects its buses to other programs.
 
     Args:
         world: The world.
@@ -48,8 +48,8 @@ class Emulator:
         events: Called with every `Event`: driven motors, adapters, supply.
 
     Attributes:
-        outlets: The plugs.
-        slipped: By how much time has stood still because the machine was too slow, s.
+        outlets: The buses with their links.
+        slipped: Total time by which simulated time was delayed because the machine was too slow, s.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class Emulator:
         self._orders: SimpleQueue[list[Rule]] = SimpleQueue()
 
     def plug(self, bus: str, make: Callable[[], Link]) -> None:
-        """Connect a bus to the link that `make` makes, now and whenever it is plugged in again."""
+        """Connect a bus to the link that `make` makes, now and after each unplugging."""
         self.outlets.append(Outlet(self.world.bus(bus), make))
         self.outlets[-1].settle()
 
@@ -77,13 +77,13 @@ class Emulator:
         os.write(self._wake_write, b"x")
 
     def inject(self, text: str) -> None:
-        """Let faults happen while `run` serves; any thread may call this.
+        """Apply faults while `run` serves; any thread may call this.
 
         An event without a rate and a time (``unplug:seconds=1``) happens now, times count from now,
-        and everything else goes wrong from now on.
+        and all other faults are active from now on.
 
         Raises:
-            UsageError: The text is wrong, says what cannot happen in this world, or comes too late.
+            UsageError: The text is wrong or cannot happen in this world, or the emulator has ended.
         """
         if not self._running:
             raise UsageError("the emulator has ended; nothing can be injected any more")
@@ -116,7 +116,7 @@ class Emulator:
             self._wait(max(left - SPIN if wake == due else left, 0.0), start)
 
     def close(self) -> None:
-        """Pull the plugs."""
+        """Close all links."""
         for outlet in self.outlets:
             if outlet.link is not None:
                 outlet.link.close()
@@ -124,7 +124,7 @@ class Emulator:
         os.close(self._wake_write)
 
     def _send(self, now: float, more: bool) -> float:
-        """Send what is due when it gets there; return when something will be next, s."""
+        """Send the bytes that are due; return when the next ones are, s."""
         soonest = math.inf
         now += HOP
         self.world.schedule.now = now
@@ -138,7 +138,7 @@ class Emulator:
         return soonest
 
     def _step(self, now: float, due: float) -> bool:
-        """Do a step of the physics, if one is due and there is time for it."""
+        """Run a step of the physics if one is due and there is time; return whether it did."""
         world = self.world
         late = now - world.physics_time - world.physics.timestep
         if late < 0.0 or (due - now < QUIET and late < 2.0 * world.physics.timestep):
@@ -151,9 +151,9 @@ class Emulator:
         return True
 
     def _slip(self, now: float) -> float:
-        """Return by how much time has to stand still, s: who is far behind does not catch up.
+        """Return the time by which simulated time must be delayed, s; a large lag is not caught up.
 
-        It would have no time to listen, and its servos would rush.
+        Catching up would leave no time to receive, and the servos would run too fast.
         """
         late = now - self.world.physics_time
         if late < SLIP:
@@ -162,7 +162,7 @@ class Emulator:
         return late
 
     def _wait(self, seconds: float, start: float) -> None:
-        """Sleep until something comes, or for some time."""
+        """Wait for bytes from a program for up to `seconds`, then receive them."""
         places = {place: outlet for outlet in self.outlets for place in outlet.descriptors()}
         ready = _readable([*places, self._wake_read], seconds)
         self.world.schedule.now = wall.perf_counter() - start - HOP
@@ -175,7 +175,7 @@ class Emulator:
             outlet.feed()
 
     def _take_orders(self) -> None:
-        """Let begin what was injected."""
+        """Apply the faults that `inject` has queued."""
         os.read(self._wake_read, CHUNK)
         while not self._orders.empty():
             self.world.faults.inject(self._orders.get(), self.world.now)
@@ -189,15 +189,15 @@ def emulate(
     journal: Journal | None = None,
     events: Callable[[Event], None] | None = None,
 ) -> None:
-    """Serve the world of an address, each of its buses on a plug, until `Emulator.stop`.
+    """Serve the world of an address, with one link for each bus, until `Emulator.stop`.
 
     An IMU on I2C has no plug: other programs open only I2C buses of the kernel.
 
     Args:
-        address: The world.
-        pty: Path of the pseudo-terminal; with several buses, each has its name behind it.
-        tcp: TCP port, of the first bus; the next has the next port. 0: any.
-        on_ready: Called before serving; `Emulator.outlets` know their links' names.
+        address: Address of the world.
+        pty: Path of the pseudo-terminal; with several buses, the bus name is appended to it.
+        tcp: TCP port of the first bus; the next bus has the next port. 0: any free port.
+        on_ready: Called before serving; `Emulator.outlets` have the names of the links.
         journal: See `Emulator`.
         events: See `Emulator`.
     """
@@ -218,7 +218,7 @@ def emulate(
 
 
 def _readable(places: list[int], seconds: float) -> list[int]:
-    """Wait for some s at most; return the descriptors that can be read."""
+    """Wait for up to `seconds`; return the descriptors that can be read."""
     if max(places) < SELECTABLE:
         return select.select(places, [], [], seconds)[0]
     poller = select.poll()  # rounds the wait up to whole milliseconds
@@ -228,7 +228,7 @@ def _readable(places: list[int], seconds: float) -> list[int]:
 
 
 def _be_punctual() -> None:
-    """Ask the kernel for exact sleeps, and Python not to tidy up in the middle of an answer."""
+    """Ask the kernel for exact sleeps and real-time priority, and disable garbage collection."""
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 1)
     with contextlib.suppress(OSError, AttributeError):

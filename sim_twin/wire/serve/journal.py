@@ -1,4 +1,4 @@
-"""What a world that serves other programs tells whoever dates what happens in it."""
+"""Reports timestamped changes in a served world to callbacks."""
 
 import time as wall
 from collections.abc import Callable
@@ -13,11 +13,11 @@ class Event(NamedTuple):
     """A change in a world.
 
     Attributes:
-        time: When it was there, s on the system's monotonic clock.
-        kind: "driven": the number of driven motors; "unplugged" and "plugged": the adapter of a
-            bus, which can be opened again from then on; "supply": the voltage of everything.
-        value: How many motors are driven, how many adapters plugged, or V.
-        bus: Name of the bus, of an adapter.
+        time: Time of the change, s on the system's monotonic clock.
+        kind: "driven": the number of driven motors changed; "unplugged" and "plugged": the adapter
+            of a bus, which can be opened again from then on; "supply": the supply voltage changed.
+        value: Number of driven motors, number of plugged adapters, or voltage, V.
+        bus: Name of the adapter's bus.
     """
 
     time: float
@@ -27,10 +27,10 @@ class Event(NamedTuple):
 
 
 class Watcher:
-    """Looks at a world again and again, and tells what has changed since the last look.
+    """Compares a world with its state at the previous call and reports the changes.
 
     Args:
-        world: The world. What it is like at first is not told, but for the journal.
+        world: The world. Its initial state is reported to the journal only.
         journal: Called with the world's time, s, and the number of driven motors.
         events: Called with each change.
     """
@@ -42,12 +42,12 @@ class Watcher:
         events: Callable[[Event], None] | None = None,
     ) -> None:
         self._world, self._journal, self._events = world, journal, events
-        self._told = -1  # driven motors, to the journal
+        self._told = -1  # number of driven motors that the journal was called with last
         self._driven, self._volts = 0, world.volts
         self._plugged = dict.fromkeys(world.buses, True)
 
     def update(self, now: float) -> None:
-        """Tell what is new; `now` is the world's time, s."""
+        """Report changes; `now` is the world's time, s."""
         if self._journal is None and self._events is None:
             return
         driven = sum(device.driving for device in self._world.devices)
@@ -58,7 +58,7 @@ class Watcher:
             self._compare(driven, self._events)
 
     def _compare(self, driven: int, tell: Callable[[Event], None]) -> None:
-        """Tell the events."""
+        """Report the changes as events."""
         volts = self._world.volts
         if volts != self._volts:
             self._volts = volts

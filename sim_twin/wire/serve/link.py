@@ -1,4 +1,4 @@
-"""Where other programs plug into an emulated bus: a pseudo-terminal, or a TCP port."""
+"""Connections from other programs to an emulated bus: a pseudo-terminal, or a TCP port."""
 
 import contextlib
 import fcntl
@@ -14,53 +14,53 @@ from typing import Protocol
 from windup.hal.errors import UsageError
 
 TCGETS2 = 0x802C542A
-TERMIOS2 = struct.Struct("4I20B2I")  # the last two: input and output speed, baud
+TERMIOS2 = struct.Struct("4I20B2I")  # the last two fields: input and output speed, baud
 CHUNK = 4096
-OURS = re.compile(r"/dev/pts/\d+")  # where the links of emulators lead
-VISITORS = 64  # programs that are taken in or refused at once
+OURS = re.compile(r"/dev/pts/\d+")  # targets of the symbolic links that emulators make
+VISITORS = 64  # largest number of connections that one call accepts or refuses
 
 
 class Link(Protocol):
-    """One plug."""
+    """A connection from one program to a bus."""
 
     @property
     def name(self) -> str:
-        """What a program has to open."""
+        """Path or URL that a program has to open."""
         ...
 
     def descriptors(self) -> list[int]:
-        """Return what to wait for."""
+        """Return the descriptors to wait for."""
         ...
 
     def receive(self, most: int) -> bytes:
-        """Return what the program has sent, up to about `most` bytes; nothing is fine."""
+        """Return what the program has sent, up to about `most` bytes; possibly nothing."""
         ...
 
     def send(self, data: bytes) -> None:
-        """Give bytes to the program, or lose them if it is not there."""
+        """Send bytes to the program, or discard them if it is not connected."""
         ...
 
     def baud(self) -> int | None:
-        """Return the program's baud rate; None where it cannot be seen."""
+        """Return the program's baud rate; None if it cannot be determined."""
         ...
 
     def close(self) -> None:
-        """Unplug."""
+        """Close the connection."""
         ...
 
 
 class Pty:
-    """A pseudo-terminal, under a path of your choice.
+    """A pseudo-terminal, under a path of the caller's choice.
 
-    It loses some of what a program writes and flushes at once with `tcflush`, as pyserial's
-    `reset_output_buffer` does: a worker of the kernel carries bytes across (`tty_buffer.c`), and a
-    flush takes those that it has not carried yet, however eagerly somebody reads. Measured on two
-    processors: 18 to 50 % of the writes with the flush right behind, 0.7 % with 0.3 ms between;
+    It can lose bytes that a program writes and immediately flushes with `tcflush`, as pyserial's
+    `reset_output_buffer` does: a kernel worker carries the bytes across (`tty_buffer.c`), and a
+    flush discards those that it has not carried yet, however fast the other end reads. Measured on
+    two processors: 18 to 50 % of the writes with the flush right behind, 0.7 % with 0.3 ms between;
     18 % of pypot's sync writes in threes, none of those 1 ms apart.
 
     Raises:
-        UsageError: Something other than what a dead emulator has left is at that path already, or
-            nothing can be put there.
+        UsageError: Something other than the link of a dead emulator is at that path already, or
+            nothing can be created there.
     """
 
     def __init__(self, path: Path) -> None:
@@ -78,18 +78,18 @@ class Pty:
 
     @property
     def name(self) -> str:
-        """Its path."""
+        """The path to open."""
         return str(self._path)
 
     def descriptors(self) -> list[int]:
-        """Return what to wait for."""
+        """Return the descriptors to wait for."""
         return [self._master]
 
     def receive(self, most: int) -> bytes:
         """Return all that the program has sent.
 
-        Not only the first piece: while the kernel's buffer is full, it throws away what a program
-        has written and then flushes.
+        Reading only the first piece is not enough: while the kernel's buffer is full, it discards
+        what a program has written and then flushes.
         """
         data = bytearray()
         with contextlib.suppress(OSError):
@@ -98,7 +98,7 @@ class Pty:
         return bytes(data)
 
     def send(self, data: bytes) -> None:
-        """Give bytes to the program; what it never reads is lost in the end."""
+        """Send bytes to the program; bytes that it never reads are lost eventually."""
         with contextlib.suppress(OSError):
             os.write(self._master, data)
 
@@ -109,7 +109,7 @@ class Pty:
         return int(speed) or None
 
     def close(self) -> None:
-        """Remove the terminal, and the path if that still leads there."""
+        """Close the terminal, and remove the path if it still leads there."""
         with contextlib.suppress(OSError):
             if os.readlink(self._path) == self._target:
                 self._path.unlink()
@@ -122,10 +122,10 @@ class Pty:
 
 
 def _make_room(path: Path) -> None:
-    """Remove what a dead emulator has left at `path`; anything else is not ours to remove.
+    """Remove the link of a dead emulator at `path`; never remove anything else.
 
     Raises:
-        UsageError: There is something else.
+        UsageError: Something else is at that path.
     """
     other = "choose another path"
     if not path.is_symlink():
@@ -142,16 +142,16 @@ def _make_room(path: Path) -> None:
 
 
 def free_port(host: str = "127.0.0.1") -> int:
-    """Return a TCP port that nobody uses now."""
+    """Return a TCP port that is free now."""
     with socket.create_server((host, 0)) as server:
         return int(server.getsockname()[1])
 
 
 class Tcp:
-    """A TCP port on this machine; the bus keeps its baud rate.
+    """A TCP port on this machine; the bus keeps its own baud rate.
 
-    It is for one program at a time: the connection of a second one is closed at once while that of
-    the first lives. A program that was killed, or has closed its connection, makes room.
+    It serves one program at a time: while the first connection is open, a second one is closed at
+    once. After a program has closed its connection, or was killed, the next one can connect.
     """
 
     def __init__(self, port: int, host: str = "127.0.0.1") -> None:
@@ -161,26 +161,26 @@ class Tcp:
 
     @property
     def name(self) -> str:
-        """Its URL."""
+        """The URL to open."""
         host, port = self._server.getsockname()[:2]
         return f"socket://{host}:{port}"
 
     def descriptors(self) -> list[int]:
-        """Return what to wait for."""
+        """Return the descriptors to wait for."""
         client = [] if self._client is None else [self._client.fileno()]
         return [self._server.fileno(), *client]
 
     def receive(self, most: int) -> bytes:
-        """Return what the program has sent; take new programs in, or refuse them."""
+        """Return what the program has sent; also accept or refuse new connections."""
         data = self._read(most)
-        with contextlib.suppress(OSError):  # nobody is there, or somebody is gone already
+        with contextlib.suppress(OSError):  # no pending connection, or one that is closed already
             for _ in range(VISITORS):
                 client, _ = self._server.accept()
                 self._welcome(client)
         return data
 
     def _welcome(self, client: socket.socket) -> None:
-        """Take a program in, unless there is one."""
+        """Accept a connection, or close it if there is one already."""
         if self._client is not None:
             client.close()
             return
@@ -189,7 +189,7 @@ class Tcp:
         self._client = client
 
     def _read(self, most: int) -> bytes:
-        """Return what the program has sent; drop it if it is gone."""
+        """Return what the program has sent; close its connection if it has closed it."""
         data = bytearray()
         while self._client is not None and len(data) < most:
             try:
@@ -204,17 +204,17 @@ class Tcp:
         return bytes(data)
 
     def send(self, data: bytes) -> None:
-        """Give bytes to the program, or lose them."""
+        """Send bytes to the program, or discard them if none is connected."""
         if self._client is not None:
             with contextlib.suppress(OSError):
                 self._client.send(data)
 
     def baud(self) -> int | None:
-        """Nobody says."""
+        """Return None: TCP carries no baud rate."""
         return None
 
     def close(self) -> None:
-        """Close port and program."""
+        """Close the port and the connection."""
         self._drop()
         self._server.close()
 

@@ -1,4 +1,4 @@
-"""A bus of a world that runs by the wall clock, and the plug into which a program may come."""
+"""A bus of a served world, with the link through which a program uses it."""
 
 import math
 from collections.abc import Callable
@@ -8,28 +8,28 @@ from typing import Final
 from windup.sim_twin.wire.bus.bus import BITS, Bus
 from windup.sim_twin.wire.serve.link import Link
 
-CHUNK_TIME = 0.0006  # s of bytes that go out together in the middle of an answer
-WAITING: Final = 65_536  # bytes of a program that wait for the wire; more are lost
-AT_ONCE: Final = 262_144  # bytes that are taken off a link together
-ON_THE_WIRE: Final = 0.010  # s of a program's bytes that the bus knows of ahead of their time
+CHUNK_TIME = 0.0006  # duration of the pieces in which an answer is sent, s
+WAITING: Final = 65_536  # largest number of a program's bytes that wait; more are lost
+AT_ONCE: Final = 262_144  # largest number of bytes that are read from a link at once
+ON_THE_WIRE: Final = 0.010  # longest time of a program's bytes that the bus queues ahead, s
 
 
 @dataclass
 class Outlet:
-    """A bus, its plug, and when bytes go out next.
+    """A bus, its link, and the bytes that wait between them.
 
-    What a program sends is taken off its link at once, so that a program that flushes its output
-    loses as little as the kernel lets it, and put on the wire as fast as the wire is. What does not
-    fit into `WAITING` is lost, as in an adapter without flow control: whoever sends megabytes and
-    goes neither fills the memory nor has those who come later wait for seconds.
+    Bytes from a program are read from its link at once, so that a program that flushes its output
+    loses as little as possible, and are put on the wire at the wire's speed. Bytes beyond `WAITING`
+    are lost, as in an adapter without flow control: a program that sends megabytes and disconnects
+    neither fills the memory nor makes later programs wait for seconds.
 
     Attributes:
         bus: The bus.
-        make: Makes its plug, at the start and each time that the adapter is plugged in again.
-        link: The plug; None while the adapter is unplugged.
-        name: What a program has to open.
-        sent: When bytes went out last, s.
-        waiting: What the program has sent and is not on the wire yet.
+        make: Makes the link, at the start and each time that the adapter is plugged in again.
+        link: The link; None while the adapter is unplugged.
+        name: Path or URL that a program has to open.
+        sent: Time at which bytes were sent to the program last, s.
+        waiting: Bytes from the program that are not on the wire yet.
     """
 
     bus: Bus
@@ -40,7 +40,7 @@ class Outlet:
     waiting: bytearray = field(default_factory=bytearray)
 
     def settle(self) -> None:
-        """Pull the plug, or put it in, as the bus has it."""
+        """Open or close the link, according to whether the bus is plugged in."""
         if self.bus.plugged and self.link is None:
             self.link = self.make()
             self.name = self.link.name
@@ -50,14 +50,14 @@ class Outlet:
             self.waiting.clear()
 
     def descriptors(self) -> list[int]:
-        """Return what to wait for."""
+        """Return the descriptors to wait for."""
         return [] if self.link is None else self.link.descriptors()
 
     def due(self, more: bool) -> float:
-        """Return when bytes should go out next, s.
+        """Return when bytes should be sent to the program next, s.
 
-        The first and the last of an answer go out as they arrive, those between in pieces. `more`
-        says that the end of the answer has still to be worked out.
+        The first and the last byte of an answer are sent as they arrive, those between in pieces.
+        `more`: the end of the answer has not been computed yet.
         """
         bus = self.bus
         if not bus.queued:
@@ -66,15 +66,15 @@ class Outlet:
         return piece if more else min(bus.arrival(bus.queued), piece)
 
     def send(self, now: float) -> None:
-        """Send what has arrived."""
+        """Send the bytes that have arrived."""
         if (data := self.bus.read(self.bus.available())) and self.link is not None:
             self.link.send(data)
             self.sent = now
 
     def receive(self) -> None:
-        """Take in what the program has sent: not before it had what it answers to.
+        """Read what the program has sent, dated no earlier than the last bytes sent to it.
 
-        A fast program is back sooner than the two hops, and would talk into the answer's end.
+        A fast program replies sooner than the two hops and would collide with the answer's end.
         """
         schedule, link = self.bus.schedule, self.link
         schedule.now = max(schedule.now, self.sent)
@@ -85,7 +85,7 @@ class Outlet:
             self.feed()
 
     def feed(self) -> None:
-        """Put as much on the wire as it takes within the next moment."""
+        """Put on the wire as many bytes as it carries within `ON_THE_WIRE`."""
         if self.waiting:
             room = int((ON_THE_WIRE - self.bus.backlog) * self.bus.baud / BITS)
             if room > 0:

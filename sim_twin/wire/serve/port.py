@@ -1,4 +1,4 @@
-"""A serial port into a world, for pyserial."""
+"""A pyserial port that is connected to a world."""
 
 import math
 from typing import cast
@@ -12,20 +12,20 @@ from windup.sim_twin.wire.world.address import parse_address
 from windup.sim_twin.wire.world.bus_world import BusWorld, RealClock
 from windup.sim_twin.wire.world.worlds import Running, enter, leave
 
-PATIENCE = 60.0  # s of virtual time without an answer, in a read without a time-out
+PATIENCE = 60.0  # longest wait of a read without a time-out and answer, virtual s
 
 
 class TwinSerial(serial.SerialBase):  # type: ignore[misc]
     """``twin://`` as a pyserial port.
 
-    On a virtual clock, `write` only schedules; a blocking `read` and `clock.wait_until` let time
-    pass. A read without a time-out that can never end is an error.
+    On a virtual clock, `write` only schedules; time advances in a blocking `read` and in
+    `clock.wait_until`. A read without a time-out that can never end raises an error.
     """
 
     is_open: bool
 
     def open(self) -> None:
-        """Open the world that the URL names, or share it."""
+        """Open the world that the URL names, or join it if it is open already."""
         if self._port is None:
             raise serial.SerialException("a port needs a URL before it can be opened")
         if self.is_open:
@@ -45,7 +45,7 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
         self.reset_input_buffer()
 
     def close(self) -> None:
-        """Leave the world."""
+        """Close the port and leave the world."""
         if self.is_open:
             self.is_open = False
             leave(self._running, self._address if self._plugs != self._bus.plugs else None)
@@ -62,22 +62,22 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
 
     @property
     def clock(self) -> Clock:
-        """The clock that the port lives on."""
+        """The clock of the world."""
         return self._running.clock
 
     @property
     def latency(self) -> float:
-        """What the adapter holds bytes back, s; drivers add it to their deadlines."""
+        """Latency of the adapter, s; drivers add it to their deadlines."""
         return self._bus.timing.latency
 
     @property
     def in_waiting(self) -> int:
-        """Number of bytes that can be read at once."""
+        """Number of bytes that can be read now."""
         self._check()
         return self._bus.available()
 
     def read(self, size: int = 1) -> bytes:
-        """Return `size` bytes, or what has come when the time-out is over."""
+        """Return `size` bytes, or those that have arrived by the time-out."""
         self._check()
         bus, clock = self._bus, self._running.clock
         limit = math.inf if self._timeout is None else clock.now() + self._timeout
@@ -97,7 +97,7 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
         return bus.read(size)
 
     def write(self, data: bytes | bytearray | memoryview) -> int:
-        """Send bytes; they take their time, but the call returns at once."""
+        """Send bytes; the call returns at once, before they have left the wire."""
         self._check()
         sent = bytes(data)
         if sent:
@@ -105,32 +105,32 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
         return len(sent)
 
     def flush(self) -> None:
-        """Nothing to do: what was written is on its way."""
+        """Do nothing: written bytes are in transit already."""
 
     def reset_input_buffer(self) -> None:
-        """Throw away what has arrived."""
+        """Discard the bytes that have arrived."""
         self._check()
         self._bus.discard()
 
     def reset_output_buffer(self) -> None:
-        """Nothing to do: what was written is on its way."""
+        """Do nothing: written bytes are in transit already."""
 
     def _check(self) -> None:
-        """Refuse a closed port, and let a real clock catch up."""
+        """Raise if the port is closed or unplugged; let a real clock catch up."""
         if not self.is_open:
             raise serial.PortNotOpenError()
         self._check_plug()
         self._running.clock.settle()
 
     def _check_plug(self) -> None:
-        """Refuse a port whose adapter has been pulled out since it was opened."""
+        """Raise if the adapter was unplugged since the port was opened."""
         if self._plugs != self._bus.plugs:
             raise serial.SerialException("the adapter has been unplugged")
 
     def _reconfigure_port(self) -> None:
         self._bus.baud = cast(int, self._baudrate)
 
-    # Lines that a servo adapter has and nobody uses.
+    # Control lines that a servo adapter has but does not use.
 
     def _update_break_state(self) -> None: ...
 
@@ -140,20 +140,20 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
 
     @property
     def cts(self) -> bool:
-        """Always."""
+        """Always True."""
         return True
 
     @property
     def dsr(self) -> bool:
-        """Always."""
+        """Always True."""
         return True
 
     @property
     def ri(self) -> bool:
-        """Never."""
+        """Always False."""
         return False
 
     @property
     def cd(self) -> bool:
-        """Always."""
+        """Always True."""
         return True

@@ -1,4 +1,4 @@
-"""pyserial finds the handler of ``twin://`` in a module of this name."""
+"""Handler of ``twin://``; pyserial looks for a module of this name."""
 
 from windup.sim_twin.wire.serve.port import TwinSerial
 

@@ -1,4 +1,4 @@
-"""A world that answers from a trace, without servos and physics, and checks the host's bytes."""
+"""A world that answers from a trace, without servos or physics, and checks the host's bytes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -24,7 +24,7 @@ from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
 
 @dataclass
 class Tape:
-    """The language of a bus that answers from a trace.
+    """The protocol of a bus that answers from a trace.
 
     Attributes:
         path: The trace.
@@ -41,14 +41,14 @@ class Tape:
     _at: int = 0
 
     def seal(self, frame: bytes) -> bytes:
-        """Return `frame`."""
+        """Return `frame` unchanged."""
         return frame
 
     def meet(self, devices: Sequence[Device]) -> None:
-        """There are none."""
+        """Do nothing: there are no devices."""
 
     def feed(self, chunk: bytes) -> list[Heard]:
-        """Compare what the host sends, and schedule what was answered."""
+        """Compare the host's bytes with the trace, and schedule the recorded answer."""
         bus, lines = self.bus, self.lines
         wanted = lines[self._at] if self._at < len(lines) else None
         got = Line(bus.began, bus.name, FROM_HOST, bus.baud, 0.0, chunk)
@@ -59,7 +59,7 @@ class Tape:
         return []
 
     def answer(self) -> None:
-        """Schedule what comes to the host next."""
+        """Schedule the recorded bytes up to the host's next ones."""
         while self._at < len(self.lines) and self.lines[self._at].direction == TO_HOST:
             line = self.lines[self._at]
             burst = Burst(line.time, BITS / line.baud, bytearray(line.data), held=line.held)
@@ -67,17 +67,17 @@ class Tape:
             self._at += 1
 
     def reset(self) -> None:
-        """Nothing has begun that would end."""
+        """Do nothing: there is no partial frame."""
 
     def execute(self, frame: Heard, bus: Bus) -> bool:
-        """Do nothing."""
+        """Do nothing; return False."""
         return False
 
     def finish(self) -> None:
-        """Raise if the host has stopped before the trace ends.
+        """Check that the whole trace has been played.
 
         Raises:
-            TraceError: It has.
+            TraceError: The host stopped before the trace ends.
         """
         if self._at < len(self.lines):
             raise TraceError(difference(self.path, self.lines, self._at, None))
@@ -97,10 +97,10 @@ def tape_world(path: Path) -> BusWorld:
 
 
 def check_played(world: BusWorld) -> None:
-    """Raise unless all that a trace holds has happened.
+    """Check that the traces of all buses of a world have been played.
 
     Raises:
-        TraceError: Something has not.
+        TraceError: The host stopped before a trace ends.
     """
     for bus in world.buses.values():
         if isinstance(bus.language, Tape):

@@ -1,8 +1,8 @@
 """Traces: every byte on the buses of a world, with direction and virtual time, as a text file.
 
-One burst a line: ``time bus direction baud held bytes``; ">" is from the host, "<" to the host,
-and `held` is when an adapter gave the bytes away, "-" for at once. Times in s. Traces are made to
-be kept beside tests: `Recorder` writes one, `Checker` compares what happens with one.
+One burst per line: ``time bus direction baud held bytes``; ">" is from the host, "<" to the host,
+and `held` is when an adapter delivered the bytes, "-" for without delay. Times in s. Traces are
+meant to be kept with tests: `Recorder` writes one, `Checker` compares a run with one.
 """
 
 from collections import deque
@@ -15,17 +15,17 @@ from windup.sim_twin.wire.world.bus_world import BusWorld
 
 HEADER = "# windup trace 1: time s, bus, direction, baud, held s, bytes"
 SAME_TIME = 1e-6  # s
-CONTEXT = 3  # lines of a difference
-LAG = 8  # bursts, until nothing on the wire changes a burst any more
+CONTEXT = 3  # lines shown before a difference
+LAG = 8  # number of later bursts after which a burst does not change any more
 TO_HOST, FROM_HOST = "<", ">"
 
 
 class TraceError(AssertionError):
-    """What happens is not what a trace says."""
+    """A run differs from a trace, or a file is not a trace."""
 
 
 class Line(NamedTuple):
-    """One burst of a trace; see the module."""
+    """One burst of a trace; see the module's docstring."""
 
     time: float
     bus: str
@@ -41,7 +41,7 @@ class Line(NamedTuple):
         )
 
     def same(self, other: "Line") -> bool:
-        """Whether the other one is the same burst at the same time."""
+        """Return whether the other line is the same burst at the same time."""
         return (
             self[1:4] == other[1:4]
             and self.data == other.data
@@ -54,7 +54,7 @@ def read_trace(path: Path) -> list[Line]:
     """Return the lines of a trace.
 
     Raises:
-        TraceError: The file is something else.
+        TraceError: The file is not a trace.
     """
     text = path.read_text(encoding="utf-8").splitlines()
     if not text or text[0] != HEADER:
@@ -69,9 +69,9 @@ def _parse(line: str) -> Line:
 
 
 class Tap:
-    """Listens on all buses of a world.
+    """Receives the bursts on all buses of a world.
 
-    Collisions and adapters change a burst after its start, so it is taken a few bursts later.
+    Collisions and adapters change a burst after its start, so it is reported a few bursts later.
     """
 
     def __init__(self, world: BusWorld) -> None:
@@ -84,11 +84,11 @@ class Tap:
             bus.tap = partial(self._hear, bus.name)
 
     def heard(self, line: Line) -> None:
-        """Take a burst that is complete."""
+        """Process a burst that is complete."""
         raise NotImplementedError
 
     def close(self) -> None:
-        """Stop listening."""
+        """Process the pending bursts and detach from the buses."""
         for bus in self._world.buses.values():
             bus.tap = None
         while self._pending:
@@ -117,34 +117,34 @@ class Recorder(Tap):
         self._file.write(f"{line}\n")
 
     def close(self) -> None:
-        """Stop listening and close the file."""
+        """Detach from the buses and close the file."""
         super().close()
         self._file.close()
 
 
 class Checker(Tap):
-    """Compares what happens with a trace, and raises a `TraceError` at the first difference."""
+    """Compares a run with a trace, and raises a `TraceError` at the first difference."""
 
     def __init__(self, world: BusWorld, path: Path) -> None:
         super().__init__(world)
         self.path, self._lines, self._at = path, read_trace(path), 0
 
     def heard(self, line: Line) -> None:
-        """Compare a burst."""
+        """Compare a burst with the next line of the trace."""
         wanted = self._lines[self._at] if self._at < len(self._lines) else None
         if wanted is None or not wanted.same(line):
             raise TraceError(difference(self.path, self._lines, self._at, line))
         self._at += 1
 
     def close(self) -> None:
-        """Stop listening; what the trace has and did not happen is a difference too."""
+        """Detach from the buses; lines of the trace that are left over are a difference too."""
         super().close()
         if self._at < len(self._lines):
             raise TraceError(difference(self.path, self._lines, self._at, None))
 
 
 def difference(path: Path, lines: list[Line], at: int, got: Line | None) -> str:
-    """Return in words how `got` differs from line `at` of a trace."""
+    """Return a description of how `got` differs from line `at` of a trace."""
     wanted = lines[at] if at < len(lines) else None
     text = [f"{path}, line {at + 2}: {_first_difference(wanted, got)}"]
     text += [f"  {line}" for line in lines[max(0, at - CONTEXT) : at]]

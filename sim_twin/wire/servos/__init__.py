@@ -1,1 +1,1 @@
-"""Emulated servos: registers, control loops, protection."""
+"""Emulated servos: registers, control loops, protection functions."""

@@ -1,8 +1,8 @@
 """The backup of an X-series servo's control table: instruction 0x20 of protocol 2.
 
-The e-Manual, Control Table Backup (0x20): 1 stores the EEPROM and some of the RAM, 2 brings the
-EEPROM back and reboots, both with torque off only. The RAM comes back at start-up where Startup
-Configuration(60) says so.
+The e-Manual, Control Table Backup (0x20): 1 stores the EEPROM and some of the RAM, 2 restores the
+EEPROM and reboots, both with torque off only. The RAM is restored at start-up if Startup
+Configuration(60) is set to do so.
 """
 
 from collections.abc import Callable
@@ -21,10 +21,10 @@ KEPT: Final = frozenset(
 
 
 class Backup:
-    """What one servo has stored.
+    """The stored registers of one servo.
 
     Args:
-        registers: Its control table; without a register Backup Ready it knows no backups.
+        registers: Its control table; a model without a Backup Ready register has no backups.
     """
 
     def __init__(self, registers: RegisterFile) -> None:
@@ -33,26 +33,26 @@ class Backup:
 
     @property
     def known(self) -> bool:
-        """Whether this model has backups."""
+        """Whether this model supports backups."""
         return READY in self._registers.items
 
     @property
     def ready(self) -> bool:
-        """Whether there is one."""
+        """Whether a backup is stored."""
         return bool(self._stored)
 
     def store(self) -> None:
-        """Store what the control table holds now."""
+        """Store the present values of the control table."""
         items = [item for item in self._registers.items.values() if _is_stored(item)]
         self._stored = {item.name: self._registers.get(item.name) for item in items}
         self._registers.set(READY, 1)
 
     def restore(self) -> None:
-        """Bring the EEPROM back."""
+        """Restore the EEPROM."""
         self._bring_back(lambda item: item.address < EEPROM_END)
 
     def boot(self, restore: bool) -> None:
-        """Show after a start whether there is a backup, and bring the RAM back if told to."""
+        """Set Backup Ready at start-up, and restore the RAM if `restore`."""
         if self.known:
             self._registers.set(READY, int(self.ready))
         if restore:

@@ -1,4 +1,4 @@
-"""A protocol 1 servo on a bus: what AX, MX and Feetech servos have in common."""
+"""A protocol 1 servo on a bus: the common part of AX, MX and Feetech servos."""
 
 import math
 from abc import ABC, abstractmethod
@@ -7,13 +7,13 @@ from windup.sim_twin.wire.servos.byte_table import ByteTable, Writes
 from windup.sim_twin.wire.servos.health import AMBIENT, warmed
 from windup.sim_twin.wire.servos.motor_loop import MotorLoop
 
-BOOT_SECONDS = 0.3  # silence after a reset, assumed
+BOOT_SECONDS = 0.3  # time without answers after a reset, s, assumed
 RETURN_DELAY_UNIT = 2e-6  # s
 NO_ID = 255
 
 
 def magnitude(value: float, bit: int) -> int:
-    """Return a rounded value as a magnitude with a sign bit, within two bytes.
+    """Return a rounded value as magnitude and sign bit, limited to `bit` bits of magnitude.
 
     >>> hex(magnitude(-5.2, 10))
     '0x405'
@@ -23,30 +23,30 @@ def magnitude(value: float, bit: int) -> int:
 
 
 class ByteServo(ABC):
-    """One servo. The bus calls it with instructions, the world with time.
+    """One servo. The bus calls it to execute instructions, the world to advance time.
 
     Args:
-        name: Its model.
-        table: Its control table.
-        loop: What it drives.
-        identifier: Its id.
-        baud: Its baud rate.
-        **registers: Other registers that differ from the factory's, by name.
+        name: Model name.
+        table: Control table.
+        loop: Control loop of its motor.
+        identifier: Bus id.
+        baud: Baud rate.
+        **registers: Other registers that differ from the factory defaults, by name.
 
     Attributes:
-        model: Its model.
-        table: Its control table.
-        loop: Its control loop.
-        torque_on: Whether its motor is switched on.
+        model: Model name.
+        table: Control table.
+        loop: Control loop.
+        torque_on: Whether torque is enabled.
         powered: Whether it has a supply voltage.
-        temperature: Of its motor, degrees C.
-        floor: Heat from outside, degrees C: the motor is no cooler.
-        errors: Bits of the error byte of its answers.
+        temperature: Temperature of its motor, degrees C.
+        floor: Lowest temperature of the motor, set by a heat fault, degrees C.
+        errors: Bits of the error byte of its status packets.
     """
 
     bauds: dict[int, int]  # baud rate to the value of its register
-    live: int  # the first register that changes by itself
-    live_motion: int  # the end of those that a control loop reads
+    live: int  # address of the first register that changes by itself
+    live_motion: int  # end of the registers that a host's control loop reads
     min_voltage: str
     max_voltage: str
 
@@ -73,71 +73,71 @@ class ByteServo(ABC):
             table.save(key)
         self.restart(0.0)
 
-    # Who it is
+    # Identity and state
 
     @property
     def name(self) -> str:
-        """What people call it."""
+        """Name for messages."""
         return f"{self.model} {self.identifier}"
 
     @property
     def identifier(self) -> int:
-        """Its id."""
+        """Bus id."""
         return self.table.get("id")
 
     @property
     def shadow(self) -> int:
-        """It has no second id."""
+        """No secondary id."""
         return NO_ID
 
     @property
     def protocol(self) -> int:
-        """It speaks protocol 1."""
+        """Protocol version, 1."""
         return 1
 
     @property
     def baud(self) -> int:
-        """Its baud rate."""
+        """Baud rate."""
         return self._rates.get(self.table.get("baud_rate"), 0)
 
     @property
     def return_delay(self) -> float:
-        """From the end of an instruction to its answer, s."""
+        """Delay from the end of an instruction to the status packet, s."""
         return self.table.get("return_delay_time") * RETURN_DELAY_UNIT
 
     @property
     @abstractmethod
     def return_level(self) -> int:
-        """What it answers: 0 pings, 1 reads as well, 2 everything."""
+        """Status return level: 0 answers pings, 1 also reads, 2 all instructions."""
 
     @property
     def fast(self) -> bool:
-        """It knows no fast sync read."""
+        """False: fast sync read is not supported."""
         return False
 
     @property
     def busy(self) -> bool:
-        """Whether `control` has to be called at every step."""
+        """Whether `control` must be called at every step."""
         return self.loop.busy
 
     @property
     def driving(self) -> bool:
-        """Whether it really drives its motor now."""
+        """Whether it drives its motor now: torque is on and power is present."""
         return self.torque_on and self.powered
 
     @property
     def supply(self) -> float:
-        """Its supply voltage, V."""
+        """Supply voltage, V."""
         return self.loop.supply
 
     def listens(self, now: float) -> bool:
         """Whether it is powered and has booted."""
         return self.powered and now >= self._ready
 
-    # What instructions do to it
+    # Instructions
 
     def ping(self) -> bytes:
-        """Return nothing: an answer to a ping has no data."""
+        """Return no data: a protocol 1 ping is answered without any."""
         return b""
 
     def sample(self) -> None:
@@ -145,13 +145,13 @@ class ByteServo(ABC):
         self.loop.sample()
 
     def read(self, address: int, count: int, now: float) -> tuple[int, bytes]:
-        """Return the error byte and the data of a read."""
+        """Return the error byte and the data of a read instruction."""
         if address + count > self.live:
             self.show(now, address + count <= self.live_motion)
         return self.errors, self.table.read(address, count)
 
     def write(self, address: int, data: bytes, now: float) -> int:
-        """Do a write and return the error byte."""
+        """Execute a write and return the error byte."""
         error, writes = self.check(address, data)
         if not error:
             for field, value in writes:
@@ -161,47 +161,47 @@ class ByteServo(ABC):
         return self.errors | error
 
     def register_write(self, address: int, data: bytes) -> int:
-        """Keep a write for `action` and return the error byte."""
+        """Store a write for `action` and return the error byte."""
         error, _ = self.check(address, data)
         if not error:
             self._registered = (address, data)
         return self.errors | error
 
     def action(self, now: float) -> int:
-        """Do the write that is kept, if there is one, and return the error byte."""
+        """Execute the stored write, if there is one, and return the error byte."""
         if self._registered is None:
             return self.errors
         (address, data), self._registered = self._registered, None
         return self.write(address, data, now)
 
     def reboot(self, now: float) -> None:
-        """Start again: what was not saved is lost, torque is off."""
+        """Reboot: unsaved values are lost and torque is off."""
         self._ready = now + BOOT_SECONDS
         self.restart(now)
 
     def factory_reset(self, option: int, broadcast: bool, now: float) -> int:
-        """Save the factory's values, also of id and baud rate, and start again."""
+        """Restore the factory values, including id and baud rate, and reboot."""
         self.table.factory()
         self.reboot(now)
         return 0
 
     def clear(self, parameters: bytes) -> int:
-        """Protocol 1 has no such instruction."""
+        """Do nothing: protocol 1 has no such instruction."""
         return self.errors
 
     def backup(self, parameters: bytes, now: float) -> int:
-        """Protocol 1 has no such instruction."""
+        """Do nothing: protocol 1 has no such instruction."""
         return self.errors
 
-    # What time does to it
+    # Calls of the world
 
     def control(self, now: float, dt: float) -> None:
-        """Do one step of the control loop; needed while `busy`."""
+        """Run one step of the control loop; needed while `busy`."""
         if self.driving:
             self.loop.update(now, dt)
 
     def watch(self, now: float, dt: float, heard: float) -> None:
-        """Look after itself, every now and then. It has no watchdog: `heard` is of no interest."""
+        """Update temperature and protection, periodically; `heard` is unused without a watchdog."""
         if not self.powered:
             return
         loop = self.loop
@@ -212,17 +212,17 @@ class ByteServo(ABC):
         self.protect(now, dt)
 
     def heat(self, degrees: float) -> None:
-        """Have a motor that is this hot, degrees C, and stays so; -inf: it may cool again."""
+        """Keep the motor at least this hot, degrees C; -inf lets it cool again."""
         self.floor = degrees
         self.temperature = max(self.temperature, degrees)
 
     def voltage_is_wrong(self) -> bool:
-        """Whether the supply is outside of its limits."""
+        """Return whether the supply is outside of the voltage limits."""
         tenths = round(self.loop.supply * 10.0)
         return not self.table.get(self.min_voltage) <= tenths <= self.table.get(self.max_voltage)
 
     def set_supply(self, volts: float, now: float) -> None:
-        """Change the supply voltage; at 0 V the servo is off and starts again later."""
+        """Change the supply voltage, V; at 0 V the servo is off, and boots when powered again."""
         was, self.powered = self.powered, volts > 0.0
         self.loop.supply = volts
         if self.powered and not was:
@@ -234,7 +234,7 @@ class ByteServo(ABC):
             self.loop.update(now)
 
     def restart(self, now: float) -> None:
-        """Start as after power-up."""
+        """Enter the state after power-up."""
         self.table.power_up()
         self.torque_on = False
         self.errors = 0
@@ -244,7 +244,7 @@ class ByteServo(ABC):
         self.loop.hold_here()
         self.begin()
 
-    # What tells one family from the other
+    # Differences between the families
 
     @abstractmethod
     def begin(self) -> None:
@@ -252,24 +252,24 @@ class ByteServo(ABC):
 
     @abstractmethod
     def check(self, address: int, data: bytes) -> tuple[int, Writes]:
-        """Return the error of a write, and what it would set."""
+        """Return the error of a write, and the fields that it would set."""
 
     @abstractmethod
     def keep(self, name: str) -> None:
-        """Save a field that has been written, unless a lock forbids that."""
+        """Save a field that has been written, unless the EEPROM is locked."""
 
     @abstractmethod
     def act(self, names: set[str], now: float) -> None:
-        """Act on fields that have been written together."""
+        """Apply the effects of fields that have been written together."""
 
     @abstractmethod
     def show(self, now: float, motion: bool) -> None:
-        """Write the last sample into the registers; where `motion`, only the first few."""
+        """Write the last sample to the registers; with `motion`, only position, speed, load."""
 
     @abstractmethod
     def protect(self, now: float, dt: float) -> None:
-        """Set the error bits, and let go where the registers say so."""
+        """Set the error bits, and switch the torque off if the registers demand it."""
 
     @abstractmethod
     def overload(self, now: float) -> None:
-        """Take itself for overloaded."""
+        """Enter the overload state."""

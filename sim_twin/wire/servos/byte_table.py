@@ -1,12 +1,12 @@
-"""The control table of a protocol 1 servo: bytes, fields over them, and an EEPROM behind.
+"""The control table of a protocol 1 servo: bytes, fields and saved EEPROM values.
 
-Unlike the X series, these servos let a host write any run of bytes, also half of a field.
+Unlike the X series, these servos accept a write of any run of bytes, also of half a field.
 """
 
 from collections.abc import Iterable, Sequence
 from typing import Final, NamedTuple
 
-TWOS: Final = 16  # two's complement, of two bytes
+TWOS: Final = 16  # `Field.sign` of two bytes in two's complement
 
 
 class Field(NamedTuple):
@@ -17,11 +17,11 @@ class Field(NamedTuple):
         size: 1 or 2 bytes.
         name: The manual's name in snake case.
         access: "R" or "RW".
-        default: Value as the servo leaves the factory.
+        default: Factory default.
         low: Smallest value that may be written.
         high: Largest value that may be written.
-        sign: How a value below zero is written: 0 not at all, a bit's number that bit beside the
-            magnitude, `TWOS` two's complement.
+        sign: Encoding of negative values: 0 none, a bit number for a sign bit with magnitude,
+            `TWOS` for two's complement.
     """
 
     address: int
@@ -35,17 +35,17 @@ class Field(NamedTuple):
 
     @property
     def end(self) -> int:
-        """The address behind the field."""
+        """The address after the field."""
         return self.address + self.size
 
     def pack(self, value: int) -> int:
-        """Return the bits of a value."""
+        """Encode a value as bits."""
         if value >= 0 or self.sign == 0:
             return value & 0xFFFF
         return value & 0xFFFF if self.sign == TWOS else -value | 1 << self.sign
 
     def unpack(self, bits: int) -> int:
-        """Return the value of bits."""
+        """Decode a value from bits."""
         if self.sign == 0 or not bits >> min(self.sign, 15) & 1:
             return bits
         return bits - 0x10000 if self.sign == TWOS else -(bits & ~(1 << self.sign))
@@ -55,17 +55,17 @@ Writes = list[tuple[Field, int]]
 
 
 class ByteTable:
-    """The bytes of one servo.
+    """The control table of one servo.
 
     Args:
-        fields: Its fields.
-        eeprom_end: Fields below keep what was saved when the power goes.
-        big: Whether fields of two bytes have the high one first.
+        fields: The fields.
+        eeprom_end: Fields below this address keep their saved values without power.
+        big: Whether two-byte fields have the high byte first.
 
     Attributes:
         fields: The fields by name.
         memory: The bytes.
-        saved: What the EEPROM holds, by name.
+        saved: Values in the EEPROM, by name.
     """
 
     def __init__(self, fields: Sequence[Field], eeprom_end: int, big: bool = False) -> None:
@@ -78,12 +78,12 @@ class ByteTable:
         self.power_up()
 
     def power_up(self) -> None:
-        """Take what was saved, and for the rest what the factory gave."""
+        """Load the saved values, and the factory defaults of all other fields."""
         for field in self.fields.values():
             self.set(field.name, self.saved.get(field.name, field.default))
 
     def factory(self, keep: Iterable[str] = ()) -> None:
-        """Save the factory's values, but for some."""
+        """Save the factory defaults, except of the fields in `keep`."""
         for name in self.saved:
             if name not in keep:
                 self.saved[name] = self.fields[name].default
@@ -93,30 +93,30 @@ class ByteTable:
         return self._values[name]
 
     def set(self, name: str, value: int) -> None:
-        """Give a field a value, whatever a host may do with it."""
+        """Set a field regardless of access rights and limits."""
         field = self.fields[name]
         bits = field.pack(value) & (1 << 8 * field.size) - 1
         self.memory[field.address : field.end] = bits.to_bytes(field.size, self._order)
         self._values[name] = value
 
     def save(self, name: str) -> None:
-        """Keep a field's value for the next power-up, if it lies in the EEPROM."""
+        """Save a field's value for the next power-up, if it is in the EEPROM."""
         if name in self.saved:
             self.saved[name] = self._values[name]
 
     def read(self, address: int, count: int) -> bytes:
-        """Return `count` bytes; what is not there reads as zero."""
+        """Return `count` bytes; bytes beyond the table read as zero."""
         return bytes(self.memory[address : address + count]).ljust(count, b"\0")
 
     def decode(self, address: int, data: bytes) -> tuple[Writes, bool]:
-        """Return what a write would set, and whether it reaches nothing that is not writable."""
+        """Return the fields that a write would set, and whether it covers writable bytes only."""
         fields, clean = self._plan(address, len(data))
         writes: Writes = []
         for field in fields:
             start = field.address - address
             if start >= 0 and start + field.size <= len(data):
                 raw = data[start : start + field.size]
-            else:  # half a field: the other half stays
+            else:  # half a field: the other half keeps its value
                 there = bytearray(self.memory[field.address : field.end])
                 for k in range(field.size):
                     if 0 <= start + k < len(data):
@@ -126,7 +126,7 @@ class ByteTable:
         return writes, clean
 
     def _plan(self, address: int, count: int) -> tuple[tuple[Field, ...], bool]:
-        """Return the writable fields that a write reaches, and whether it reaches only such."""
+        """Return the writable fields that a write covers, and whether it covers only such."""
         key = (address, count)
         plan = self._plans.get(key)
         if plan is None:

@@ -1,8 +1,8 @@
-"""The control loops of an X-series servo: goals to what its shaft is told.
+"""The control loops of an X-series servo: from goal registers to commands to the shaft.
 
-Position modes are a voltage-limited P law (see `hal.servos.servo_model`), velocity mode a PI law
-on a ramped goal, current and PWM mode a torque and a voltage. The I, D and feed-forward gains of
-the position loop are kept but have no effect: the manual folds its sampling period into them.
+Position modes are a voltage-limited P law (see `hal.servos.servo_model`), velocity mode is a PI law
+on a ramped goal, current and PWM mode command a torque and a voltage. The I, D and feed-forward
+gains of the position loop have no effect: the manual's gains include an unknown sampling period.
 """
 
 import math
@@ -28,22 +28,22 @@ from windup.sim_twin.wire.shafts.shaft import Shaft
 
 TIME_BASED = 0x04  # bit of the drive mode
 POSITION_MODES = frozenset((POSITION, EXTENDED, CURRENT_POSITION))
-VELOCITY_RATE = 1000.0  # Hz, assumed: the manual folds the sampling period into the I gain
+VELOCITY_RATE = 1000.0  # sampling rate, Hz, assumed: the manual's I gain includes its period
 
 
 class ControlLoop:
-    """Maps the registers of one servo to its shaft.
+    """Drives the shaft of one servo according to its registers.
 
     Attributes:
         registers: The control table.
         servo: Data sheet of the servo.
-        shaft: What is driven.
-        encoder: Counts to angle.
+        shaft: The shaft that is driven.
+        encoder: Conversion between counts and angle.
         supply: Voltage at the servo, V.
         constant: K of the motor at the supply that the servo was built for, V s/rad.
-        resistance: Its R, ohm.
+        resistance: R of the motor, ohm.
         mode: Operating mode.
-        busy: Whether `update` has to be called at every step.
+        busy: Whether `update` must be called at every step.
     """
 
     def __init__(
@@ -59,28 +59,28 @@ class ControlLoop:
         self._since = -math.inf
         self._integral = 0.0
         unit, constant = model.current_unit, servo.torque_constant
-        self.torque_unit = unit * constant if unit and constant else None  # N m a count
+        self.torque_unit = unit * constant if unit and constant else None  # N m per count
         self._stiffness_unit = servo.error_gain * self.constant / self.resistance
 
     def start_at(self, value: float) -> None:
-        """Make `value` (counts, or velocity units) the goal, reached long ago."""
+        """Make `value` (counts, or velocity units) the goal, with the profile finished."""
         self.profile = Profile(value, 0.0, value, 0.0, 0.0)
         self._since = -math.inf
         self._integral = 0.0
 
     def trajectory(self, now: float) -> tuple[float, float]:
-        """Return where the profile wants the shaft, counts, and how fast, velocity units."""
+        """Return the profile's position, counts, and velocity, velocity units."""
         value, rate = self.profile.at(now - self._since)
         if self.mode == VELOCITY:
             return 0.0, value
         return value, rate / (VELOCITY_UNIT * COUNTS_PER_RAD)
 
     def in_progress(self, now: float) -> bool:
-        """Whether the profile has still to go."""
+        """Return whether the profile is still in progress."""
         return now - self._since < self.profile.duration
 
     def plan(self, now: float) -> None:
-        """Start the profile of the goal that the registers hold."""
+        """Start the profile towards the goal in the registers."""
         if self.mode in POSITION_MODES:
             self._plan_position(now)
         elif self.mode == VELOCITY:
@@ -88,12 +88,12 @@ class ControlLoop:
         self._since = now
 
     def release(self) -> None:
-        """Let the shaft go."""
+        """Switch the motor off: the shaft turns freely."""
         self.busy = False
         self.shaft.off()
 
     def update(self, now: float, dt: float = 0.0) -> None:
-        """Tell the shaft what to do now; `dt` s have passed since the last step."""
+        """Command the shaft for now; `dt` s have passed since the last step."""
         get, mode = self.registers.get, self.mode
         most = min(get("pwm_limit"), abs(get("goal_pwm")))
         volts = most / PWM_FULL * self.supply

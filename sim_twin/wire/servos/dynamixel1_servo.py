@@ -1,8 +1,8 @@
-"""The firmware of AX and MX servos with protocol 1: what writes, time and faults do to them.
+"""The firmware of AX and MX servos with protocol 1: effects of writes, time and faults.
 
-Joint mode, wheel mode (both angle limits 0), on an MX also multi-turn (both 4095) and, where it
-has a current sensor, torque control. A goal switches the torque on. After an alarm shutdown the
-torque limit is 0, and nothing moves until a host has written another one.
+Joint mode, wheel mode (both angle limits 0), on an MX also multi-turn (both 4095) and, with a
+current sensor, torque control. Writing a goal switches the torque on. After an alarm shutdown the
+torque limit is 0, and the servo does not move until a host has written another limit.
 """
 
 import math
@@ -28,27 +28,27 @@ from windup.sim_twin.wire.shafts.shaft import Shaft
 INPUT_VOLTAGE, ANGLE_LIMIT, OVERHEATING, RANGE = 0x01, 0x02, 0x04, 0x08
 CHECKSUM, OVERLOAD, INSTRUCTION = 0x10, 0x20, 0x40
 
-FULL: Final = 1023  # of torque limits, loads and wheel speeds
-SLOPES: Final = (2, 4, 8, 16, 32, 64, 128)  # counts, of an AX's compliance
+FULL: Final = 1023  # full scale of torque limits, loads and wheel speeds
+SLOPES: Final = (2, 4, 8, 16, 32, 64, 128)  # compliance slopes of an AX, counts
 GAINS = frozenset(
     ("p_gain", "cw_compliance_slope", "ccw_compliance_slope", "torque_limit", "cw_angle_limit",
      "ccw_angle_limit", "torque_control_mode", "goal_torque", "goal_acceleration")
 )  # fmt: skip
 _MOTION, _HEALTH, _WORD = struct.Struct("<HHH"), struct.Struct("<5B"), struct.Struct("<H")
-SLOW = 2  # units of speed; slower than this counts as standing
+SLOW = 2  # units of speed; slower than this counts as standing still
 
 
 class Dynamixel1Servo(ByteServo):
-    """An AX or an MX.
+    """An AX or MX servo.
 
     Args:
-        model: Its control table.
-        servo: Its data sheet.
-        shaft: What it drives.
-        identifier: Its id.
-        baud: Its baud rate.
-        supply: Voltage, V.
-        **registers: Other registers that differ from the factory's, by name.
+        model: Description of its control table.
+        servo: Data sheet.
+        shaft: The shaft that it drives.
+        identifier: Bus id.
+        baud: Baud rate.
+        supply: Supply voltage, V.
+        **registers: Other registers that differ from the factory defaults, by name.
     """
 
     bauds = BAUDS
@@ -73,7 +73,7 @@ class Dynamixel1Servo(ByteServo):
 
     @property
     def return_level(self) -> int:
-        """What it answers: 0 pings, 1 reads as well, 2 everything."""
+        """Status return level: 0 answers pings, 1 also reads, 2 all instructions."""
         return self.table.get("status_return_level")
 
     @property
@@ -97,13 +97,13 @@ class Dynamixel1Servo(ByteServo):
         return self.table.get("resolution_divider") if self._many_turns else 1
 
     def begin(self) -> None:
-        """Take the torque limit from the EEPROM, and the present position as the goal."""
+        """Set the torque limit from the EEPROM, and the goal to the present position."""
         self.table.set("torque_limit", self.table.get("max_torque"))
         self.loop.sample()
         self.table.set("goal_position", self._shown_position())
 
     def check(self, address: int, data: bytes) -> tuple[int, Writes]:
-        """Return the error of a write, and what it would set: all of it, or nothing."""
+        """Return the error of a write, and the fields that it would set: all or none."""
         writes, clean = self.table.decode(address, data)
         if not clean:
             return RANGE, []
@@ -115,15 +115,15 @@ class Dynamixel1Servo(ByteServo):
             if field.name == "goal_position" and not self._within_limits(value):
                 return ANGLE_LIMIT, []
             if field.name == "lock" and not value and self.table.get("lock"):
-                return RANGE, []  # only switching off unlocks
+                return RANGE, []  # only a power cycle unlocks
         return 0, writes
 
     def keep(self, name: str) -> None:
-        """Save a field: the EEPROM is written at once."""
+        """Save a field: EEPROM registers are stored immediately."""
         self.table.save(name)
 
     def act(self, names: set[str], now: float) -> None:
-        """Act on fields that have been written together."""
+        """Apply the effects of fields that have been written together."""
         if "max_torque" in names:
             self.table.set("torque_limit", self.table.get("max_torque"))
         if "torque_limit" in names and self.table.get("torque_limit"):
@@ -139,7 +139,7 @@ class Dynamixel1Servo(ByteServo):
             self._drive(now)
 
     def show(self, now: float, motion: bool) -> None:
-        """Write the last sample into the registers; where `motion`, only the first few."""
+        """Write the last sample to the registers; with `motion`, only position, speed, load."""
         loop, memory = self.loop, self.table.memory
         speed, driving = loop.velocity / self._unit, self.driving
         load = loop.duty() * FULL if driving else 0.0
@@ -157,7 +157,7 @@ class Dynamixel1Servo(ByteServo):
             _WORD.pack_into(memory, 68, max(0, min(4095, CURRENT_ZERO + units)))
 
     def protect(self, now: float, dt: float) -> None:
-        """Set the error bits, and let go where Alarm Shutdown says so."""
+        """Set the error bits, and switch the torque off if Alarm Shutdown demands it."""
         hot = self.temperature >= self.table.get("temperature_limit")
         self._flag(INPUT_VOLTAGE, self.voltage_is_wrong())
         self._flag(OVERHEATING, hot)
@@ -169,7 +169,7 @@ class Dynamixel1Servo(ByteServo):
             self._shut_down(now)
 
     def overload(self, now: float) -> None:
-        """Take itself for overloaded."""
+        """Enter the overload state."""
         self.errors |= OVERLOAD
         if OVERLOAD & self.table.get("shutdown"):
             self._shut_down(now)
@@ -192,7 +192,7 @@ class Dynamixel1Servo(ByteServo):
         return max(0, min(FULL, counts)) if self._is_ax else counts % 4096
 
     def _switch(self, on: bool, now: float) -> None:
-        """Switch the torque; on, the servo goes to the goal that it has, however old."""
+        """Switch the torque; when on, the servo moves to the goal register's value, however old."""
         was, self.torque_on = self.torque_on, on
         self.table.set("torque_enable", int(on))
         if on and not was:
@@ -202,7 +202,7 @@ class Dynamixel1Servo(ByteServo):
             self.loop.release()
 
     def _go(self, now: float) -> None:
-        """Follow goal position and moving speed, as the mode has it."""
+        """Move to the goal position at the moving speed, or run, according to the mode."""
         get, loop = self.table.get, self.loop
         speed = get("moving_speed")
         rise = 0.0
@@ -220,7 +220,7 @@ class Dynamixel1Servo(ByteServo):
         self._drive(now)
 
     def _drive(self, now: float) -> None:
-        """Give the loop its gain and its limits, and the shaft what follows."""
+        """Set gain and limits of the loop, and command the shaft accordingly."""
         get, loop = self.table.get, self.loop
         loop.most = get("torque_limit") / FULL * loop.servo.pwm_limit
         if self._is_ax:

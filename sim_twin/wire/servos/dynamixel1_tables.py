@@ -1,7 +1,7 @@
-"""Control tables of Dynamixel AX and MX with protocol 1: one line a register.
+"""Control tables of Dynamixel AX and MX with protocol 1: one line per register.
 
 From the e-Manuals of AX-12A, MX-28, MX-64 and MX-106 (emanual.robotis.com/docs/en/dxl/). Speeds
-and loads carry their direction in bit 10: set is clockwise, against the counts.
+and loads have their direction in bit 10: set is clockwise, against the counts.
 """
 
 from dataclasses import dataclass
@@ -82,14 +82,14 @@ _DRIVE_MODE = (Field(10, 1, "drive_mode", "RW", 0, 0, 3),)
 
 @dataclass(frozen=True)
 class Dynamixel1Model:
-    """What tells one model from another.
+    """Description of one model.
 
     Attributes:
-        name: As on the data sheet.
+        name: Name on the data sheet.
         number: Model number.
-        fields: Those it has beside the common ones.
-        speed_unit: rad/s of one unit of speed.
-        changed: Register to its default where that differs.
+        fields: The fields that it has besides the common ones.
+        speed_unit: Unit of the speed registers, rad/s.
+        changed: Registers with other defaults, and these defaults.
     """
 
     name: str
@@ -99,7 +99,7 @@ class Dynamixel1Model:
     changed: tuple[tuple[str, int], ...] = ()
 
     def table(self) -> ByteTable:
-        """Return a new control table with the factory's values."""
+        """Return a new control table with the factory defaults."""
         changed = {"model_number": self.number, **dict(self.changed)}
         fields = [
             field._replace(default=changed.get(field.name, field.default))

@@ -1,11 +1,11 @@
-"""The firmware of Feetech servos: what writes, time and faults do to them.
+"""The firmware of Feetech servos: effects of writes, time and faults.
 
-With the lock on, the EEPROM's registers, the id too, can be written all the same, but power-up
-brings back what was there before: so the memory table has it. A goal switches the torque on.
-Writing 128 to the torque register makes the present position the middle, 2048, by way of the
-offset. Register 44 is the PWM of PWM mode, and on an STS nothing else: the tables of SMS and STS
-give it in 0.1 % and for that mode, and who tried it as a time in position mode saw nothing
-(zeroth-bot pull request 89). On an SCS it is a time in ms while the speed is 0 (its table).
+According to the memory table, EEPROM registers (the id too) can be written while the lock is on,
+but revert to their saved values at power-up. Writing a goal switches the torque on. Writing 128 to
+the torque register makes the present position the middle, 2048, by setting the offset. Register 44
+is the PWM of PWM mode, and on an STS nothing else: the tables of SMS and STS give it in 0.1 % and
+for that mode, and a user who tried it as a time in position mode saw no effect (zeroth-bot pull
+request 89). On an SCS it is a time in ms while the speed is 0 (its table).
 """
 
 import math
@@ -28,32 +28,32 @@ from windup.sim_twin.wire.shafts.shaft import Shaft
 VOLTAGE, ENCODER, TEMPERATURE, CURRENT, ANGLE, OVERLOAD = 0x01, 0x02, 0x04, 0x08, 0x10, 0x20
 
 SET_MIDDLE = 128  # written to the torque register
-FINE_SPEED, ZERO_IS_FASTEST, MANY_TURNS = 0x04, 0x08, 0x10  # bits of the phase
+FINE_SPEED, ZERO_IS_FASTEST, MANY_TURNS = 0x04, 0x08, 0x10  # bits of the phase register
 POSITION, SPEED, PWM, STEP = 0, 1, 2, 3
-FULL = 1000  # of torque, load and PWM
+FULL = 1000  # full scale of torque, load and PWM
 PROTECTION_UNIT = 0.010  # s
 TURN = 4096
 FURTHEST = 32767  # counts
 PWM_SIGN = 0x400
 _STS_WORDS, _SCS_WORDS = struct.Struct("<HHH"), struct.Struct(">HHH")
 _HEALTH, _CURRENT = struct.Struct("<5B"), struct.Struct("<H")
-SLOW = 10  # steps/s; slower than this counts as standing
+SLOW = 10  # steps/s; slower than this counts as standing still
 GOALS = frozenset(("goal_position", "goal_speed", "goal_time"))
 RETUNED = frozenset(("p_gain", "torque_limit", "max_torque", "mode", "phase", "max_speed"))
 MOVED = frozenset(("offset", "phase", "mode"))
 
 
 class FeetechServo(ByteServo):
-    """An STS or an SCS.
+    """An STS or SCS servo.
 
     Args:
-        model: Its control table.
-        servo: Its data sheet.
-        shaft: What it drives.
-        identifier: Its id.
-        baud: Its baud rate.
-        supply: Voltage, V.
-        **registers: Other registers that differ from the factory's, by name.
+        model: Description of its control table.
+        servo: Data sheet.
+        shaft: The shaft that it drives.
+        identifier: Bus id.
+        baud: Baud rate.
+        supply: Supply voltage, V.
+        **registers: Other registers that differ from the factory defaults, by name.
     """
 
     bauds = BAUDS
@@ -78,24 +78,24 @@ class FeetechServo(ByteServo):
 
     @property
     def return_level(self) -> int:
-        """What it answers: 1 pings and reads, 2 everything."""
+        """Status return level: 1 answers pings and reads, 2 all instructions."""
         return 1 + self.table.get("status_return_level")
 
     @property
     def mode(self) -> int:
-        """Its mode; an SCS has no register for it, but both angle limits at 0 make it a wheel."""
+        """Operating mode; an SCS has no register for it, and is a wheel if both limits are 0."""
         if self.magnetic:
             return self.table.get("mode")
         return PWM if self._free else POSITION
 
     @property
     def _free(self) -> bool:
-        """Whether both angle limits are 0: none."""
+        """Whether both angle limits are 0, which means no limits."""
         return self.table.get("min_angle") == self.table.get("max_angle") == 0
 
     @property
     def _offset(self) -> int:
-        """The offset as it counts now: in position mode only (STS_servos issue 9)."""
+        """The effective offset: nonzero in position mode only (STS_servos issue 9)."""
         return self.table.get("offset") if self.magnetic and self.mode == POSITION else 0
 
     @property
@@ -103,7 +103,7 @@ class FeetechServo(ByteServo):
         return bool(self.table.get("phase") & MANY_TURNS)
 
     def begin(self) -> None:
-        """Take the torque limit from the EEPROM, and the present position as the goal."""
+        """Set the torque limit from the EEPROM, and the goal to the present position."""
         self._overcurrent = 0.0
         if self.magnetic:
             self.table.set("torque_limit", self.table.get("max_torque"))
@@ -111,7 +111,7 @@ class FeetechServo(ByteServo):
         self.table.set("goal_position", self._shown_position())
 
     def check(self, address: int, data: bytes) -> tuple[int, Writes]:
-        """Return what a write sets: what cannot be written is skipped, what is too much is cut."""
+        """Return the fields that a write sets: read-only ones are skipped, values are clamped."""
         writes, _ = self.table.decode(address, data)
         return 0, [(field, max(field.low, min(field.high, value))) for field, value in writes]
 
@@ -121,13 +121,13 @@ class FeetechServo(ByteServo):
             self.table.save(name)
 
     def factory_reset(self, option: int, broadcast: bool, now: float) -> int:
-        """Save the factory's values of all but the id, and start again (FT-SCS protocol, 0x06)."""
+        """Restore the factory values of all but the id, and reboot (FT-SCS protocol, 0x06)."""
         self.table.factory(keep=("id",))
         self.reboot(now)
         return 0
 
     def act(self, names: set[str], now: float) -> None:
-        """Act on fields that have been written together."""
+        """Apply the effects of fields that have been written together."""
         if "torque_enable" in names:
             self._write_torque(names, now)
         if "max_torque" in names and self.magnetic:
@@ -142,7 +142,7 @@ class FeetechServo(ByteServo):
             self._drive(now)
 
     def show(self, now: float, motion: bool) -> None:
-        """Write the last sample into the registers; where `motion`, only the first few."""
+        """Write the last sample to the registers; with `motion`, only position, speed, load."""
         loop, memory, driving = self.loop, self.table.memory, self.driving
         steps = loop.velocity * loop.per_rad
         load = loop.duty() * FULL if driving else 0.0
@@ -161,7 +161,7 @@ class FeetechServo(ByteServo):
             _CURRENT.pack_into(memory, 69, magnitude(amperes / CURRENT_UNIT, 15))
 
     def protect(self, now: float, dt: float) -> None:
-        """Set the status bits, and let go where Unloading Condition says so."""
+        """Set the status bits, and switch the torque off if Unloading Condition demands it."""
         get, loop = self.table.get, self.loop
         self._flag(VOLTAGE, self.voltage_is_wrong())
         self._flag(TEMPERATURE, self.temperature >= get("max_temperature"))
@@ -180,9 +180,9 @@ class FeetechServo(ByteServo):
             self._switch(False, now)
 
     def overload(self, now: float) -> None:
-        """Take itself for overloaded: push no harder than Protective Torque, until torque is off.
+        """Enter the overload state: limit the torque to Protective Torque until torque is off.
 
-        No manual says what ends it. Users report that goals do not (lerobot's arms stay like that,
+        No manual states what ends it. Users report that goals do not (lerobot's arms stay limited,
         open-edge-platform/physical-ai-studio issue 955), and that switching the torque off does.
         """
         self._strained = 0.0
@@ -192,12 +192,12 @@ class FeetechServo(ByteServo):
 
     @property
     def _shut(self) -> bool:
-        """Whether Unloading Condition keeps the torque off for something that is wrong now."""
+        """Whether Unloading Condition keeps the torque off because of a present error."""
         return bool(self.errors & ~OVERLOAD & self.table.get("unloading_condition"))
 
     @property
     def _speed_unit(self) -> int:
-        """Steps/s of one unit of the speed registers."""
+        """Unit of the speed registers, steps/s."""
         fine = not self.magnetic or self.table.get("phase") & FINE_SPEED
         return 1 if fine else SPEED_STEP
 
@@ -213,7 +213,7 @@ class FeetechServo(ByteServo):
         return counts % TURN
 
     def _write_torque(self, names: set[str], now: float) -> None:
-        """Switch the torque, or set the middle."""
+        """Switch the torque, or make the present position the middle."""
         value = self.table.get("torque_enable")
         if value == SET_MIDDLE and self.magnetic:
             self.loop.sample()
@@ -231,7 +231,7 @@ class FeetechServo(ByteServo):
                 self.table.set("goal_position", self._shown_position())
 
     def _switch(self, on: bool, now: float) -> None:
-        """Switch the torque; on, the present position becomes the goal, which is assumed."""
+        """Switch the torque; when on, the goal becomes the present position (assumed)."""
         was, self.torque_on = self.torque_on, on
         self.table.set("torque_enable", int(on))
         if on and not was:
@@ -241,7 +241,7 @@ class FeetechServo(ByteServo):
             self.loop.release()
 
     def _go(self, now: float) -> None:
-        """Follow the goals, as the mode has it."""
+        """Start moving to the goals, according to the mode."""
         get, loop, mode = self.table.get, self.loop, self.mode
         speed = get("goal_speed") * self._speed_unit
         rise = float(get("acceleration"))
@@ -261,12 +261,12 @@ class FeetechServo(ByteServo):
         self._drive(now)
 
     def _fastest(self) -> float:
-        """Return the fastest that the goal runs, steps/s."""
+        """Return the speed limit of the goal, steps/s; infinity if there is none."""
         top = self.table.get("max_speed") * SPEED_STEP if self.magnetic else 0
         return float(top) if top else math.inf
 
     def _goal_counts(self, now: float) -> float:
-        """Return the goal on the loop's scale of counts."""
+        """Return the goal in the loop's counts."""
         goal = self.table.get("goal_position")
         if self.mode == STEP:
             return self.loop.goal(now)[0] + goal
@@ -278,7 +278,7 @@ class FeetechServo(ByteServo):
         return float(goal + self._offset)
 
     def _drive(self, now: float) -> None:
-        """Give the loop its gain and its limits, and the shaft what follows."""
+        """Set gain and limits of the loop, and command the shaft accordingly."""
         get, loop = self.table.get, self.loop
         most = float(get("torque_limit") if self.magnetic else get("max_torque"))
         if self.errors & OVERLOAD & get("unloading_condition"):

@@ -1,8 +1,8 @@
-"""Control tables of Feetech STS and SCS servos: one line a register.
+"""Control tables of Feetech STS and SCS servos: one line per register.
 
-From Feetech's memory tables. STS servos have a magnetic encoder, the low byte first and a sign bit
-of its own for each register; SCS servos have a potentiometer and the high byte first. Values that
-the tables leave open are marked.
+From Feetech's memory tables. STS servos have a magnetic encoder, send the low byte first and use a
+different sign bit for each register; SCS servos have a potentiometer and send the high byte first.
+Values that the tables do not state are marked.
 """
 
 from dataclasses import dataclass
@@ -12,10 +12,10 @@ from windup.sim_twin.wire.servos.byte_table import ByteTable, Field
 
 EEPROM_END = 40
 CURRENT_UNIT = 6.5e-3  # A
-SPEED_STEP = 50  # steps/s of the coarse unit of speed
+SPEED_STEP = 50  # coarse unit of speed, steps/s
 ACCELERATION_STEP = 100  # steps/s2
 
-BAUDS: Final = {  # below 115200 the tables of Feetech and of its users differ; these are Feetech's
+BAUDS: Final = {  # below 115200 Feetech's and its users' tables differ; these are Feetech's
     **{1_000_000: 0, 500_000: 1, 250_000: 2, 128_000: 3, 115_200: 4},
     **{76_800: 5, 57_600: 6, 38_400: 7},
 }
@@ -76,8 +76,8 @@ _STS = (
     Field(81, 1, "dts", "RW", 20, 0, 254),
     Field(82, 1, "speed_unit_factor", "RW", 1, 0, 254),
     Field(83, 1, "hts", "RW", 20, 0, 254),
-    Field(84, 1, "max_speed", "RW", 68, 0, 254),  # 3400 steps/s, as bam measured
-    Field(85, 1, "max_acceleration", "RW", 0, 0, 254),  # none: assumed
+    Field(84, 1, "max_speed", "RW", 68, 0, 254),  # 3400 steps/s, measured by bam
+    Field(85, 1, "max_acceleration", "RW", 0, 0, 254),  # 0: no limit, assumed
     Field(86, 1, "acceleration_factor", "RW", 1, 0, 254),
 )
 _SCS = (
@@ -87,7 +87,7 @@ _SCS = (
     Field(38, 1, "protection_time", "RW", 200, 0, 254),
     Field(39, 1, "overload_torque", "RW", 80, 0, 100),
     Field(42, 2, "goal_position", "RW", 0, 0, 1023),
-    Field(44, 2, "goal_time", "RW", 0, 0, 0x7FFF),  # in wheel mode the PWM, with bit 10 its sign
+    Field(44, 2, "goal_time", "RW", 0, 0, 0x7FFF),  # in wheel mode the PWM, with sign bit 10
     Field(46, 2, "goal_speed", "RW", 0, 0, 0x7FFF),
     Field(48, 1, "lock", "RW", 1, 0, 1),
     Field(56, 2, "present_position"),
@@ -97,13 +97,13 @@ _SCS = (
 
 @dataclass(frozen=True)
 class FeetechModel:
-    """What tells one model from another.
+    """Description of one model.
 
     Attributes:
-        name: As on the data sheet.
+        name: Name on the data sheet.
         number: Model number.
-        magnetic: STS, with a magnetic encoder; else SCS.
-        changed: Register to its default where that differs.
+        magnetic: True for STS, with a magnetic encoder; False for SCS.
+        changed: Registers with other defaults, and these defaults.
     """
 
     name: str
@@ -112,7 +112,7 @@ class FeetechModel:
     changed: tuple[tuple[str, int], ...] = ()
 
     def table(self) -> ByteTable:
-        """Return a new control table with the factory's values."""
+        """Return a new control table with the factory defaults."""
         changed = {"model_number": self.number, **dict(self.changed)}
         fields = [
             field._replace(default=changed.get(field.name, field.default))

@@ -1,4 +1,4 @@
-"""The firmware of an X-series servo: what writes, time and faults do to it."""
+"""The firmware of an X-series servo: effects of writes, time and faults."""
 
 from windup.hal.servos.servo_model import ServoModel
 from windup.sim_twin.wire.servos.backup import Backup
@@ -16,35 +16,35 @@ from windup.sim_twin.wire.servos.x_series import (
 )
 from windup.sim_twin.wire.shafts.shaft import Shaft
 
-ALERT = 0x80  # in the error byte of a status: look at Hardware Error Status
+ALERT = 0x80  # bit of a status packet's error byte: Hardware Error Status is not 0
 TORQUE_BY_GOAL = 0x08  # bit of the drive mode
-TRIPPED = 0xFF  # bus watchdog: -1
-REMOTE = 20  # the first protocol type of a remote control, which the X330 have
+TRIPPED = 0xFF  # bus watchdog register after it has tripped: -1
+REMOTE = 20  # first protocol type for a remote control, which X330 servos have
 STARTUP_TORQUE, STARTUP_RESTORE = 0x01, 0x02  # bits of the startup configuration
 GOAL_LIMITS = {
     "goal_pwm": "pwm_limit",
     "goal_current": "current_limit",
     "goal_velocity": "velocity_limit",
 }
-OPEN_LOOP = {CURRENT: "goal_current", PWM: "goal_pwm"}  # modes that hold nothing, their goals
+OPEN_LOOP = {CURRENT: "goal_current", PWM: "goal_pwm"}  # modes without a loop, with their goals
 GOALS = frozenset((*GOAL_LIMITS, "goal_position"))
 RETUNE = frozenset(("position_p_gain", "pwm_limit", "velocity_i_gain", "velocity_p_gain"))
-MODE_DEFAULTS = range(76, 120)  # RAM that a change of mode resets
+MODE_DEFAULTS = range(76, 120)  # addresses of the RAM that a change of mode resets
 KEPT = frozenset(("bus_watchdog",))
 
 
 class Firmware:
-    """Keeps the registers of one servo, and drives its shaft as they say.
+    """Implements the registers of one servo, and drives its shaft accordingly.
 
     Attributes:
         registers: The control table.
         loop: The control loop.
         present: The sample of the shaft that reads report.
         health: Hardware errors.
-        backup: What Control Table Backup has stored.
+        backup: The registers that Control Table Backup has stored.
         powered: Whether there is a supply voltage.
-        stopped: The bus watchdog has taken the output away, in current or PWM mode; a new goal
-            ends that, once the watchdog register has been cleared.
+        stopped: Whether the bus watchdog has switched the output off, in current or PWM mode; a new
+            goal ends that, once the watchdog register has been cleared.
     """
 
     def __init__(self, model: Model, servo: ServoModel, shaft: Shaft, supply: float) -> None:
@@ -56,16 +56,16 @@ class Firmware:
         self.backup = Backup(self.registers)
         self.powered = True
         self.stopped = False
-        self._on = False  # torque, as last acted upon
+        self._on = False  # torque enable, as applied last
 
     @property
     def torque_on(self) -> bool:
-        """Torque Enable."""
+        """Whether torque is enabled."""
         return bool(self.registers.memory[64])
 
     @property
     def driving(self) -> bool:
-        """Whether the motor is really driven; it is while the watchdog has it hold or brake."""
+        """Whether the motor is driven, also while the tripped watchdog holds or brakes it."""
         return self.torque_on and not self.stopped and self.powered
 
     @property
@@ -78,7 +78,7 @@ class Firmware:
         return bool(self.health.errors & self.registers.get("shutdown"))
 
     def restart(self, now: float) -> None:
-        """Start: RAM as the factory left it, no errors, torque off, no turns counted."""
+        """Boot: reset RAM and errors, torque off, turns forgotten."""
         self.registers.reset(self.registers.ram())
         self.health.reset()
         self.stopped = self._on = False
@@ -93,10 +93,10 @@ class Firmware:
             self._switch(True, now)
 
     def hold_here(self, forget: bool = False) -> None:
-        """Make the present position the goal, and `forget` the turns on the way.
+        """Make the present position the goal; with `forget`, also forget the counted turns.
 
         The e-Manual, Present Position(132): the turns are forgotten at power-up, when the mode
-        changes, and in position mode when torque comes on; never while a shaft just moves.
+        changes, and in position mode when torque is switched on; never merely by motion.
         """
         loop = self.loop
         loop.encoder.load(self.registers)
@@ -113,12 +113,12 @@ class Firmware:
         loop.start_at(counts)
 
     def control(self, now: float, dt: float) -> None:
-        """Do one step of the control loop; needed while `busy`."""
+        """Run one step of the control loop; needed while `busy`."""
         if self.driving:
             self.loop.update(now, dt)
 
     def watch(self, now: float, dt: float, heard: float) -> None:
-        """Look after watchdog and health, every now and then; `heard` is the last instruction."""
+        """Check watchdog and health, periodically; `heard` is the last instruction's time, s."""
         if not self.powered:
             return
         timeout = self.registers.memory[98]
@@ -130,11 +130,11 @@ class Firmware:
             self.protect(now)
 
     def _trip(self, now: float) -> None:
-        """Stop as the bus watchdog does: hold here, brake, or in a mode without a loop let go.
+        """Trip the bus watchdog: hold here, brake, or, in a mode without a loop, release.
 
-        The motor stays on in position and velocity mode. The manual, Bus Watchdog(98), only says
-        "stop" (without a profile) and that goals are refused; what that is in each mode say
-        crane_x7_ros pull request 11 and DynamixelSDK issue 584.
+        The motor stays on in position and velocity mode. The manual, Bus Watchdog(98), only states
+        that the servo stops (without a profile) and that goals are refused; the behaviour in each
+        mode is from crane_x7_ros pull request 11 and DynamixelSDK issue 584.
         """
         self.registers.set("bus_watchdog", -1)
         for name in ("profile_acceleration", "profile_velocity"):
@@ -149,13 +149,13 @@ class Firmware:
         self.loop.release()
 
     def protect(self, now: float) -> None:
-        """Show hardware errors, and let go where Shutdown says so."""
+        """Set the hardware error register, and switch the torque off if Shutdown demands it."""
         self.registers.set("hardware_error_status", self.health.errors)
         if self._shut and self.torque_on:
             self._switch(False, now)
 
     def set_supply(self, volts: float, now: float) -> None:
-        """Change the supply voltage; at 0 V the servo is off and starts again later."""
+        """Change the supply voltage, V; at 0 V the servo is off, and boots when powered again."""
         was, self.powered = self.powered, volts > 0.0
         self.loop.supply = volts
         if self.powered and not was:
@@ -166,7 +166,7 @@ class Firmware:
             self.loop.update(now)
 
     def veto(self, writes: list[tuple[Item, int]]) -> int:
-        """Return the error of values that other registers forbid."""
+        """Return the error of a write whose values other registers forbid, or OK."""
         for item, value in writes:
             error = self._forbidden(item.name, value)
             if error:
@@ -198,7 +198,7 @@ class Firmware:
         return OK
 
     def written(self, name: str, value: int, now: float) -> None:
-        """Act on one register that has just been written."""
+        """Apply the effect of one register that has just been written."""
         if name in GOALS:
             self._new_goal(name, value, now)
         elif name == "torque_enable":
@@ -214,7 +214,7 @@ class Firmware:
         if not self.torque_on and self.registers.get("drive_mode") & TORQUE_BY_GOAL:
             self._switch(True, now)
             self.registers.set(name, value)
-        if self.stopped:  # by the watchdog, and cleared since
+        if self.stopped:  # by the watchdog, whose register has been cleared since
             self.stopped = False
             self.hold_here()
             self.registers.set(name, value)
@@ -225,7 +225,7 @@ class Firmware:
             self.loop.update(now)
 
     def _switch(self, on: bool, now: float) -> None:
-        """Switch the torque; on, the goal becomes the present position."""
+        """Switch the torque; when on, the goal becomes the present position."""
         same = on and self._on and (not self.stopped or self.registers.memory[98] == TRIPPED)
         self._on = on
         self.registers.set("torque_enable", int(on))
@@ -239,11 +239,11 @@ class Firmware:
             self.loop.release()
 
     def _change_mode(self) -> None:
-        """Reset gains and goals to what suits the mode, and forget the turns.
+        """Reset gains and goals to the defaults of the mode, and forget the turns.
 
-        The e-Manual, Operating Mode(11), makes no exception of the modes in which Goal PWM or Goal
-        Current are the goal: there a motor runs as soon as torque comes on, unless its host has
-        written a goal before.
+        The e-Manual, Operating Mode(11), makes no exception for the modes in which Goal PWM or Goal
+        Current is the goal: there the motor runs as soon as torque is switched on, unless the host
+        has written a goal before.
         """
         registers, mode = self.registers, self.registers.get("operating_mode")
         registers.reset(

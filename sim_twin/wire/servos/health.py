@@ -1,6 +1,6 @@
-"""What makes an X-series servo protect itself: supply, heat, overload, and injected faults.
+"""Protection of an X-series servo: supply voltage, heat, overload, and injected faults.
 
-How hot a servo gets and how long an overload may last stand in no manual; the constants here are
+No manual states how hot a servo gets and how long an overload may last. The constants here are
 assumptions of the right order: a stalled XM430 overheats within about a minute.
 """
 
@@ -14,25 +14,25 @@ INPUT_VOLTAGE, OVERHEATING, ENCODER, ELECTRICAL, OVERLOAD = 0x01, 0x04, 0x08, 0x
 AMBIENT = 25.0  # degrees C
 HEAT_CAPACITY = 20.0  # J/K
 HEAT_RESISTANCE = 5.0  # K/W
-OVERLOAD_LEVEL = 0.8  # of the stall torque at the present supply
+OVERLOAD_LEVEL = 0.8  # share of the stall torque at the present supply
 OVERLOAD_TIME = 1.0  # s
 
 
 def warmed(temperature: float, current: float, resistance: float, dt: float) -> float:
-    """Return the temperature of a motor after `dt` s with a current, degrees C."""
+    """Return the temperature of a motor after `dt` s at a current in A, degrees C."""
     heat = current * current * resistance - (temperature - AMBIENT) / HEAT_RESISTANCE
     return temperature + dt * heat / HEAT_CAPACITY
 
 
 @dataclass
 class Health:
-    """Watches one servo.
+    """Monitors one servo.
 
     Attributes:
         loop: The servo's control loop: supply, torque, limits.
-        temperature: Of the motor, degrees C.
+        temperature: Temperature of the motor, degrees C.
         errors: Bits of the Hardware Error Status; they stay until a reboot.
-        floor: Heat from outside, degrees C: the motor is no cooler.
+        floor: Lowest temperature of the motor, set by a heat fault, degrees C.
     """
 
     loop: ControlLoop
@@ -42,21 +42,21 @@ class Health:
     _overloaded: float = field(default=0.0, repr=False)
 
     def reset(self) -> None:
-        """Forget the errors (reboot). Heat stays."""
+        """Clear the errors, as a reboot does; the temperature stays."""
         self.errors = 0
         self._overloaded = 0.0
 
     def inject(self, errors: int) -> None:
-        """Raise error bits, as a broken encoder or an electrical shock would."""
+        """Set error bits, as a broken encoder or an electrical shock would."""
         self.errors |= errors
 
     def heat(self, degrees: float) -> None:
-        """Be this hot at least, degrees C, from now on; -inf: cool again."""
+        """Keep the motor at least this hot, degrees C, from now on; -inf lets it cool again."""
         self.floor = degrees
         self.temperature = max(self.temperature, degrees)
 
     def watch(self, dt: float, torque: float, driving: bool) -> None:
-        """Look at the servo again after `dt` s; `torque` N m is what its motor makes."""
+        """Update temperature and errors after `dt` s; `torque` is the motor's, N m."""
         loop = self.loop
         get = loop.registers.get
         torque = abs(torque) if driving else 0.0

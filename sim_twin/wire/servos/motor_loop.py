@@ -1,8 +1,8 @@
-"""The control loop of a protocol 1 servo: goals in counts to what its shaft is told.
+"""The control loop of a protocol 1 servo: from goals in counts to commands to the shaft.
 
-``duty = clip(gain (goal - angle), -most, most)``, and the goal runs to where it was sent along a
-profile. The speed loop is the same with a goal that keeps running, never further ahead than it
-takes to saturate. I and D gains, dead bands and punch are kept in registers but have no effect.
+``duty = clip(gain (goal - angle), -most, most)``, where the goal follows a profile. The speed loop
+is the same with a continuously moving goal, at most as far ahead as saturates the duty. I and D
+gains, dead bands and punch are stored in registers but have no effect.
 """
 
 import math
@@ -17,14 +17,14 @@ class MotorLoop:
 
     Attributes:
         servo: The servo's data sheet.
-        shaft: What is driven.
+        shaft: The shaft that is driven.
         supply: Voltage at the servo, V.
-        per_rad: Counts of one rad.
-        centre: Counts where the shaft is at 0 rad.
+        per_rad: Counts per rad.
+        centre: Counts at shaft angle 0.
         gain: Duty per rad of error.
         most: Largest duty.
         torque: Largest torque, N m.
-        busy: Whether `update` has to be called at every step.
+        busy: Whether `update` must be called at every step.
         position: Angle at the last `sample`, rad.
         velocity: Speed at the last `sample`, rad/s.
         effort: Torque of the motor at the last `sample`, N m.
@@ -42,46 +42,46 @@ class MotorLoop:
         self.position = self.velocity = self.effort = 0.0
         self._profile = Profile(0.0, 0.0, 0.0, 0.0, 0.0)
         self._since = -math.inf
-        self._running: float | None = None  # angle of a goal that keeps running
+        self._running: float | None = None  # angle of a continuously moving goal, rad
 
     def counts(self, angle: float) -> float:
         """Return the counts at `angle` rad, before rounding."""
         return self.centre + angle * self.per_rad
 
     def sample(self) -> None:
-        """Look at the shaft now."""
+        """Sample position, velocity and torque of the shaft."""
         shaft = self.shaft
         self.position, self.velocity, self.effort = shaft.position, shaft.velocity, shaft.torque
 
     def hold_here(self) -> None:
-        """Make the present position the goal, reached long ago."""
+        """Make the present position the goal, with the profile finished."""
         here = self.counts(self.shaft.position)
         self._profile = Profile(here, 0.0, here, 0.0, 0.0)
         self._since, self._running = -math.inf, None
 
     def goal(self, now: float) -> tuple[float, float]:
-        """Return where the profile is, counts, and how fast it is, counts/s."""
+        """Return the profile's position, counts, and velocity, counts/s."""
         if self._running is not None:
             return self.counts(self._running), self._profile.at(now - self._since)[0]
         return self._profile.at(now - self._since)
 
     def moving(self, now: float) -> bool:
-        """Whether the profile has still to go."""
+        """Return whether the profile is still in progress."""
         return now - self._since < self._profile.duration
 
     def move(self, now: float, goal: float, speed: float, rise: float) -> None:
-        """Send the goal to `goal` counts at `speed` counts/s, 0: at once; `rise` counts/s2."""
+        """Start a profile to `goal` counts at `speed` counts/s (0: a step) and `rise` counts/s2."""
         position, velocity = self.goal(now)
         self._profile = Profile(position, velocity if rise else 0.0, goal, speed, rise)
         self._since, self._running = now, None
 
     def move_in(self, now: float, goal: float, seconds: float) -> None:
-        """Send the goal to `goal` counts within some seconds."""
+        """Start a profile that reaches `goal` counts in `seconds`."""
         self._profile = Profile.timed(self.goal(now)[0], goal, seconds, 0.0)
         self._since, self._running = now, None
 
     def run(self, now: float, speed: float, rise: float) -> None:
-        """Let the goal run on at `speed` counts/s, reached at `rise` counts/s2 (0: at once)."""
+        """Let the goal move on at `speed` counts/s, reached at `rise` counts/s2 (0: at once)."""
         present = self.goal(now)[1]
         if self._running is None:
             self._running = self.shaft.position
@@ -89,17 +89,17 @@ class MotorLoop:
         self._since = now
 
     def press(self, duty: float) -> None:
-        """Put a share of the supply on the motor, whatever the position."""
+        """Apply a share of the supply voltage to the motor, regardless of the position."""
         self.busy = False
         self.shaft.push(max(-self.most, min(self.most, duty)) * self.supply)
 
     def release(self) -> None:
-        """Let the shaft go."""
+        """Switch the motor off: the shaft turns freely."""
         self.busy, self._running = False, None
         self.shaft.off()
 
     def update(self, now: float, dt: float = 0.0) -> None:
-        """Tell the shaft what to do now; `dt` s have passed since the last step."""
+        """Command the shaft for now; `dt` s have passed since the last step."""
         if self._running is not None:
             self._run_on(now, dt)
             target = self._running
@@ -110,23 +110,23 @@ class MotorLoop:
         self.shaft.drive(target, stiffness, self.most * self.supply, self.torque)
 
     def duty(self) -> float:
-        """Return the duty that makes the torque of the last sample at its speed."""
+        """Return the duty that yields the last sample's torque at its speed."""
         if self.supply <= 0.0:
             return 0.0
         volts = self.effort * self.resistance / self.constant + self.constant * self.velocity
         return max(-1.0, min(1.0, volts / self.supply))
 
     def amperes(self) -> float:
-        """Return the current of the last sample, A; below 0 against the counts."""
+        """Return the current of the last sample, A; negative against the counts."""
         return self.effort / (self.servo.torque_constant or self.constant * TORQUE_SHARE)
 
     def strain(self) -> float:
-        """Return the torque of the last sample as a share of what stalls the motor now."""
+        """Return the last sample's torque as a share of the present stall torque."""
         stall = self.constant / self.resistance * self.supply
         return abs(self.effort) / stall if stall > 0.0 else 0.0
 
     def _run_on(self, now: float, dt: float) -> None:
-        """Move a running goal by `dt` s."""
+        """Advance a continuously moving goal by `dt` s."""
         angle = self.shaft.position
         lead = self.most / self.gain if self.gain > 0.0 else 0.0
         speed = self._profile.at(now - self._since)[0] / self.per_rad
@@ -135,4 +135,4 @@ class MotorLoop:
 
 
 TORQUE_SHARE = 0.43
-"""Torque constant over K where no sheet prints a stall current: that of the STS3215 at 12 V."""
+"""Torque constant over K where no data sheet states a stall current: the 12 V STS3215's."""

@@ -1,8 +1,8 @@
-"""The errors of an X servo that speaks protocol 1, whose error byte has a bit for each.
+"""The protocol 1 error byte of an X servo, which has one bit for each kind of error.
 
-The bits are those of the e-Manual's page on protocol 1. Which of them an X sets for what it refuses
-stands in no manual; what is here goes by the bits' names. Voltage, heat and overload have the same
-bits in Hardware Error Status(70).
+The bits are those of the e-Manual's page on protocol 1. No manual states which of them an X sets
+for what it refuses; the mapping here follows the bits' names. Voltage, heat and overload have the
+same bits in Hardware Error Status(70).
 """
 
 from collections.abc import Iterable
@@ -32,12 +32,12 @@ _BITS: Final = {
 
 
 def old_error(error: int, hardware: int, names: Iterable[str] = ()) -> int:
-    """Return the error byte in protocol 1.
+    """Return the error byte of protocol 1.
 
     Args:
         error: Error of protocol 2.
         hardware: Hardware Error Status.
-        names: Registers that were to be written.
+        names: Registers that the instruction would have written.
     """
     refused = ANGLE_LIMIT if error == BAD_LIMIT and "goal_position" in names else _BITS[error]
     return hardware & SHOWN | refused

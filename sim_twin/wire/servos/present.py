@@ -1,4 +1,4 @@
-"""The registers that change by themselves, 120 to 146: what a servo says about its shaft."""
+"""The registers that change by themselves, 120 to 146: the present state of the shaft."""
 
 import struct
 
@@ -6,8 +6,8 @@ from windup.sim_twin.wire.servos.control_loop import POSITION_MODES, ControlLoop
 from windup.sim_twin.wire.servos.x_series import PRESENT, PWM_FULL, VELOCITY, VELOCITY_UNIT
 
 IN_POSITION, IN_PROGRESS, NOT_FOLLOWING = 0x01, 0x02, 0x08  # bits of Moving Status
-TICKS = 0x7FFF  # of Realtime Tick, ms, which begins anew behind that
-CLOSE = 20  # counts; nearer than this counts as arrived
+TICKS = 0x7FFF  # largest value of Realtime Tick, ms, after which it restarts at 0
+CLOSE = 20  # counts; a smaller error counts as arrived
 
 _MOTION = struct.Struct("<hii")  # at 126: current or load, velocity, position
 _BEFORE = struct.Struct("<HBBh")  # at 120: tick, moving, moving status, PWM
@@ -16,10 +16,10 @@ MOTION = range(126, 136)
 
 
 class Present:
-    """Samples a shaft, and writes the sample into the registers when somebody reads them.
+    """Samples a shaft, and writes the sample into the registers when they are read.
 
     Attributes:
-        booted: When the servo started, s; Realtime Tick counts from there.
+        booted: Time at which the servo booted, s; Realtime Tick counts from there.
     """
 
     def __init__(self, loop: ControlLoop) -> None:
@@ -27,7 +27,7 @@ class Present:
         self.position = self.velocity = self.torque = 0.0
 
     def sample(self) -> None:
-        """Look at the shaft now."""
+        """Sample position, velocity and torque of the shaft."""
         shaft = self.loop.shaft
         self.position, self.velocity, self.torque = shaft.position, shaft.velocity, shaft.torque
 
@@ -43,7 +43,7 @@ class Present:
         return abs(self.velocity) > threshold
 
     def write(self, now: float, driving: bool, temperature: float, motion: bool) -> None:
-        """Write the last sample into the registers; only 126 to 135 where `motion` is enough."""
+        """Write the last sample into the registers; with `motion`, only into 126 to 135."""
         loop = self.loop
         memory, sign, counts = loop.registers.memory, loop.encoder.sign, self.counts
         speed = round(sign * self.velocity / VELOCITY_UNIT)
@@ -59,7 +59,7 @@ class Present:
         _BEHIND.pack_into(memory, MOTION.stop, round(rate), round(trajectory), volts, warmth)
 
     def _pwm(self, driving: bool) -> int:
-        """Return the PWM that makes the present torque at the present speed."""
+        """Return the PWM that yields the present torque at the present speed."""
         loop = self.loop
         if not driving or loop.supply <= 0.0:
             return 0
@@ -68,7 +68,7 @@ class Present:
         return round(loop.encoder.sign * duty * PWM_FULL)
 
     def _effort(self, driving: bool) -> int:
-        """Return register 126: current, or where none is sensed the load, from the PWM."""
+        """Return register 126: the current, or, without a sensor, the load from the PWM."""
         unit = self.loop.torque_unit
         if unit is None:
             return round(self._pwm(driving) * 1000 / PWM_FULL)

@@ -1,4 +1,4 @@
-"""The profile of a goal: how a servo gets from where it is to where it has to be."""
+"""The profile of a goal: the trajectory from the present position to the goal."""
 
 import math
 from typing import NamedTuple
@@ -7,13 +7,13 @@ STEP, RECTANGULAR, TRIANGULAR, TRAPEZOIDAL = 0, 1, 2, 3
 
 
 class Phase(NamedTuple):
-    """A piece of constant acceleration.
+    """A phase of constant acceleration.
 
     Attributes:
-        seconds: How long, s.
-        position: At its start.
-        velocity: At its start, a second.
-        acceleration: A second squared.
+        seconds: Duration, s.
+        position: Position at its start, in the profile's unit.
+        velocity: Velocity at its start, unit/s.
+        acceleration: Acceleration, unit/s2.
     """
 
     seconds: float
@@ -23,19 +23,19 @@ class Phase(NamedTuple):
 
 
 class Profile:
-    """A trapezoid of velocity from a moving start to a goal at rest, in any unit of length.
+    """A trapezoidal velocity profile from a moving start to a goal at rest, in any unit.
 
     Args:
-        start: Where it begins.
-        velocity: Velocity there.
-        goal: Where it ends.
-        top: Largest velocity; 0 means none, and the goal is a step.
-        acceleration: Largest acceleration; 0 means none, and the profile is a rectangle.
+        start: Initial position.
+        velocity: Initial velocity.
+        goal: Final position.
+        top: Largest velocity; 0 means unlimited: the goal is a step.
+        acceleration: Largest acceleration; 0 means unlimited: the profile is a rectangle.
 
     Attributes:
-        goal: Where it ends.
+        goal: Final position.
         kind: STEP, RECTANGULAR, TRIANGULAR or TRAPEZOIDAL, as in Moving Status.
-        duration: How long it takes, s.
+        duration: Duration, s.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class Profile:
 
     @classmethod
     def timed(cls, start: float, goal: float, seconds: float, rise: float) -> "Profile":
-        """Return the profile that takes `seconds`, `rise` of them to reach its top velocity."""
+        """Return a profile of duration `seconds` that reaches its top velocity in `rise` s."""
         rise = min(rise, 0.5 * seconds)
         top = abs(goal - start) / (seconds - rise) if seconds > 0.0 else 0.0
         return cls(start, 0.0, goal, top, top / rise if rise > 0.0 else 0.0)

@@ -13,7 +13,7 @@ BAD_LIMIT: Final = 0x06
 BAD_ACCESS: Final = 0x07
 
 MASKS: Final = {1: 0xFF, 2: 0xFFFF, 4: 0xFFFFFFFF}
-EEPROM_END = 64  # items below survive a reboot
+EEPROM_END = 64  # items below this address survive a reboot
 
 
 class Item(NamedTuple):
@@ -44,12 +44,12 @@ class Item(NamedTuple):
 
     @property
     def end(self) -> int:
-        """The address behind the item."""
+        """The address after the item."""
         return self.address + self.size
 
 
 class Indirect(NamedTuple):
-    """A run of indirect addresses (two bytes each) and the data bytes they stand for."""
+    """A run of indirect addresses (two bytes each) and the data bytes that they map."""
 
     address: int
     data: int
@@ -59,8 +59,8 @@ class Indirect(NamedTuple):
 class RegisterFile:
     """Bytes of one control table, with the rules by which a host may read and write them.
 
-    A write that covers several items is checked as a whole and done as a whole. Gaps between
-    items read as zero. An indirect data byte inherits everything from the byte it points to.
+    A write that covers several items is checked as a whole and executed as a whole. Gaps between
+    items read as zero. An indirect data byte has the properties of the byte that it points to.
     """
 
     def __init__(self, items: Sequence[Item], indirect: Sequence[Indirect] = ()) -> None:
@@ -91,18 +91,18 @@ class RegisterFile:
         self._values: dict[str, int] = {}
         self.reset(self.items.values())
 
-    # What the firmware does with it: no rules.
+    # Access by the firmware: without rules.
 
     def get(self, name: str) -> int:
         """Return the value that an item was last set to."""
         return self._values[name]
 
     def set(self, name: str, value: int) -> None:
-        """Give an item a value, whatever a host may do with it; wraps around its size."""
+        """Set an item regardless of access rights and limits; the bytes wrap around its size."""
         self._store(self.items[name], value)
 
     def reset(self, items: Iterable[Item]) -> None:
-        """Give some items their defaults."""
+        """Reset items to their defaults."""
         for item in items:
             self.set(item.name, item.default)
         self._forget()
@@ -115,10 +115,10 @@ class RegisterFile:
         """Return the items that a reboot resets."""
         return [item for item in self.items.values() if item.address >= EEPROM_END]
 
-    # What a host may do with it.
+    # Access by the host: with rules.
 
     def read(self, address: int, count: int) -> bytes | None:
-        """Return `count` bytes, or None where nothing is defined."""
+        """Return `count` bytes, or None if none of them is defined."""
         if count == 0 or address + count > self.size:
             return None
         route = self._route(address, count)
@@ -129,7 +129,7 @@ class RegisterFile:
         return bytes(self.memory[address : address + count])
 
     def touches(self, address: int, count: int, first: int, last: int) -> bool:
-        """Whether a read of `count` bytes reaches the addresses from `first` to `last`."""
+        """Return whether a read of `count` bytes covers addresses from `first` to `last`."""
         route = self._route(address, count)
         if route is not None:
             return any(first <= place <= last for place in route)
@@ -139,9 +139,9 @@ class RegisterFile:
         """Return the error of writing `data`, and the items with the values they would get.
 
         Args:
-            address: Where to write.
-            data: What to write.
-            locked: Torque is on, which locks the EEPROM.
+            address: First address.
+            data: Bytes to write.
+            locked: Whether torque is on, which locks the EEPROM.
         """
         key = (address, len(data), locked)
         plan = self._plans.get(key)
@@ -162,7 +162,7 @@ class RegisterFile:
         return OK, writes
 
     def _plan(self, address: int, count: int, locked: bool) -> tuple[Item, ...] | int:
-        """Return the items that a write covers, or the error that it is."""
+        """Return the items that a write covers, or its error."""
         if count == 0 or address + count > self.size:
             return BAD_ACCESS
         places = self._route(address, count) or tuple(range(address, address + count))
@@ -181,14 +181,14 @@ class RegisterFile:
         return tuple(plan)
 
     def commit(self, writes: Iterable[tuple[Item, int]]) -> None:
-        """Do writes that `check` has let through."""
+        """Execute writes that `check` has accepted."""
         for item, value in writes:
             self._store(item, value)
             if item.address in self._slot_addresses:
                 self._forget()
 
     def _store(self, item: Item, value: int) -> None:
-        """Keep a value twice: as bytes for the host, as a number for the firmware."""
+        """Store a value twice: as bytes for the host, as a number for the firmware."""
         address, size = item.address, item.size
         wrapped = value & MASKS[size]
         self.memory[address : address + size] = wrapped.to_bytes(size, "little")
@@ -199,7 +199,7 @@ class RegisterFile:
         self._plans.clear()
 
     def _route(self, address: int, count: int) -> tuple[int, ...] | None:
-        """Return the true places of `count` bytes, or None where they are what they seem."""
+        """Return the addresses that `count` bytes map to, or None if none is indirect."""
         key = (address, count)
         try:
             return self._routes[key]

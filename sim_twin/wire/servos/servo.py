@@ -1,4 +1,4 @@
-"""An X-series servo on a bus: who it is, and what the instructions of the protocol do to it."""
+"""An X-series servo on a bus: its identity, and its execution of instructions."""
 
 from collections.abc import Sequence
 
@@ -19,20 +19,20 @@ from windup.sim_twin.wire.servos.register_file import (
 from windup.sim_twin.wire.servos.x_series import BAUD_RATES, PRESENT, Model
 from windup.sim_twin.wire.shafts.shaft import Shaft
 
-BOOT_SECONDS = 0.3  # silence after a reboot, assumed
+BOOT_SECONDS = 0.3  # time without answers after a reboot, s, assumed
 
 
 class Servo:
-    """One servo. The bus calls it with instructions, the world with time.
+    """One servo. The bus calls it to execute instructions, the world to advance time.
 
     Args:
-        model: Its control table.
-        servo: Its data sheet.
-        shaft: What it drives.
-        identifier: Its id.
-        baud: Its baud rate.
-        supply: Voltage, V.
-        **registers: Other registers that differ from the factory's, by name.
+        model: Description of its control table.
+        servo: Data sheet.
+        shaft: The shaft that it drives.
+        identifier: Bus id.
+        baud: Baud rate.
+        supply: Supply voltage, V.
+        **registers: Other registers that differ from the factory defaults, by name.
     """
 
     def __init__(
@@ -57,62 +57,62 @@ class Servo:
 
     @property
     def name(self) -> str:
-        """What people call it."""
+        """Name for messages."""
         return f"{self.model.name} {self.identifier}"
 
     @property
     def identifier(self) -> int:
-        """Its id."""
+        """Bus id."""
         return self.registers.memory[7]
 
     @property
     def shadow(self) -> int:
-        """A second id, on whose instructions it acts without an answer; 253 and up: none."""
+        """Secondary id, whose instructions it executes without answering; 253 and up: none."""
         return self.registers.memory[12]
 
     @property
     def protocol(self) -> int:
-        """The protocol that it speaks: a new one at once, as with id and baud rate (assumed).
+        """Protocol version; a new one is effective at once, as with id and baud rate (assumed).
 
-        The remote controls' protocols of the X330 are not emulated: without their signal at start
-        such a servo speaks protocol 2 (e-Manual of the XL330, Protocol Type).
+        The remote control protocols of the X330 are not emulated: without their signal at start-up
+        such a servo uses protocol 2 (e-Manual of the XL330, Protocol Type).
         """
         return 1 if self.registers.memory[13] == 1 else 2
 
     @property
     def baud(self) -> int:
-        """Its baud rate."""
+        """Baud rate."""
         return BAUD_RATES[self.registers.memory[8]]
 
     @property
     def return_delay(self) -> float:
-        """From the end of an instruction to its answer, s."""
+        """Delay from the end of an instruction to the status packet, s."""
         return self.registers.memory[9] * 2e-6
 
     @property
     def return_level(self) -> int:
-        """What it answers: 0 pings, 1 reads as well, 2 everything."""
+        """Status return level: 0 answers pings, 1 also reads, 2 all instructions."""
         return self.registers.memory[68]
 
     @property
     def fast(self) -> bool:
-        """Whether its firmware knows fast sync and fast bulk read."""
+        """Whether its firmware supports fast sync and fast bulk read."""
         since = self.model.fast_since
         return since is not None and self.registers.get("firmware_version") >= since
 
     @property
     def busy(self) -> bool:
-        """Whether `control` has to be called at every step."""
+        """Whether `control` must be called at every step."""
         return self.firmware.loop.busy
 
     @property
     def driving(self) -> bool:
-        """Whether it really drives its motor now."""
+        """Whether it drives its motor now."""
         return self.firmware.driving
 
     @property
     def supply(self) -> float:
-        """Its supply voltage, V."""
+        """Supply voltage, V."""
         return self.firmware.loop.supply
 
     def listens(self, now: float) -> bool:
@@ -129,7 +129,7 @@ class Servo:
         self.firmware.present.sample()
 
     def read(self, address: int, count: int, now: float) -> tuple[int, bytes]:
-        """Return the error byte and the data of a read."""
+        """Return the error byte and the data of a read instruction."""
         if self.registers.touches(address, count, *PRESENT):
             firmware = self.firmware
             motion = address >= MOTION.start and address + count <= MOTION.stop
@@ -140,19 +140,19 @@ class Servo:
         return self._said(OK), data
 
     def write(self, address: int, data: bytes, now: float) -> int:
-        """Do a write and return the error byte."""
+        """Execute a write and return the error byte."""
         error, writes = self.registers.check(address, data, self.firmware.torque_on)
         error = error or self.firmware.veto(writes)
         if error:
             return self._said(error, writes)
-        said = self._said(OK)  # in the protocol in which it was told
+        said = self._said(OK)  # before a write that may change the protocol
         self.registers.commit(writes)
         for item, value in writes:
             self.firmware.written(item.name, value, now)
         return said
 
     def register_write(self, address: int, data: bytes) -> int:
-        """Keep a write for `action` and return the error byte."""
+        """Store a write for `action` and return the error byte."""
         error, writes = self.registers.check(address, data, self.firmware.torque_on)
         error = error or self.firmware.veto(writes)
         if not error:
@@ -161,7 +161,7 @@ class Servo:
         return self._said(error, writes)
 
     def action(self, now: float) -> int:
-        """Do the write that is kept and return the error byte."""
+        """Execute the stored write and return the error byte."""
         if self._registered is None:
             return self._said(BAD_INSTRUCTION)
         address, data = self._registered
@@ -170,13 +170,13 @@ class Servo:
         return self.write(address, data, now)
 
     def reboot(self, now: float) -> None:
-        """Start again: RAM and errors are reset, torque is off."""
+        """Reboot: RAM and errors are reset, torque is off."""
         self._ready = now + BOOT_SECONDS
         self._registered = None
         self.firmware.restart(now)
 
     def factory_reset(self, option: int, broadcast: bool, now: float) -> int:
-        """Reset everything (0xFF), but the id (1), but id and baud rate (2); then reboot."""
+        """Reset everything (0xFF), all but id (1), or all but id and baud rate (2); then reboot."""
         keep = {0xFF: (), 0x01: ("id",), 0x02: ("id", "baud_rate")}.get(option)
         if keep is None or (broadcast and option == 0xFF):
             return self._said(BAD_RANGE)
@@ -188,7 +188,7 @@ class Servo:
         return OK
 
     def clear(self, parameters: bytes) -> int:
-        """Forget the turns and return the error byte; not while moving."""
+        """Forget the turns and return the error byte; refused while moving."""
         if parameters != b"\x01DXL\x22":
             return self._said(BAD_RANGE)
         self.sample()
@@ -200,7 +200,7 @@ class Servo:
     def backup(self, parameters: bytes, now: float) -> int:
         """Store the control table, or restore its EEPROM and reboot; return the error byte.
 
-        What a restore without a backup answers stands in no manual: Result Fail, assumed.
+        No manual states the answer to a restore without a backup: Result Fail is assumed.
         """
         firmware, backup = self.firmware, self.firmware.backup
         if not backup.known:
@@ -217,30 +217,30 @@ class Servo:
         return self._said(OK)
 
     def overload(self, now: float) -> None:
-        """Take itself for overloaded."""
+        """Enter the overload state."""
         self.firmware.health.inject(OVERLOAD)
         self.firmware.protect(now)
 
     def heat(self, degrees: float) -> None:
-        """Have a motor that is this hot, degrees C, and stays so; -inf: it may cool again."""
+        """Keep the motor at least this hot, degrees C; -inf lets it cool again."""
         self.firmware.health.heat(degrees)
 
     def control(self, now: float, dt: float) -> None:
-        """Do one step of the control loop; needed while `busy`."""
+        """Run one step of the control loop; needed while `busy`."""
         self.firmware.control(now, dt)
 
     def watch(self, now: float, dt: float, heard: float) -> None:
-        """Look after watchdog and health, every now and then; `heard` is the last instruction."""
+        """Check watchdog and health, periodically; `heard` is the last instruction's time, s."""
         self.firmware.watch(now, dt, heard)
 
     def set_supply(self, volts: float, now: float) -> None:
-        """Change the supply voltage; at 0 V the servo is off and boots when power is back."""
+        """Change the supply voltage, V; at 0 V the servo is off, and boots when powered again."""
         if volts > 0.0 and not self.firmware.powered:
             self._ready = now + BOOT_SECONDS
         self.firmware.set_supply(volts, now)
 
     def _said(self, error: int, writes: Sequence[tuple[Item, int]] = ()) -> int:
-        """Return the error byte of an answer, as its protocol has it."""
+        """Return the error byte of a status packet, in the present protocol."""
         firmware = self.firmware
         if self.protocol == 1:
             return old_error(error, firmware.health.errors, {item.name for item, _ in writes})

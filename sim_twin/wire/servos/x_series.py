@@ -1,4 +1,4 @@
-"""Control tables of the Dynamixel X series: one line a register, one record a model.
+"""Control tables of the Dynamixel X series: one line per register, one record per model.
 
 From the e-Manual of each model (emanual.robotis.com/docs/en/dxl/x/).
 """
@@ -10,12 +10,12 @@ from typing import Final
 from windup.hal.errors import UnknownNameError
 from windup.sim_twin.wire.servos.register_file import Indirect, Item, RegisterFile
 
-COUNTS: Final = 4096  # a turn
+COUNTS: Final = 4096  # per turn
 CENTRE: Final = 2048  # counts at horn angle 0
 COUNTS_PER_RAD: Final = COUNTS / (2.0 * math.pi)
 VELOCITY_UNIT: Final = 0.229 * 2.0 * math.pi / 60.0  # rad/s
 ACCELERATION_UNIT: Final = 214.577 * 2.0 * math.pi / 3600.0  # rad/s2 (rev/min2)
-PWM_FULL: Final = 885  # the whole supply voltage
+PWM_FULL: Final = 885  # PWM units of the whole supply voltage
 WATCHDOG_UNIT: Final = 0.020  # s
 
 BAUD_RATES: Final = (9600, 57600, 115200, 1_000_000, 2_000_000, 3_000_000, 4_000_000, 4_500_000)
@@ -90,7 +90,7 @@ REGISTERS: Final = (
     Item(154, 2, "external_port_data_2", "RW", 0, 0, 65535),
     Item(156, 2, "external_port_data_3", "RW", 0, 0, 65535),
 )
-PRESENT = (120, 146)  # the addresses that change by themselves
+PRESENT = (120, 146)  # first and last address that change by themselves
 
 _PORTS = tuple(f"external_port_{what}_{k}" for what in ("mode", "data") for k in (1, 2, 3))
 _STARTUP = ("startup_configuration", "backup_ready")
@@ -105,19 +105,19 @@ Limits = tuple[int, int, int]  # default, low, high
 
 @dataclass(frozen=True)
 class Model:
-    """What tells one model of the X series from another.
+    """Description of one model of the X series.
 
     Attributes:
-        name: As on the data sheet.
-        number: Model number register.
-        modes: Operating modes it has.
-        current_unit: Amperes a count of register 126, or None where that is load in 0.1 %.
-        lacks: Registers it does not have.
-        changed: Register to (default, low, high) where they differ from `REGISTERS`.
+        name: Name on the data sheet.
+        number: Model number.
+        modes: Operating modes that it supports.
+        current_unit: Unit of register 126, A, or None where that is the load in 0.1 %.
+        lacks: Registers that it does not have.
+        changed: (default, low, high) of the registers that differ from `REGISTERS`.
         indirect: Its indirect addresses.
-        firmware: Version it ships with.
-        fast_since: Firmware from which it knows fast sync read, or None.
-        bauds: Number of baud codes.
+        firmware: Firmware version that it ships with.
+        fast_since: First firmware version with fast sync read, or None.
+        bauds: Number of baud rate codes.
     """
 
     name: str
@@ -132,7 +132,7 @@ class Model:
     bauds: int = 8
 
     def registers(self) -> RegisterFile:
-        """Return a new control table with the factory's values."""
+        """Return a new control table with the factory defaults."""
         changed = {
             **self.changed,
             "model_number": (self.number, 0, 0),
@@ -179,7 +179,7 @@ def _x330(number: int, name: str, milliamps: int, changed: dict[str, Limits]) ->
 
 
 def _load(number: int, name: str, changed: dict[str, Limits], twin: bool = False) -> Model:
-    """Return a model without current sensing; `twin` has two axes in one housing."""
+    """Return a model without current sensing; a `twin` has two axes in one housing."""
     return Model(
         name, number, FOUR_MODES, None, (*_LOAD, *_STARTUP) if twin else _LOAD, changed,
         fast_since=None if twin else 45,
@@ -220,7 +220,7 @@ MODELS: Final = {
 
 
 def model(name: str) -> Model:
-    """Return the model `name`; a family's short name ("XL430") will do.
+    """Return the model `name`; a family's short name ("XL430") means its first model.
 
     Raises:
         UnknownNameError: There is no such model.

@@ -1,1 +1,1 @@
-"""The shafts that emulated servos turn: an inertia of their own, or a joint of a twin."""
+"""The shafts that emulated servos drive: plain inertias, or joints of a twin."""

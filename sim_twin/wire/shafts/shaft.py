@@ -1,4 +1,4 @@
-"""What a servo's firmware drives: the shaft at its horn."""
+"""The shaft at a servo's horn, which its firmware drives."""
 
 import math
 from typing import Protocol
@@ -9,8 +9,8 @@ from windup.hal.servos.servo_model import Motor
 class Shaft(Protocol):
     """The output shaft of one servo, with its motor; angle 0 is the middle of the encoder.
 
-    The firmware maps registers to the four ways of driving and never integrates a motor of its
-    own, so that one servo law serves the twin and the wire.
+    The firmware maps its registers to the four ways of driving and never simulates a motor itself,
+    so that the twin and the emulated bus share one servo law.
     """
 
     @property
@@ -31,27 +31,27 @@ class Shaft(Protocol):
     def drive(self, goal: float, stiffness: float, volts: float, torque: float = math.inf) -> None:
         """Hold `goal` rad by ``u = clip(stiffness R/K (goal - q), +-volts)``, within `torque` N m.
 
-        Stiffness in N m/rad, before back-EMF takes its share.
+        The stiffness, N m/rad, is that before the effect of back-EMF.
         """
         ...
 
     def push(self, volts: float) -> None:
-        """Put `volts` on the motor."""
+        """Apply `volts` V to the motor."""
         ...
 
     def pull(self, torque: float, volts: float) -> None:
-        """Make `torque` N m as far as `volts` V can."""
+        """Produce `torque` N m, as far as `volts` V suffice."""
         ...
 
     def off(self) -> None:
-        """Let go: no current flows."""
+        """Switch the motor off: no current flows."""
         ...
 
 
 class InertiaShaft:
-    """A shaft with nothing on it but an inertia and the friction of the gearbox.
+    """A shaft whose only load is its inertia and the friction of the gearbox.
 
-    ``J dw/dt = K/R (u - K w) - friction sign(w) + load``, stepped implicitly in the back-EMF.
+    ``J dw/dt = K/R (u - K w) - friction sign(w) + load``, integrated implicitly in the back-EMF.
 
     Attributes:
         position: Angle, rad.
@@ -59,8 +59,8 @@ class InertiaShaft:
         torque: Torque of the motor, N m.
         constant: K of the motor, V s/rad.
         resistance: R of the motor, ohm.
-        load: Torque from outside, N m.
-        blocked: Whether something holds the shaft still.
+        load: External torque, N m.
+        blocked: Whether the shaft is held still.
     """
 
     def __init__(self, motor: Motor, inertia: float, friction: float = 0.0) -> None:
@@ -90,11 +90,11 @@ class InertiaShaft:
         self._mode = "off"
 
     def turn(self, angle: float, rate: float) -> None:
-        """Be turned to `angle` rad by hand, at `rate` rad/s."""
+        """Set the shaft to `angle` rad and `rate` rad/s, as turned by hand."""
         self.position, self.velocity = angle, rate
 
     def step(self, dt: float) -> None:
-        """Advance by `dt` s."""
+        """Advance the simulation by `dt` s."""
         if self._mode == "off":
             stall = damping = 0.0
             if self.velocity == 0.0 and abs(self.load) <= self.friction:

@@ -2,14 +2,14 @@
 
 A servo's firmware changes the parameters of the joint's `dcmotor`; MuJoCo integrates the motor.
 The controller of a dcmotor asks for a torque, ``kp (ctrl - q) - kd dq``, and drives the voltage
-``u = R/K torque + K dq``, within ``Vmax`` (0: no limit). From that come all four ways of driving:
+``u = R/K torque + K dq``, within ``Vmax`` (0: no limit). The four ways of driving are:
 
 | | kp | kd | Vmax | ctrl |
 |---|---|---|---|---|
 | hold a goal | stiffness | K^2/R: cancels ``+ K dq`` | volts | goal |
-| put volts on | anything | K^2/R | volts | far away, so that it saturates |
-| make a torque | next to nothing | 0 | volts | torque / kp |
-| let go | 0 | 0 | none | anything: u = K dq, no current |
+| apply a voltage | anything | K^2/R | volts | far away, so that it saturates |
+| produce a torque | next to nothing | 0 | volts | torque / kp |
+| off | 0 | 0 | none | anything: u = K dq, no current |
 """
 
 import math
@@ -25,26 +25,26 @@ from windup.sim_twin.imu_errors import LowPass
 from windup.sim_twin.servo.servo_motor import KD, KP, VMAX
 from windup.sim_twin.twin import Twin
 
-FAR = 1e6  # rad
-SOFT = 1e-6  # N m/rad
+FAR = 1e6  # goal that saturates the voltage, rad
+SOFT = 1e-6  # stiffness of a commanded torque, N m/rad
 
 
 class TwinShaft:
     """The horn of the servo at one joint of a twin.
 
     Args:
-        twin: The twin; it should have no command delay of its own, the wire has one.
+        twin: The twin; its command delay should be 0, because the bus has a delay of its own.
         joint: Index of the joint.
-        mount: How the servo sits there.
+        mount: Mounting of the servo at the joint.
 
     Attributes:
         joint: Index of the joint.
-        miswired: Its motor turns the other way: what should bring it to its goal drives it away.
+        miswired: Whether the motor turns the wrong way and drives the joint away from its goal.
     """
 
     def __init__(self, twin: Twin, joint: int, mount: ServoMount) -> None:
         self._data, self.joint = twin.data, joint
-        self._turn = mount.sign * mount.ratio  # rad of the horn for one of the joint
+        self._turn = mount.sign * mount.ratio  # horn angle per joint angle
         per_rad = mount.model.counts_per_rev / (2.0 * math.pi)
         self._zero = (mount.zero - mount.model.middle) / per_rad
         self._prm = twin.model.actuator_gainprm[joint]
@@ -114,22 +114,22 @@ class TwinShaft:
 
 
 NOISE = 0.02
-"""Of an accelerometer, m/s2: an MPU-9250 has 0.3 mg/rtHz (datasheet, table 2), over 50 Hz. Without
-any, a robot that stands still would look as if its IMU hung."""
+"""Noise of an accelerometer, m/s2: an MPU-9250 has 0.3 mg/rtHz (datasheet, table 2), over 50 Hz.
+Without noise, the IMU of a robot that stands still would look frozen."""
 
 
 class TwinImu:
-    """The IMU of a twin behind its own low-pass filter; a source for `OpenCr` and `start_rvc`.
+    """The IMU of a twin with a low-pass filter; a source for `OpenCr` and `start_rvc`.
 
     Without the filter a host that samples at 125 Hz would miss half of every impact.
 
     Args:
         twin: The twin.
-        lag: Delay of the filter, s.
+        lag: Time constant of the filter, s.
 
     Attributes:
-        held: Says whether hands hold the robot; it is at rest then, whatever the physics make of
-            limp joints before the hands put them back.
+        held: Returns whether the robot is held; it then reads as at rest, whatever the physics
+            do to limp joints between two corrections of the pose.
     """
 
     silent = False
@@ -155,18 +155,18 @@ class TwinImu:
 
     @property
     def angular_velocity(self) -> Array:
-        """(3,) rad/s."""
+        """Angular velocity (3,), rad/s."""
         return self._filter.value(self._felt())[:3]
 
     @property
     def acceleration(self) -> Array:
-        """(3,) m/s2."""
+        """Proper acceleration (3,), m/s2."""
         felt: Array = self._filter.value(self._felt())[3:]
         return felt + self._noise[self._steps % len(self._noise)]
 
     @property
     def orientation(self) -> Array:
-        """(4,) wxyz."""
+        """Orientation (4,), wxyz quaternion from body to world."""
         return np.asarray(self._base)
 
     def _feel(self) -> None:
@@ -174,7 +174,7 @@ class TwinImu:
         self._filter.follow(self._felt())
 
     def _felt(self) -> Array:
-        """Return (6,): angular velocity, rad/s, and acceleration, m/s2, before the filter."""
+        """Return angular velocity, rad/s, and acceleration, m/s2, (6,) before the filter."""
         if self.held():
             return np.concatenate([np.zeros(3), self._gravity @ self._site])
         return np.asarray(self._data[self._places])
@@ -182,20 +182,20 @@ class TwinImu:
 
 @dataclass
 class TwinPhysics:
-    """A twin as the physics of a world.
+    """The physics of a world that contains a twin.
 
-    A robot without torque would fall before its host has said a word. So hands hold it: the base,
-    and every joint whose servo has not been driven yet, stay where they are until all servos have
-    been driven once. From then on nobody holds it, unless hands are told to take it again whenever
-    it is limp: where it is, or, if it has fallen, where it began.
+    A robot without torque would fall before its host has connected, so it is held: the base, and
+    each joint whose servo has not been driven yet, keep their pose until all servos have been
+    driven once. From then on it is free, unless `again` is set: then it is held again whenever no
+    servo is driven, in its present pose or, if it has fallen, in its initial one.
 
     Attributes:
         twin: The twin.
-        driven: (n,) bool: has the servo of this joint been driven?
-        held: Whether the hands still hold.
-        hangs: The base hangs in the air for ever, whatever the servos do.
-        again: Hands take the robot again when none of its servos is driven any more.
-        jammed: (n,) bool: joints that do not move.
+        driven: (n,) bool: whether the servo of this joint has been driven.
+        held: Whether the robot is held now.
+        hangs: Whether the base stays held for ever, whatever the servos do.
+        again: Whether the robot is held again when none of its servos is driven any more.
+        jammed: (n,) bool: whether the joint is blocked.
         shafts: The horns of the servos.
     """
 
@@ -213,7 +213,7 @@ class TwinPhysics:
         self._start = self._qpos.copy()
 
     def grasp(self) -> None:
-        """Hold the robot as it is now, limp."""
+        """Record the present pose as the one to hold, with no servo driven yet."""
         self._qpos[:] = self.twin.data.qpos
         self.driven[:] = False
 
@@ -230,13 +230,13 @@ class TwinPhysics:
             self._jam()
 
     def turn(self, joint: int, angle: float, rate: float) -> None:
-        """Turn a joint to `angle` rad by hand, at `rate` rad/s."""
+        """Set a joint to `angle` rad and `rate` rad/s, as turned by hand."""
         data, at = self.twin.data, self.twin.places.qpos[joint]
         data.qpos[at] = self._qpos[at] = angle
         data.qvel[self.twin.places.dofs[joint]] = rate
 
     def _take_or_let_go(self, driven: Mask) -> None:
-        """Let go when all servos have been driven, and take again what is limp if told to."""
+        """Release the robot when all servos have been driven; hold it again when it is limp."""
         if self.held:
             self.driven |= driven
             if self.driven.all() and not self.hangs:
@@ -248,7 +248,7 @@ class TwinPhysics:
             self.held = True
 
     def _hold(self) -> None:
-        """Put back what the hands hold."""
+        """Restore the held base and joints to their pose."""
         data = self.twin.data
         free = np.flatnonzero(self.driven)
         at, dofs = self.twin.places.qpos[free], self.twin.places.dofs[free]
@@ -257,7 +257,7 @@ class TwinPhysics:
         data.qpos[at], data.qvel[dofs] = kept_q, kept_v
 
     def _jam(self) -> None:
-        """Put back the joints that do not move."""
+        """Restore the blocked joints to their position."""
         stuck = np.flatnonzero(self.jammed)
         at, dofs = self.twin.places.qpos[stuck], self.twin.places.dofs[stuck]
         self.twin.data.qpos[at] = self._qpos[at]
@@ -265,7 +265,7 @@ class TwinPhysics:
 
 
 def _while_alive(method: Callable[[], None]) -> Callable[[], None]:
-    """Return what calls a method as long as its object lives, and does not keep that alive."""
+    """Return a function that calls a method while its object lives, without keeping it alive."""
     found = WeakMethod(method)
 
     def call() -> None:

@@ -1,1 +1,1 @@
-"""Emulated buses with their devices, physics and time, as one world."""
+"""Worlds: emulated buses with their devices, physics and clock."""

@@ -1,8 +1,8 @@
-"""What a ``twin://`` URL says.
+"""Parses ``twin://`` URLs, which describe an emulated world.
 
-``twin://op3[?clock=virtual|real&world=NAME&bus=legs&faults=drop:0.01&seed=1&supply=12...]``: a
-robot of ours; ``twin://bench?servos=STS3215:1-20&baud=1000000``: servos of one protocol on a bench.
-``twin:///FOLDER`` with an absolute path, or ``twin://./FOLDER``, is a robot of one's own.
+``twin://op3[?clock=virtual|real&world=NAME&bus=legs&faults=drop:0.01&seed=1&supply=12...]`` is a
+robot of ours; ``twin://bench?servos=STS3215:1-20&baud=1000000`` is a set of servos of one protocol
+on a bench. ``twin:///FOLDER`` (an absolute path) or ``twin://./FOLDER`` is a robot of one's own.
 """
 
 from dataclasses import dataclass, fields, replace
@@ -24,29 +24,29 @@ class Address:
     """The parts of a URL.
 
     Attributes:
-        robot: A robot's name, or "bench".
-        clock: "virtual" (time passes when somebody waits) or "real".
-        world: Name of the world; opens of one world share it, also one after the other. Without a
-            name, the world lives until its last port is closed.
-        bus: Which bus of the robot.
-        faults: See `Faults.parse`.
-        seed: Seed of everything random.
-        supply: Voltage, V; 0: the robot's own, or 12.
-        latency: Of the adapter, ms.
-        turnaround: Of the servos, on top of their return delay, us.
-        missing: Behind a missing servo in a sync read, the others "skip" its slot or "wait".
-        power: Whether a board that switches the servo power has it "on" or "off" at the start.
+        robot: Name of a robot, or "bench".
+        clock: "virtual" (time advances only in waits) or "real".
+        world: Name of the world; ports with the same name share it, also one after the other. A
+            world without a name lives until its last port is closed.
+        bus: Name of the robot's bus.
+        faults: Text of faults, see `Faults.parse`.
+        seed: Seed of all random numbers.
+        supply: Supply voltage, V; 0: the robot's own, or 12.
+        latency: Latency of the adapter, ms.
+        turnaround: Delay of the servos in addition to their return delay, us.
+        missing: Whether servos after a missing one in a sync read "skip" its slot or "wait".
+        power: Whether a board that switches the servo power starts with it "on" or "off".
         hold: Whether the robot is held until its servos are driven, "yes" or "no"; "always": also
             whenever none of them is driven any more.
-        hand: What hands do to limp joints, see `parse_hands`.
+        hand: Motions of limp joints by hand, see `parse_hands`.
         servos: On the bench, models and ids: "XM430-W350:1-20,XL430:30".
         baud: On the bench, the servos' baud rate; 0: the robot's own, or 1000000.
-        return_delay: Of the servos at the start, in their unit of 2 us; -1: as they leave the
-            factory.
-        physics: Of a robot: "mujoco", its twin, or "inertia", where each servo has nothing to do
-            with the others.
-        imu: The IMU on a port of its own, bus "imu": "auto", the one that a robot's file says;
-            "rvc", a BNO08x in UART-RVC mode; or "none".
+        return_delay: Initial return delay of the servos, in their unit of 2 us; -1: the factory
+            default.
+        physics: Of a robot: "mujoco", its twin, or "inertia", where each servo drives a separate
+            inertia.
+        imu: IMU on its own port, bus "imu": "auto", the one in the robot's file; "rvc", a BNO08x in
+            UART-RVC mode; or "none".
     """
 
     robot: str
@@ -88,11 +88,11 @@ def parse_address(url: str) -> Address:
     11.1
 
     Raises:
-        UsageError: It is not a twin:// URL, or says something unknown.
+        UsageError: It is not a twin:// URL, or an option is unknown or out of range.
     """
     try:
         parts = urlsplit(url)
-    except ValueError as error:  # brackets that are none of an IPv6 address
+    except ValueError as error:  # brackets that do not enclose an IPv6 address
         raise UsageError(f"{url!r} is not a twin:// address: {error}") from None
     if parts.scheme != SCHEME or not (parts.netloc or parts.path.strip("/")):
         raise UsageError(f"{url!r} is not a twin:// address; 'twin://op3' is")
@@ -116,7 +116,7 @@ def parse_servos(text: str) -> list[tuple[str, int]]:
     [('XL330', 1), ('XL330', 2), ('XC330-T288', 7)]
 
     Raises:
-        UsageError: The text says something else.
+        UsageError: The text is malformed.
     """
     found = []
     for part in text.split(","):

@@ -31,15 +31,15 @@ from windup.sim_twin.wire.world.families import PROTOCOLS, full_name, make_langu
 from windup.sim_twin.wire.world.grips import bench_grips, robot_grips
 from windup.sim_twin.wire.world.hand import parse_hands
 
-NOMINAL = 12.0  # V, for servos that stand so much
-IMU = "imu"  # name of the port of an IMU
+NOMINAL = 12.0  # default supply on a bench, V, where the servos tolerate it
+IMU = "imu"  # name of the port of a separate IMU
 
 
 class Workshop:
-    """What the buses of one world share while it is built.
+    """Builds the buses of one world, with the objects that they share.
 
     Args:
-        address: What is to be built.
+        address: Address of the world.
     """
 
     def __init__(self, address: Address) -> None:
@@ -59,7 +59,7 @@ class Workshop:
         return bus
 
     def imu(self, source: ImuSource, kind: ImuKind = BNO08X_RVC) -> None:
-        """Add the port of an IMU that sends by itself, or the I2C bus of one that is asked."""
+        """Add the port of an IMU that streams by itself, or the I2C bus of one that is polled."""
         bus = self.bus(IMU, [], Mute(), RVC_BAUD)
         if kind.mounting.axes != STRAIGHT:
             source = MountedImu(source, kind.mounting)
@@ -70,7 +70,7 @@ class Workshop:
             start_rvc(bus, bus.imu)
 
     def world(self, physics: Physics, supply: float, owned: tuple[object, ...] = ()) -> BusWorld:
-        """Return the world with its buses."""
+        """Return the world with the buses added so far."""
         return BusWorld(physics, self.schedule, self.buses, supply, owned, self.faults)
 
 
@@ -78,12 +78,12 @@ def build_world(address: Address, around: Environment | None = None) -> BusWorld
     """Return a new world.
 
     Args:
-        address: What is in it.
+        address: Address of the world.
         around: Ground and plant of a robot's twin.
 
     Raises:
         UnknownNameError: There is no such robot or servo.
-        UsageError: The robot has nothing on a wire, or there is no twin to put on a ground.
+        UsageError: The robot has no servos on a bus, or `around` is given without a twin.
     """
     if around is not None and (address.robot == BENCH or address.physics != "mujoco"):
         raise UsageError("only a robot with physics=mujoco has another ground or plant")
@@ -173,7 +173,7 @@ def _hang_buses(
 def _hang_servos(
     address: Address, robot: RobotDescription, twin: Twin | None, supply: float
 ) -> tuple[dict[str, list[Device]], list[Shaft]]:
-    """Return the servos of each bus and all shafts: the twin's, or each with its own inertia."""
+    """Return the servos of each bus and all shafts: the twin's joints, or separate inertias."""
     buses = {bus.name: bus for bus in robot.buses}
     hung: dict[str, list[Device]] = {name: [] for name in buses}
     shafts: list[Shaft] = []
@@ -197,7 +197,7 @@ def _hang_servos(
 
 
 def _behind_a_wire(around: Environment, robot: RobotDescription, supply: float) -> Environment:
-    """Return `around` with what is left of its plant's delay when the wire has taken its own."""
+    """Return `around` with its plant's delay reduced by the delay that the bus adds itself."""
     plant = replace(around.plant, supply=supply)
     if plant.delay is not None:
         left = max(plant.delay - robot.drive.wire_delay, 0.0)
@@ -213,7 +213,7 @@ def _loose_shaft(name: str, supply: float) -> InertiaShaft:
 def _posed_shaft(
     robot: RobotDescription, joint: int, mount: ServoMount, supply: float
 ) -> InertiaShaft:
-    """Return a shaft that stands where the robot's stance has it."""
+    """Return a shaft at the angle of the joint in the robot's stance."""
     shaft = _loose_shaft(mount.model.name, supply)
     turn = mount.sign * mount.ratio * float(robot.stance[joint])
     per_rad = mount.model.counts_per_rev / (2.0 * math.pi)

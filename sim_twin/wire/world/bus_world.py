@@ -1,4 +1,4 @@
-"""A world of buses: physics underneath, devices on the wires, one clock for all of it."""
+"""A world of buses: physics, devices on the buses, and one schedule for all of them."""
 
 import time as wall
 from collections.abc import Sequence
@@ -13,16 +13,16 @@ from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
 from windup.sim_twin.wire.world.hand import Grip, Hand, Swing
 
-WATCH_PERIOD = 0.010  # s between two looks at watchdogs and health
-EPSILON = 1e-9  # s; steps that are due to the bit
+WATCH_PERIOD = 0.010  # period of the checks of watchdogs and health, s
+EPSILON = 1e-9  # tolerance for times that are rounded, s
 
 
 class Physics(Protocol):
-    """What moves the shafts."""
+    """The simulation that moves the shafts."""
 
     @property
     def timestep(self) -> float:
-        """Step, s."""
+        """Time step, s."""
         ...
 
     def step(self) -> None:
@@ -31,11 +31,11 @@ class Physics(Protocol):
 
 
 class Bench:
-    """Physics of shafts on a bench, each with nothing but its inertia.
+    """Physics of separate shafts on a bench, each with its own inertia.
 
     Attributes:
         shafts: The shafts.
-        timestep: Step, s.
+        timestep: Time step, s.
     """
 
     def __init__(self, shafts: Sequence[InertiaShaft], timestep: float = 0.001) -> None:
@@ -48,19 +48,19 @@ class Bench:
 
 
 class BusWorld:
-    """Physics and buses in step.
+    """Physics and buses that advance together.
 
-    Time is virtual: `advance` brings the world to an instant, doing on the way, in order, what
-    was scheduled. `RealTime` ties it to the wall.
+    Time is virtual: `advance` brings the world to an instant and executes the scheduled actions on
+    the way, in order. `RealClock` ties it to the wall clock.
 
     Attributes:
         buses: The buses by name; the first is the default.
-        physics: What moves the shafts.
-        schedule: What will happen.
-        supply: Voltage of the servos, V. Set it with `set_supply`.
-        dead: What will never work again.
-        faults: What goes wrong.
-        grips: Where hands can take hold: by joint, on a bench by id.
+        physics: The simulation that moves the shafts.
+        schedule: The schedule of future actions.
+        supply: Supply voltage of the servos, V. Set it with `set_supply`.
+        dead: Devices that are broken permanently.
+        faults: The faults.
+        grips: The joints that can be turned by hand: by joint name, on a bench by id.
         hands: The hands that turn limp joints.
     """
 
@@ -74,9 +74,9 @@ class BusWorld:
         faults: Faults | None = None,
     ) -> None:
         self.physics, self.schedule, self.buses, self.supply = physics, schedule, buses, supply
-        self.owned = tuple(owned)  # such as the twin, for whoever wants the truth
-        self._full: list[float] = []  # supplies before the brown-outs that go on now
-        self._sags: list[float] = []  # to what they let everything sink, V
+        self.owned = tuple(owned)  # objects such as the twin, for access to the true state
+        self._full: list[float] = []  # supplies before the present brown-outs, V
+        self._sags: list[float] = []  # supplies during the present brown-outs, V
         self.dead: list[Device] = []
         self.grips: dict[str, Grip] = {}
         self.hands: list[Hand] = []
@@ -98,15 +98,15 @@ class BusWorld:
 
     @property
     def devices(self) -> list[Device]:
-        """Everything on all buses."""
+        """All devices on all buses."""
         return [device for _, device in self._devices]
 
     def bus(self, name: str | None = None) -> Bus:
-        """Return a bus by its name, the first by default."""
+        """Return the bus of this name, by default the first."""
         return self.buses[name] if name else next(iter(self.buses.values()))
 
     def advance(self, time: float) -> None:
-        """Bring the world to `time` s."""
+        """Advance the world to `time`, s."""
         schedule = self.schedule
         while schedule.next <= time:
             self.catch_up(schedule.next)
@@ -116,18 +116,18 @@ class BusWorld:
             schedule.now = time
 
     def catch_up(self, time: float) -> None:
-        """Step the physics up to `time` s, with what the servos do at each step."""
+        """Step physics and servo control loops up to `time`, s."""
         step = self.physics.timestep
         while (self._steps + 1) * step <= time + EPSILON:
             self.step()
 
     @property
     def physics_time(self) -> float:
-        """How far the physics have got, s."""
+        """Time that the physics have reached, s."""
         return self._steps * self.physics.timestep
 
     def step(self) -> None:
-        """Do one step of the physics."""
+        """Run one step of physics, control loops, checks and hands."""
         now, step = self.physics_time, self.physics.timestep
         if now - self._watched >= WATCH_PERIOD - EPSILON:
             for bus, device in self._devices:
@@ -142,7 +142,7 @@ class BusWorld:
         self._steps += 1
 
     def hand(self, swing: Swing) -> None:
-        """Have a hand turn a joint to and fro from now on, while that is limp.
+        """Add a hand that turns a joint to and fro from now on, while it is limp.
 
         Raises:
             UnknownNameError: There is no such joint.
@@ -152,24 +152,24 @@ class BusWorld:
         self.hands.append(Hand(self.grips[swing.joint], swing))
 
     def set_supply(self, volts: float) -> None:
-        """Change the supply voltage of everything."""
+        """Change the supply voltage of all devices, V."""
         self.supply = volts
         self._supply([volts] * len(self._devices))
 
     @property
     def volts(self) -> float:
-        """The supply as it is now, during a brown-out too, V."""
+        """Present supply voltage, including brown-outs, V."""
         return min([self.supply, *self._sags])
 
     def sag(self, volts: float) -> None:
-        """Let the supply of everything sink to `volts` V, until `recover`."""
+        """Lower the supply of all devices to `volts` V, until `recover`."""
         if not self._sags:
             self._full = [device.supply for _, device in self._devices]
         self._sags.append(volts)
         self._supply([min(full, *self._sags) for full in self._full])
 
     def recover(self, volts: float) -> None:
-        """Undo a `sag` to `volts` V; other sags go on."""
+        """End a `sag` to `volts` V; other sags continue."""
         self._sags.remove(volts)
         self._supply([min([full, *self._sags]) for full in self._full])
 
@@ -181,13 +181,13 @@ class BusWorld:
             bus.refresh()
 
     def kill(self, device: Device) -> None:
-        """Let a device die: it has no power any more."""
+        """Break a device permanently: it loses its power."""
         if device not in self.dead:
             self.dead.append(device)
             device.set_supply(0.0, self.now)
 
     def repair(self, device: Device) -> None:
-        """Give a device that had died the power that the others have."""
+        """Repair a device that was killed: it gets the supply voltage of the others."""
         if device in self.dead:
             self.dead.remove(device)
             others = [other.supply for other in self.devices if other not in self.dead]
@@ -195,7 +195,7 @@ class BusWorld:
 
 
 class VirtualClock:
-    """Time that passes only when somebody waits for it."""
+    """A clock that advances only in waits."""
 
     def __init__(self, world: BusWorld) -> None:
         self.world = world
@@ -205,15 +205,15 @@ class VirtualClock:
         return self.world.schedule.now
 
     def wait_until(self, time: float) -> None:
-        """Bring the world to `time` s."""
+        """Advance the world to `time`, s."""
         self.world.advance(time)
 
     def settle(self) -> None:
-        """Nothing to catch up with: the world waits."""
+        """Do nothing: a virtual world never lags behind its clock."""
 
 
 class RealClock:
-    """Time of the wall, from 0 at the start; the world is brought along when somebody asks."""
+    """Wall-clock time, from 0 at the start; the world advances when the clock is used."""
 
     def __init__(self, world: BusWorld) -> None:
         self.world = world
@@ -224,13 +224,13 @@ class RealClock:
         return wall.monotonic() - self._start
 
     def wait_until(self, time: float) -> None:
-        """Sleep until it is `time` s."""
+        """Sleep until `time`, s, and advance the world."""
         while (left := time - self.now()) > 0.0:
             wall.sleep(min(left, 0.002))
             self.world.advance(self.now())
 
     def settle(self) -> None:
-        """Bring the world to now."""
+        """Advance the world to the present time."""
         self.world.advance(self.now())
 
 

@@ -1,4 +1,4 @@
-"""Which protocol a servo speaks, and how one is made."""
+"""The protocols of the servo models, and the construction of servos and protocols."""
 
 from typing import Final
 
@@ -37,7 +37,7 @@ def full_name(name: str) -> str:
 
 
 def make_language(protocol: str) -> Language:
-    """Return a new speaker of a protocol."""
+    """Return a new protocol instance."""
     if protocol == "dynamixel2":
         return Dynamixel()
     return Protocol1(FEETECH if protocol == "feetech" else DYNAMIXEL1)
@@ -55,16 +55,16 @@ def make_servo(
     """Return a new servo.
 
     Args:
-        name: Its model.
-        shaft: What it drives.
-        identifier: Its id.
-        baud: Its baud rate.
-        supply: Voltage, V.
-        return_delay: Its return delay, in 2 us; -1: as it leaves the factory.
-        protocol: What is spoken on its bus.
+        name: Model name.
+        shaft: The shaft that it drives.
+        identifier: Bus id.
+        baud: Baud rate.
+        supply: Supply voltage, V.
+        return_delay: Return delay, in units of 2 us; -1: the factory default.
+        protocol: Protocol of its bus.
 
     Raises:
-        UsageError: It does not speak that, or not so fast.
+        UsageError: It does not support the protocol or the baud rate.
     """
     name = full_name(name)
     spoken = PROTOCOLS[name]

@@ -1,4 +1,4 @@
-"""Where hands take hold of the joints of a world."""
+"""Makes the grips with which hands turn the joints of a world."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -28,8 +28,8 @@ def robot_grips(
     Args:
         robot: The robot.
         hung: Its servos, by bus.
-        shafts: Their shafts, in the order of the joints that have one.
-        physics: The twin whose joints they are, or None where each servo is alone.
+        shafts: Their shafts, in the order of the joints that have a servo.
+        physics: The twin whose joints they are, or None if each servo has a separate shaft.
     """
     grips = {}
     mounted = [(name, m) for name, m in zip(robot.joints.names, robot.servos, strict=True) if m]
@@ -43,7 +43,7 @@ def robot_grips(
 
 
 def _on_shaft(device: Device, shaft: InertiaShaft, ratio: float) -> Grip:
-    """Return a grip on a joint of which one rad is `ratio` rad of the shaft."""
+    """Return a grip on a joint whose angle is the shaft's divided by `ratio`."""
     return Grip(
         device,
         lambda: shaft.position / ratio,

@@ -1,4 +1,4 @@
-"""A hand that turns limp shafts, as somebody does who shows a client their range."""
+"""A simulated hand that turns limp shafts, as a user does to show a client their range."""
 
 import math
 from collections.abc import Callable
@@ -15,12 +15,12 @@ EXAMPLE: Final = "'r_knee:20:3s,l_knee:-20:3s'"
 
 
 class Swing(NamedTuple):
-    """What a hand does.
+    """The motion of a hand.
 
     Attributes:
         joint: The joint; on a bench, the id of the servo.
-        angle: How far it turns it from where it finds it, rad.
-        seconds: How long that takes; as long again back.
+        angle: Largest displacement from the initial angle, rad.
+        seconds: Duration of the motion there, s; the motion back takes as long.
     """
 
     joint: str
@@ -29,12 +29,12 @@ class Swing(NamedTuple):
 
 
 class Grip(NamedTuple):
-    """Where a hand can take hold of a joint.
+    """Access of a hand to one joint.
 
     Attributes:
-        device: Its servo.
-        angle: Returns its angle, rad.
-        turn: Puts it to an angle, rad, at a rate, rad/s.
+        device: Servo of the joint.
+        angle: Returns the angle of the joint, rad.
+        turn: Sets the joint to an angle, rad, and a rate, rad/s.
     """
 
     device: Device
@@ -43,13 +43,13 @@ class Grip(NamedTuple):
 
 
 def parse_hands(text: str) -> list[Swing]:
-    """Return what hands do, of a text ``JOINT:DEGREES:SECONDS``, several joined by commas.
+    """Return the motions of a text ``JOINT:DEGREES:SECONDS``, several joined by commas.
 
     >>> parse_hands("r_knee:180:3s")
     [Swing(joint='r_knee', angle=3.141592653589793, seconds=3.0)]
 
     Raises:
-        UsageError: The text says something else.
+        UsageError: The text is malformed or a number is out of range.
     """
     return [_parse(part.strip()) for part in text.split(",") if part.strip()]
 
@@ -67,20 +67,20 @@ def _parse(part: str) -> Swing:
 class Hand:
     """Turns one joint to and fro, smoothly, while its servo does not drive it.
 
-    Whenever the servo has driven it, the hand begins again from where it finds the joint.
+    After the servo has driven the joint, the hand starts again from the joint's new angle.
 
     Attributes:
-        grip: Where it holds.
-        swing: What it does.
+        grip: Access to the joint.
+        swing: The motion.
     """
 
     grip: Grip
     swing: Swing
     _start: float = 0.0
-    _time: float | None = None  # since it took hold, s; None while it does not hold
+    _time: float | None = None  # time since it began to turn the joint, s; None while driven
 
     def move(self, dt: float) -> None:
-        """Go on by `dt` s."""
+        """Continue the motion by `dt` s."""
         grip, (_, angle, seconds) = self.grip, self.swing
         if grip.device.driving:
             self._time = None

@@ -1,4 +1,4 @@
-"""The worlds that are open in this process, so that two opens of one world share it."""
+"""Registry of the worlds that are open in this process, so that ports can share a world."""
 
 from dataclasses import dataclass, replace
 
@@ -10,7 +10,7 @@ from windup.sim_twin.wire.world.bus_world import BusWorld, RealClock, VirtualClo
 
 @dataclass
 class Running:
-    """A world that somebody has opened, or that was put here by name.
+    """An open world.
 
     Attributes:
         world: The world.
@@ -31,15 +31,15 @@ _running: dict[str, Running] = {}
 
 
 def put_world(name: str, world: BusWorld, clock: str = "virtual") -> None:
-    """Offer a world under ``twin://anything?world=NAME``; it stays until `drop_world`."""
+    """Register a world under ``twin://anything?world=NAME``; it stays until `drop_world`."""
     _running[name] = _start(world, clock, keep=True)
 
 
 def find_world(name: str) -> BusWorld:
-    """Return the world that is known by a name.
+    """Return the world of this name.
 
     Raises:
-        UnknownNameError: There is none.
+        UnknownNameError: There is no such world.
     """
     if name not in _running:
         raise UnknownNameError("world", name, _running)
@@ -47,14 +47,14 @@ def find_world(name: str) -> BusWorld:
 
 
 def drop_world(name: str) -> None:
-    """Forget a world; ports that are open keep theirs, until they are closed."""
+    """Remove a world from the registry; open ports keep it until they are closed."""
     running = _running.pop(name, None)
     if running is not None and not running.ports:
         _end(running)
 
 
 def enter(address: Address) -> Running:
-    """Return the running world of an address, built if need be, with one port more."""
+    """Return the running world of an address, built if necessary, and count one more port."""
     name = address.world or f"{address.robot} ({address.clock})"
     running = _running.get(name) or _running.pop(_lost_name(address), None)
     if running is None:
@@ -71,9 +71,9 @@ def enter(address: Address) -> Running:
 
 
 def leave(running: Running, lost: Address | None = None) -> None:
-    """Count one port less; a world without a name of its own ends with its last port.
+    """Count one port less; an unnamed world ends with its last port.
 
-    Unless that port was lost, by unplugging: who opens its address again finds the world.
+    An exception is a port that was lost by unplugging: opening its address again finds the world.
     """
     running.ports -= 1
     if running.ports == 0 and not running.keep:
@@ -86,7 +86,7 @@ def leave(running: Running, lost: Address | None = None) -> None:
 
 
 def _end(running: Running) -> None:
-    """Forget what was to happen in a world that nobody can reach: it would keep the world."""
+    """Clear the schedule of an unreachable world: its actions would keep the world alive."""
     running.world.schedule.clear()
 
 

@@ -55,6 +55,12 @@ OPTIONS = {
     "robot of bench": ("bench tick --robot opp3", "unknown robot 'opp3'; did you mean 'op3'?"),
     "gait": ("walk op3 --gait wlak", "unknown gait of op3 'wlak'; did you mean 'walk'? known: "),
     "graph": ("play op3 wvae", "unknown gait of op3 'wvae'; did you mean 'wave'? known: "),
+    "gait file": ("walk op3 --gait nothere.toml", "no file nothere.toml; the gaits of op3 are "),
+    "bus": ("stand op3 --port legs=twin://op3", "op3 has no bus 'legs'; give --port "),
+    "option of another bench": (
+        "bench loop --vendor feetech",
+        "bench loop takes no --vendor; these do: bus",
+    ),
     "regulation variable": (
         "walk op3 --rv upp",
         "unknown regulation variable 'upp'; did you mean 'up'? known: com_displacement, ",

@@ -1,1 +1,1 @@
-"""Broken robots and odd command lines, drawn at random: does every one get an answer in words?"""
+"""Random broken robots and odd command lines, all of which must end with a proper message."""

@@ -1,4 +1,4 @@
-"""Thousands of odd runs: none may end in a traceback, hang, or take the memory of the machine."""
+"""Thousands of odd runs, none of which may end in a traceback, hang, or exhaust the memory."""
 
 import multiprocessing
 import resource
@@ -17,19 +17,19 @@ from windup.tools.terminal.output import console
 
 ROBOTS = ("op3", "duck", "human", "robobird")
 HANG = 3.0 * PATIENCE
-"""A run that goes on for so long, though it was told to end, hangs, s."""
+"""Time after which a run that has been interrupted counts as hung, s."""
 SHIFT = 100
-"""Runs of one process, before the next takes over: what it needs of memory can be told so."""
+"""Number of runs of one process, so that its peak memory can be attributed to them."""
 MOST = 4 << 30
-"""More memory than this no process gets, bytes: the machine is others' too."""
+"""Address space limit of a process, bytes: the machine is shared."""
 LINE = 300
-"""Letters of a command line that are told."""
+"""Number of characters of a command line that are shown."""
 SHOWN = 20
-"""Faults that are told."""
+"""Number of faults that are shown."""
 
 
 def measure_fuzz(robot: str, times: int, seed: int) -> dict[str, Any]:
-    """Return how so many odd runs ended, on `robot` and others."""
+    """Return the results of `times` odd runs, on `robot` and others."""
     robots = tuple(dict.fromkeys((robot, *ROBOTS)))
     seeds = iter(range(seed * times, (seed + 1) * times))
     statuses: Counter[str] = Counter()
@@ -58,7 +58,7 @@ def measure_fuzz(robot: str, times: int, seed: int) -> dict[str, Any]:
 
 
 class Runner:
-    """A process that makes odd runs, one after the other."""
+    """A process that executes odd runs, one after the other."""
 
     def __init__(self, robots: tuple[str, ...]) -> None:
         context = multiprocessing.get_context("forkserver")
@@ -75,7 +75,7 @@ class Runner:
         self.link.send(seed)
 
     def end(self) -> Trial:
-        """Return how its run ended, or that it did not."""
+        """Return the result of its run, or that it hung or died."""
         if self.link.poll():
             try:
                 trial: Trial = self.link.recv()
@@ -99,7 +99,7 @@ class Runner:
 
 
 def _trials(seeds: Iterator[int], robots: tuple[str, ...]) -> Iterator[Trial]:
-    """Yield how the run of each seed ended, as they end; one process a core."""
+    """Yield the result of each seed's run, as they end; one process per core."""
     busy: dict[Connection, Runner] = {}
     idle = [Runner(robots) for _ in range(cpu_count() or 1)]
     try:
@@ -127,7 +127,7 @@ def _trials(seeds: Iterator[int], robots: tuple[str, ...]) -> Iterator[Trial]:
 
 
 def _serve(link: Connection, robots: tuple[str, ...]) -> None:
-    """Make the runs that are asked for."""
+    """Execute the runs whose seeds are received."""
     resource.setrlimit(resource.RLIMIT_AS, (MOST, MOST))
     while True:
         try:

@@ -1,4 +1,4 @@
-"""An MJCF file with mistakes in it, made from one without."""
+"""Inserts random mistakes into a valid MJCF file."""
 
 import random
 import xml.etree.ElementTree as ET
@@ -11,7 +11,7 @@ Mistake = Callable[[random.Random, ET.Element], None]
 
 
 def broken_mjcf(dice: random.Random, text: str) -> str:
-    """Return `text` with one to three mistakes, now and then one that is no XML any more."""
+    """Return `text` with one to three mistakes; sometimes it is no longer valid XML."""
     root = ET.fromstring(text)
     for _ in range(dice.randint(1, 3)):
         dice.choice(MISTAKES)(dice, root)
@@ -24,7 +24,7 @@ def _drawn(dice: random.Random, root: ET.Element) -> ET.Element:
 
 
 def other_value(dice: random.Random, root: ET.Element) -> None:
-    """Give an attribute an odd value, whole or in one of its numbers."""
+    """Give an attribute an odd value, as a whole or in one of its numbers."""
     element = _drawn(dice, root)
     if not element.attrib:
         return
@@ -38,33 +38,33 @@ def other_value(dice: random.Random, root: ET.Element) -> None:
 
 
 def without_attribute(dice: random.Random, root: ET.Element) -> None:
-    """Leave an attribute away."""
+    """Remove an attribute."""
     element = _drawn(dice, root)
     if element.attrib:
         del element.attrib[dice.choice(sorted(element.attrib))]
 
 
 def without_element(dice: random.Random, root: ET.Element) -> None:
-    """Leave an element away, with what is in it."""
+    """Remove an element and its contents."""
     parent = _drawn(dice, root)
     if len(parent):
         parent.remove(dice.choice(list(parent)))
 
 
 def element_twice(dice: random.Random, root: ET.Element) -> None:
-    """Write an element twice."""
+    """Duplicate an element."""
     parent = _drawn(dice, root)
     if len(parent):
         parent.append(deepcopy(dice.choice(list(parent))))
 
 
 def element_elsewhere(dice: random.Random, root: ET.Element) -> None:
-    """Put a copy of an element into another one."""
+    """Insert a copy of an element into another one."""
     _drawn(dice, root).append(deepcopy(_drawn(dice, root)))
 
 
 def _printable(word: str) -> str:
-    """Return a word without what XML cannot hold."""
+    """Return a word without the characters that XML cannot represent."""
     return "".join(letter for letter in word if letter.isprintable())
 
 

@@ -1,4 +1,4 @@
-"""A TOML file with mistakes in it, made from one without."""
+"""Inserts random mistakes into a valid TOML file."""
 
 import random
 import re
@@ -44,7 +44,7 @@ def other_key(dice: random.Random, text: str) -> str:
 
 
 def without_line(dice: random.Random, text: str) -> str:
-    """Leave a line away."""
+    """Remove a line."""
     lines = text.splitlines(keepends=True)
     if lines:
         del lines[dice.randrange(len(lines))]
@@ -52,7 +52,7 @@ def without_line(dice: random.Random, text: str) -> str:
 
 
 def line_twice(dice: random.Random, text: str) -> str:
-    """Write a line twice."""
+    """Duplicate a line."""
     lines = text.splitlines(keepends=True)
     if lines:
         at = dice.randrange(len(lines))
@@ -61,7 +61,7 @@ def line_twice(dice: random.Random, text: str) -> str:
 
 
 def lines_swapped(dice: random.Random, text: str) -> str:
-    """Put a line elsewhere."""
+    """Move a line elsewhere."""
     lines = text.splitlines(keepends=True)
     if lines:
         lines.insert(dice.randrange(len(lines)), lines.pop(dice.randrange(len(lines))))
@@ -69,7 +69,7 @@ def lines_swapped(dice: random.Random, text: str) -> str:
 
 
 def cut_off(dice: random.Random, text: str) -> str:
-    """End the file in the middle."""
+    """Truncate the file."""
     return text[: dice.randrange(len(text) + 1)]
 
 

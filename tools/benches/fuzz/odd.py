@@ -1,4 +1,4 @@
-"""Values that people and programs write by mistake."""
+"""Values that people and programs enter by mistake."""
 
 import random
 
@@ -14,7 +14,7 @@ NUMBERS = (
     "1e999",
     "99999999999999999999",
 )
-"""Numbers out of range, or of no range; those that a command would obey for hours are left out."""
+"""Numbers out of range or not finite, except those with which a command would run for hours."""
 WORDS = (
     "",
     " ",
@@ -28,9 +28,9 @@ WORDS = (
     "%s%n",
     "[1]",
 )
-"""Words that mean something else, or nothing."""
+"""Words that are invalid or mean something else."""
 ROBOTS = ("op3", "duck", "human", "opp3", "", "/", "..", "-", "x" * 300, "/dev/null", "\u00fc")
-"""Robots, and names that are none."""
+"""Names of robots, valid and invalid."""
 URLS = (
     "twin://op3",
     "twin://op3?latency=nan",
@@ -47,19 +47,19 @@ URLS = (
     "/dev/zero",
     "",
 )
-"""Ports, and what is none."""
+"""Port URLs, valid and invalid."""
 LARGE = ("9" * 5000, "1000000000", "3", "0.5")
-"""More numbers; some would be obeyed for hours."""
+"""More numbers, with some of which a command would run for hours."""
 MEANT = (
     *("=", "a=1", "a=nan@1:2", "speed=0:1:1000000000", "speed=0:1:3", ",", "circle:nan", "0,0,1"),
     *("/dev/zero", "/dev/full", "/dev/null", ".", "none/x.json", "x" * 300, "a.csv", "a.toml"),
     *("a.png", "stand", "left", "hold", "front", "walk", "*"),
 )
-"""What some options take, in their place or out of it."""
+"""Values that some option accepts, used with any option."""
 VALUES = (*NUMBERS, *LARGE, *WORDS, *MEANT, "true")
-"""Whatever stands behind an option."""
+"""All values that may follow an option."""
 TOML = ('""', '"op3"', "true", "[]", "{}", "[[1]]", '"x" # x', "1979-05-27", "0x", "'''", "\\")
-"""Values of another type, and what is no value."""
+"""TOML values of other types, and invalid ones."""
 
 
 def number(dice: random.Random) -> str:

@@ -1,4 +1,4 @@
-"""Odd command lines: every command, a few options, odd values, results that cannot be written."""
+"""Odd command lines: every command, a few options, odd values, unwritable result files."""
 
 import random
 from collections.abc import Mapping, Sequence
@@ -17,7 +17,7 @@ SHORT = {
     "footprints": ("--random", "1"),
     "health": ("--once",),
 }
-"""A command on a robot, and what makes it short."""
+"""Commands on a robot, with options that make them short."""
 NUMBERS = tuple(
     f"--{name}"
     for name in [
@@ -37,7 +37,7 @@ NUMBERS = tuple(
         "push-at",
     ]
 )
-"""Options of every command but `health`, that take a number."""
+"""Options with a number that every command but `health` has."""
 OWN = {
     "walk": "--speed --side --turn --delay --stand",
     "push": "--duration --direction --height --at --times --every --delay --speed",
@@ -45,7 +45,7 @@ OWN = {
     "step": "--yaw --duration",
     "rise": "--tries",
 }
-"""Those that a command has alone."""
+"""Options with a number that a single command has."""
 WORDS = {
     "walk": "--gait --path --style --model --learn --target --rv",
     "push": "--body --way --stance --support --forbid --during",
@@ -53,16 +53,16 @@ WORDS = {
     "step": "--foot --frame",
     "rise": "--lying",
 }
-"""Options that take a word."""
+"""Options with a word as their value."""
 SWITCHES = ["--self-collision", "--no-protect", "--realtime", "--arm", "--hlep"]
 OPTIONS = 2
-"""At most so many of them on one line."""
+"""Largest number of options on one line."""
 MILD = ("0.05", "0.1", "1", "3", "45", "-0.1")
-"""Numbers that some options take."""
+"""Plausible numbers for options."""
 
 
 def odd_line(dice: random.Random, robot: str, folder: Path) -> list[str]:
-    """Return the words of a command on `robot`; results would go into `folder`."""
+    """Return the words of a command line on `robot`, with result files in `folder`."""
     command = dice.choice(list(SHORT))
     words = [command, robot, *SHORT[command]]
     for _ in range(dice.randint(0, OPTIONS)):
@@ -80,8 +80,8 @@ def any_line(dice: random.Random, options: Mapping[str, Sequence[str]]) -> list[
     """Return the words of any command, which may run for hours, with any of its `options`.
 
     Args:
-        dice: What draws.
-        options: Name of every command to its options, as "--speed".
+        dice: Random number generator.
+        options: Options of every command by its name, such as "--speed".
     """
     command = dice.choice(sorted(options))
     words = [command, *dice.choices(odd.ROBOTS, k=dice.randint(0, 2))]
@@ -93,7 +93,7 @@ def any_line(dice: random.Random, options: Mapping[str, Sequence[str]]) -> list[
 
 
 def _passed_on(words: list[str]) -> list[str]:
-    """Return the words as a shell can pass them on."""
+    """Return the words without characters that a shell cannot pass on."""
     return [word.replace("\0", "") for word in words]
 
 
@@ -110,20 +110,20 @@ def _option(dice: random.Random, command: str) -> list[str]:
 
 
 def _port(dice: random.Random, robot: str) -> str:
-    """Return a port: odd, or emulated with an odd setting."""
+    """Return a port URL: odd, or emulated with an odd setting."""
     if dice.random() < 0.2:
         return dice.choice(odd.URLS)
     return f"twin://{dice.choice((robot, 'op3', 'bench'))}?{_query(dice)}"
 
 
 def _query(dice: random.Random) -> str:
-    """Return what follows the question mark of a twin:// URL."""
+    """Return the query of a twin:// URL."""
     keys = ("clock", "latency", "servos", "faults", "supply", "seed", "missing", "return_delay")
     values = (odd.number(dice), odd.word(dice), "virtual", "XM430-W350:1-1000000000")
     return f"clock=virtual&{dice.choice(keys)}={dice.choice(values)}"
 
 
 def _target(dice: random.Random, folder: Path) -> str:
-    """Return a file that cannot be written, or can."""
+    """Return the path of a result file, writable or not."""
     names = ("/dev/full", str(folder), "/nowhere/x.json", str(folder / "x.json"), "-", "/dev/zero")
     return dice.choice((*names, odd.word(dice)[:300] or "x"))

@@ -1,4 +1,4 @@
-"""One odd run in a process of its own: how it ended, and what it said."""
+"""One odd run in a process of its own: its exit status, exception and memory."""
 
 import os
 import random
@@ -19,24 +19,24 @@ from windup.tools.benches.fuzz.broken_toml import broken_toml
 from windup.tools.benches.fuzz.odd_line import odd_line
 
 KNOWN = {0, 1, 2, 3, 130}
-"""Exit statuses that have a meaning."""
+"""Exit statuses that are defined."""
 PATIENCE = 20
-"""After so long a run is interrupted, as a person would, s."""
+"""Time after which a run is interrupted, as a user would, s."""
 MEMORY = 1 << 30
-"""What no run may need, bytes."""
+"""Memory that no run may exceed, bytes."""
 
 
 @dataclass(frozen=True)
 class Trial:
-    """How one odd run ended.
+    """The result of one odd run.
 
     Attributes:
-        seed: What it was drawn with.
+        seed: Seed of its random numbers.
         words: Its command line.
-        status: Its exit status; None where an exception left it.
-        trace: The exception, or "".
-        interrupted: It had to be told to end.
-        memory: The most that its process has needed so far, bytes.
+        status: Its exit status; None if it ended with an exception.
+        trace: Traceback of the exception, or "".
+        interrupted: Whether it had to be interrupted.
+        memory: Peak memory of its process so far, bytes.
     """
 
     seed: int
@@ -48,7 +48,7 @@ class Trial:
 
     @property
     def fault(self) -> str:
-        """What is wrong with it, or ""."""
+        """Description of what is wrong with the run, or ""."""
         if self.trace:
             return self.trace.strip().splitlines()[-1]
         if self.status not in KNOWN:
@@ -57,11 +57,11 @@ class Trial:
 
 
 Run = Callable[[list[str]], int]
-"""The command line: words to an exit status."""
+"""The command line entry point: from words to an exit status."""
 
 
 def odd_run(run: Run, seed: int, robots: tuple[str, ...]) -> Trial:
-    """Run one odd command line on one of `robots`, which may be broken."""
+    """Run one odd command line on one of `robots`, possibly a broken copy."""
     dice = random.Random(seed)
     with tempfile.TemporaryDirectory(prefix="windup-fuzz-") as name:
         folder = Path(name)
@@ -72,7 +72,7 @@ def odd_run(run: Run, seed: int, robots: tuple[str, ...]) -> Trial:
         def interrupt(number: int, frame: object) -> None:
             nonlocal interrupted
             interrupted = True
-            signal.alarm(PATIENCE)  # and again, where once was not enough
+            signal.alarm(PATIENCE)  # interrupt again if once is not enough
             os.kill(os.getpid(), signal.SIGINT)
 
         signal.signal(signal.SIGALRM, interrupt)
@@ -94,7 +94,7 @@ def odd_run(run: Run, seed: int, robots: tuple[str, ...]) -> Trial:
 
 
 def _robot(dice: random.Random, name: str, folder: Path) -> str:
-    """Return a robot's name, or the path of a broken copy of it."""
+    """Return the name of a robot, or the path of a broken copy of it."""
     if dice.random() < 0.2:
         return name
     shutil.copytree(load_robot(name).folder, folder)
@@ -112,7 +112,7 @@ def _robot(dice: random.Random, name: str, folder: Path) -> str:
 
 @contextmanager
 def _silenced() -> Iterator[None]:
-    """Send what is printed into nothing, also from libraries in C."""
+    """Discard all output, also that of C libraries."""
     kept = [os.dup(number) for number in (1, 2)]
     nothing = os.open(os.devnull, os.O_WRONLY)
     try:

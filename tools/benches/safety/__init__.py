@@ -1,1 +1,1 @@
-"""`windup bench safety`: end a moving robot in every way there is, and see who switches it off."""
+"""`windup bench safety`: end a moving robot in every way there is, and check that it is safe."""

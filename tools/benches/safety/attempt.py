@@ -1,4 +1,4 @@
-"""Start an emulated robot and a program that moves it, and end both whatever happens."""
+"""Starts an emulated robot and a program that moves it, and always ends both."""
 
 import multiprocessing
 import os
@@ -23,14 +23,14 @@ PRELOAD = [
     "windup.tools.benches.safety.program",
     "windup.tools.benches.safety.emulated",
 ]
-"""What a fresh process would import anew each time: nothing is kept from trial to trial."""
+"""Modules to import once for all trials; no other state is shared between them."""
 
 
 @contextmanager
 def trial(
     name: str, row: Row, moment: Moment, arm: bool = True, faults: str = ""
 ) -> Iterator[Trial]:
-    """Start everybody, and end everybody; `faults` go wrong on the bus from the start."""
+    """Start all processes, and end them at exit; `faults` are active on the bus from the start."""
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(PRELOAD)
     ours, theirs = context.Pipe()
@@ -64,16 +64,24 @@ def trial(
             for process in reversed(started):
                 process.kill()
                 process.join()
-            if running is not None and running.guardian is not None:
-                with suppress(ProcessLookupError):
-                    os.kill(running.guardian, signal.SIGKILL)
+            if running is not None:
+                end(running)
+
+
+def end(running: Trial) -> None:
+    """Kill a guardian that is still trying, and close the descriptors."""
+    if running.guardian is not None:
+        with suppress(ProcessLookupError):
+            os.kill(running.guardian, signal.SIGKILL)
+    for descriptor in running.taken:
+        os.close(descriptor)
 
 
 def under_way(running: Trial) -> None:
-    """Wait until the program is busy with what it is ended in, and for the moment to end it.
+    """Wait until the program performs the activity in which it will be ended.
 
     Raises:
-        NotMeasuredError: It is not.
+        NotMeasuredError: It does not, or drives no motor.
     """
     running.hear("doing")
     assert running.program.pid is not None

@@ -1,4 +1,4 @@
-"""When the activity of a program has begun, and when its fault is due."""
+"""Determines when the activity of a program begins, and when its fault is due."""
 
 import time
 from math import inf
@@ -6,11 +6,11 @@ from multiprocessing.connection import Connection
 
 
 class Begin:
-    """When the activity has begun, and when the fault is due.
+    """The beginning of the activity, and the time at which the fault is due.
 
     Args:
-        tell: To whoever watches the program.
-        after: From the one to the other, s.
+        tell: Connection to the process that observes the program.
+        after: Time from the beginning to the fault, s.
     """
 
     def __init__(self, tell: Connection, after: float) -> None:
@@ -19,13 +19,13 @@ class Begin:
         self._told = False
 
     def now(self, activity: str) -> None:
-        """Say that the activity has begun; again is no matter."""
+        """Report that the activity has begun; later calls have no effect."""
         if self._at == inf:
             self._at = time.monotonic() + self._after
             self._tell.send(("doing", activity))
 
     def due(self) -> bool:
-        """Return whether it is time for the fault; says so the first time."""
+        """Return whether the fault is due; report it the first time."""
         if time.monotonic() < self._at:
             return False
         if not self._told:

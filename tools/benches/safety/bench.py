@@ -1,4 +1,4 @@
-"""`windup bench safety`: the whole table, for OP3 and the duck."""
+"""`windup bench safety`: measures the whole table of endings, for OP3 and the duck."""
 
 import time
 from collections import Counter
@@ -25,22 +25,22 @@ from windup.tools.terminal.output import console
 
 ROBOTS = ("op3", "duck")
 LONGEST = {"standing": 1.0, "walking": 1.5, "closing crouch": 1.2}
-"""Until the end, from the beginning of each activity, s, at most."""
+"""Longest time from the beginning of each activity to the ending, s."""
 WIDE = 150
-"""Of the table, characters."""
+"""Width of the table, characters."""
 SPARE = 1
-"""Trials at a time beyond one a core: each of them waits for half of its time."""
+"""Number of simultaneous trials beyond one per core: each of them waits for half of its time."""
 AGAIN = 3
-"""How often a trial is done anew whose program was not under way when it should have been."""
+"""Number of attempts at a trial whose program was not under way when it should be ended."""
 
 
 def measure_safety(
     moments: int = 20, seed: int = 0, only: Sequence[str] = (), robots: Sequence[str] = ROBOTS
 ) -> dict[str, Any]:
-    """Return how each way to end a run went.
+    """Return the results of each way to end a run.
 
     Args:
-        moments: Trials a row, shared by the robots.
+        moments: Number of trials per row, shared by the robots.
         seed: Seed of the moments.
         only: Names of rows, or the beginnings of names; all if empty.
         robots: The robots.
@@ -73,7 +73,7 @@ def measure_safety(
 def _measure(
     row: Row, moments: int, rng: np.random.Generator, robots: Sequence[str]
 ) -> dict[str, Any]:
-    """Return how one row went."""
+    """Return the results of one row."""
     failed: Counter[str] = Counter()
     todo = list(_moments(row, moments, rng, robots))
     with ThreadPoolExecutor((cpu_count() or 1) + SPARE) as side_by_side:
@@ -107,7 +107,7 @@ def _measure(
 def _moments(
     row: Row, count: int, rng: np.random.Generator, robots: Sequence[str]
 ) -> Iterator[tuple[str, Moment]]:
-    """Yield robots in turn, and random moments of the row's activities."""
+    """Yield the robots in turn, with random moments of the row's activities."""
     mine = [name for name in robots if not row.robots or name in row.robots]
     if not mine:
         return
@@ -117,7 +117,7 @@ def _moments(
 
 
 def _try(name: str, row: Row, moment: Moment, failed: Counter[str]) -> Verdict | None:
-    """Return the verdict on one trial, or None where its program was never under way."""
+    """Return the verdict on one trial, or None if its program never got under way."""
     for _ in range(AGAIN):
         try:
             return _one(name, row, moment)
@@ -135,12 +135,12 @@ def _one(name: str, row: Row, moment: Moment) -> Verdict:
                 raise NotMeasuredError(said)
         verdict = judge(running, row, load_robot(name), row.do(running))
         if verdict.wrong and row in SIGNALS and BY_ITSELF in (said := running.errors()):
-            raise NotMeasuredError(said)  # it fell in the very moment
+            raise NotMeasuredError(said)  # the robot fell at that very moment
         return verdict
 
 
 def _table(result: dict[str, Any]) -> Table:
-    """Return the table for people."""
+    """Return the results as a table."""
     table = Table("fault", "t0", "state", "safe", "s", "of", "status", "read", box=None)
     table.columns[0].no_wrap = True
     for name, row in result.items():

@@ -1,4 +1,4 @@
-"""An emulated robot in a process of its own, that takes faults and dates what becomes of it."""
+"""An emulated robot in a process of its own, which applies faults and timestamps events."""
 
 import os
 import threading
@@ -14,17 +14,17 @@ from windup.sim_twin.wire.serve.emulate import Emulator, emulate
 from windup.sim_twin.wire.serve.journal import Event
 
 FIRST = PRIORITY + 10
-"""Of an emulator among real-time processes: servos and physics wait for no program."""
+"""Real-time priority of an emulator: above all programs, so that none delays servos and physics."""
 
 
 def serve(name: str, path: Path | None, pipe: Connection, faults: str = "") -> None:
-    """Serve a robot for ever; the body of the process.
+    """Serve a robot for ever; the main function of the process.
 
     Args:
         name: The robot.
-        path: Of the pseudo-terminal; None for a TCP port.
-        pipe: Sends the port's URL, then every `Event`; takes faults to inject.
-        faults: What goes wrong from the start.
+        path: Path of the pseudo-terminal; None for a TCP port.
+        pipe: Sends the port's URL, then every `Event`; receives faults to inject.
+        faults: Faults that are active from the start.
     """
 
     def ready(emulator: Emulator) -> None:
@@ -38,7 +38,7 @@ def serve(name: str, path: Path | None, pipe: Connection, faults: str = "") -> N
 
 
 def port_of(emulator: Emulator) -> str:
-    """Return what `--port` takes for the buses of an emulator."""
+    """Return the value of `--port` for the buses of an emulator."""
     if len(emulator.outlets) == 1:
         return emulator.outlets[0].name
     return ",".join(f"{outlet.bus.name}={outlet.name}" for outlet in emulator.outlets)
@@ -54,11 +54,11 @@ def _inject(emulator: Emulator, pipe: Connection) -> None:
 
 @dataclass
 class Journal:
-    """What an emulator has said about motors, adapters and supply, as it comes.
+    """The events of motors, adapters and supply that an emulator has reported.
 
     Attributes:
-        pipe: Where it says so.
-        events: What it has said, in order.
+        pipe: Connection to the emulator.
+        events: Events received so far, in order.
     """
 
     pipe: Connection
@@ -66,11 +66,11 @@ class Journal:
 
     @property
     def driven(self) -> int:
-        """How many motors are driven, as far as is known."""
+        """Number of driven motors according to the last event."""
         return next((int(e.value) for e in reversed(self.events) if e.kind == "driven"), 0)
 
     def listen(self, seconds: float) -> None:
-        """Take in what comes within some time, s; an emulator that is gone says nothing more."""
+        """Receive events for `seconds`; return early if the emulator has ended."""
         until = time.monotonic() + seconds
         try:
             while self.pipe.poll(max(until - time.monotonic(), 0.0)):
@@ -79,7 +79,7 @@ class Journal:
             return
 
     def wait_until_still(self, seconds: float, still: bool = True) -> bool:
-        """Wait until no motor is driven (or one is); return whether that came in time, s."""
+        """Wait until no motor is driven (or one is); return whether that happened in `seconds`."""
         until = time.monotonic() + seconds
         while (self.driven == 0) is not still:
             if (left := until - time.monotonic()) <= 0.0:
@@ -88,5 +88,5 @@ class Journal:
         return True
 
     def since(self, time_: float, *kinds: str) -> list[Event]:
-        """Return the events of some kinds after a moment, s on the monotonic clock."""
+        """Return the events of some kinds since `time_`, s on the monotonic clock."""
         return [event for event in self.events if event.time >= time_ and event.kind in kinds]

@@ -1,4 +1,4 @@
-"""How a trial is ended: each function returns what makes it happen and says when t0 was."""
+"""Ways to end a trial: each function makes one, which acts on a trial and returns t0."""
 
 import signal
 from collections.abc import Callable
@@ -11,12 +11,12 @@ Do = Callable[[Trial], float]
 
 
 def press(number: int, times: int = 1, every: float = 0.0) -> Do:
-    """Send signals to the program, `every` so many s."""
+    """Send a signal to the program `times` times, at intervals of `every` s."""
     return lambda trial: trial.press(number, times, every)
 
 
 def press_then(number: int, then: int, after: float) -> Do:
-    """Send a signal to the program, and another one some time after, s."""
+    """Send a signal to the program, and another one `after` s later."""
 
     def do(trial: Trial) -> float:
         when = trial.press(number)
@@ -28,28 +28,28 @@ def press_then(number: int, then: int, after: float) -> Do:
 
 
 def kill(*who: str, number: int = signal.SIGKILL) -> Do:
-    """Send a signal to several processes at once."""
+    """Send a signal to several processes at the same time."""
     return lambda trial: trial.kill(*who, number=number)
 
 
 def kill_unread(trial: Trial) -> float:
-    """Kill the program when the pipe is full that it and its guardian print to."""
+    """Kill the program while the pipe to which it and its guardian print is full."""
     fill(trial.log)
     return trial.kill("program")
 
 
 def own_fault(trial: Trial) -> float:
-    """Wait until the program does something wrong by itself."""
+    """Wait until the fault of the program itself happens."""
     return trial.hear("fault")[1]
 
 
 def inject(faults: dict[str, str]) -> Do:
-    """Let something go wrong on the bus: robot to faults, "" for all other robots."""
+    """Inject faults into the bus; `faults` maps robots to texts, "" to that of all other robots."""
     return lambda trial: trial.inject(faults.get(trial.robot, faults.get("", "")))
 
 
 def unplug(seconds: float) -> Do:
-    """Pull out the adapter for some time, s; t0 is when it is back, or now if it never is."""
+    """Pull out the adapter for `seconds`; t0 is when it is back, or now if it never is."""
 
     def do(trial: Trial) -> float:
         when = trial.inject(f"unplug:seconds={seconds:g}")
@@ -59,7 +59,7 @@ def unplug(seconds: float) -> Do:
 
 
 def brown_out(seconds: float) -> Do:
-    """Take the servos' supply away for some time, s; t0 is when it is back."""
+    """Interrupt the servos' supply for `seconds`; t0 is when it is back."""
 
     def do(trial: Trial) -> float:
         trial.inject(f"brown_out:volts=0:seconds={seconds:g}")

@@ -1,4 +1,4 @@
-"""What a program may do wrong in the middle of a run: its controller, or the driver of its IMU."""
+"""Faults of a program in the middle of a run: in its controller, or in the driver of its IMU."""
 
 import ctypes
 import threading
@@ -21,12 +21,12 @@ Fault = Callable[[JointCommand], JointCommand]
 
 
 class Faulty:
-    """A controller that goes wrong at some time.
+    """A controller that becomes faulty at some time.
 
     Args:
-        controller: What it does before.
-        fault: What becomes of its commands then.
-        begin: When that is.
+        controller: The controller that it wraps.
+        fault: Replaces the commands from then on.
+        begin: Determines when that is.
     """
 
     def __init__(self, controller: Controller, fault: Fault, begin: Begin) -> None:
@@ -68,7 +68,7 @@ def _blocks(command: JointCommand) -> JointCommand:
 
 
 def _blocks_in_c(command: JointCommand) -> JointCommand:
-    ctypes.PyDLL(None).pause()  # which keeps the interpreter's lock
+    ctypes.PyDLL(None).pause()  # without releasing the global interpreter lock
     return command
 
 
@@ -89,7 +89,7 @@ FAULTS: dict[str, Fault] = {
 
 
 def make_faulty(robot: Robot, fault: Fault, begin: Begin) -> None:
-    """Let every controller of a robot go wrong when it is time."""
+    """Make every controller of a robot faulty when the fault is due."""
     run = robot.run
     robot.run = lambda controller, *given, **more: run(  # type: ignore[method-assign]
         Faulty(controller, fault, begin), *given, **more
@@ -97,7 +97,7 @@ def make_faulty(robot: Robot, fault: Fault, begin: Begin) -> None:
 
 
 def break_imu(robot: Robot, begin: Begin) -> None:
-    """Let the IMU's driver hand out what is no number when it is time."""
+    """Make the IMU's driver return NaN when the fault is due."""
     servos = robot.backend.backend
     assert isinstance(servos, ServoBackend)
     readings = servos.readings

@@ -1,4 +1,4 @@
-"""What a client that is not ours reads of the torque: the vendors' own SDKs, after the end."""
+"""Reads the torque of the servos after a trial with the vendors' own SDKs."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,9 +15,9 @@ ATTEMPTS = 5
 
 
 def torque_of(robot: RobotDescription, port: str) -> dict[str, int | None]:
-    """Return joint name to torque enable as the vendor's SDK reads it; None where nobody answers.
+    """Return torque enable by joint name, as the vendor's SDK reads it; None without an answer.
 
-    -1 stands for a Dynamixel whose bus watchdog has frozen it.
+    -1 stands for a Dynamixel whose bus watchdog has tripped.
     """
     bus = robot.buses[0]
     path = dict(part.split("=") for part in port.split(",")).get(bus.name) if "=" in port else port

@@ -1,4 +1,4 @@
-"""When a run is ended: what it is busy with, and since when."""
+"""The moment at which a run is ended: its activity, and the time since that began."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -9,11 +9,11 @@ ACTIVITIES: tuple[Activity, ...] = ("standing", "walking", "closing crouch")
 
 @dataclass(frozen=True)
 class Moment:
-    """When a run is ended.
+    """The moment at which a run is ended.
 
     Attributes:
-        activity: While it is busy with this.
-        after: So long after that began, s.
+        activity: Activity of the run at that moment.
+        after: Time since the beginning of the activity, s.
     """
 
     activity: Activity

@@ -1,4 +1,4 @@
-"""Who is who among the processes around an armed robot."""
+"""Finds the processes that belong to an armed robot."""
 
 from contextlib import suppress
 from pathlib import Path
@@ -7,7 +7,7 @@ from windup.hal.port.lock import AdapterLock
 
 
 def guardian_of(port: str) -> int | None:
-    """Return the process number of the guardian of a port, or None where there is none."""
+    """Return the process id of the guardian of a port, or None if there is none."""
     url = port.split(",")[0].partition("=")[2] if "=" in port else port
     lock = AdapterLock(url)
     try:
@@ -17,7 +17,7 @@ def guardian_of(port: str) -> int | None:
 
 
 def child_with(parent: int, word: str) -> int | None:
-    """Return the process number of a child whose command line has a word in it, or None."""
+    """Return the id of a child process whose command line contains a word, or None."""
     for task in Path(f"/proc/{parent}/task").glob("*/children"):
         with suppress(OSError):
             for child in task.read_text().split():
@@ -27,7 +27,7 @@ def child_with(parent: int, word: str) -> int | None:
 
 
 def alive(number: int | None) -> bool:
-    """Return whether a process runs, and is no zombie."""
+    """Return whether a process is running and not a zombie."""
     if number is None:
         return False
     try:

@@ -1,4 +1,4 @@
-"""The process that is ended: somebody's program with a robot."""
+"""The process that is ended: a user's program with a robot."""
 
 import atexit
 import os
@@ -21,17 +21,17 @@ from windup.tools.terminal.output import console
 
 @dataclass(frozen=True)
 class Program:
-    """What the program does.
+    """Description of the program.
 
     Attributes:
-        robot: The robot.
+        robot: Name of the robot.
         port: Its port.
-        arm: It may switch torque on.
-        errors: What its standard error is, which its guardian has too.
-        log: The file or the pipe.
-        activity: What it is busy with when it is ended.
-        fault: What it does wrong then: a name of `FAULTS` or `SCRIPTS`, "imu nan", or "".
-        after: When, s into the activity.
+        arm: Whether it may switch torque on.
+        errors: Kind of its standard error, which its guardian shares.
+        log: Path of the file or pipe for standard error.
+        activity: Its activity when it is ended.
+        fault: Its own fault: a name of `FAULTS` or `SCRIPTS`, "imu nan", or "".
+        after: Time from the beginning of the activity to the fault, s.
     """
 
     robot: str
@@ -45,7 +45,7 @@ class Program:
 
 
 def main(program: Program, tell: Connection) -> None:
-    """Run a program to its end; the body of the process, whose exit status is that of a command."""
+    """Run a program; the main function of the process, whose exit status is that of a command."""
     end_on_signals()
     replace_standard_error(program.errors, program.log)
     status = 0
@@ -58,7 +58,7 @@ def main(program: Program, tell: Connection) -> None:
         status = error.exit_status
     except KeyboardInterrupt:
         status = 130
-    atexit._run_exitfuncs()  # a process of multiprocessing leaves them out, a program does not
+    atexit._run_exitfuncs()  # a process of multiprocessing skips them, an ordinary program does not
     sys.exit(status)
 
 

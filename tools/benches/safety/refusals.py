@@ -1,4 +1,4 @@
-"""What has to be refused before torque comes on, each tried once."""
+"""Conditions that must be refused before torque is switched on, each tried once."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -23,12 +23,12 @@ REFUSALS: tuple[tuple[str, dict[str, str], bool, int], ...] = (
     ("supply is low", {"op3": "brown_out:volts=9:seconds=inf",
                        "duck": "brown_out:volts=5.5:seconds=inf"}, True, 3),
 )  # fmt: skip
-"""What is wrong, the faults that make it so (robot to text), armed, and the exit status."""
+"""Each condition, the faults that cause it (robot to text), whether armed, and exit status."""
 NETWORK = ("Feetech behind a network", 2)
 
 
 def measure_refusals(robots: Sequence[str]) -> dict[str, Any]:
-    """Return what each refusal was like: exit status, message, and whether a motor was driven."""
+    """Return each refusal's exit status and message, and whether a motor was driven."""
     result: dict[str, Any] = {}
     for robot in robots:
         for what, faults, arm, status in REFUSALS:

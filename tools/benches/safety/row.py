@@ -1,4 +1,4 @@
-"""One row of the table: a way to end a run, and what a safe ending looks like."""
+"""One row of the table: a way to end a run, and the criteria of a safe ending."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,15 +10,15 @@ from windup.tools.benches.safety.standard_error import Errors
 from windup.tools.benches.safety.trial import Trial
 
 End = Literal["off", "frozen", "unknown", "unattended"]
-"""What is found afterwards: torque off at every servo that answers; every servo frozen by its bus
-watchdog; no answer, and a guardian that goes on trying; no answer, and nobody left to try."""
+"""State after the end: torque off at every servo that answers; every servo frozen by its bus
+watchdog; no answer, with a guardian that keeps trying; no answer, and no guardian."""
 
 STOP = 0.25
-"""From an ending to no driven motor, s."""
+"""Longest time from an ending to no driven motor, s."""
 HANG = 0.30
-"""The same where nobody but the guardian's patience tells, s."""
+"""The same if only the guardian's time-out detects the ending, s."""
 SLACK = 0.15
-"""What a crouch may take longer than it is meant to, s."""
+"""Tolerance of the duration of a crouch, s."""
 
 
 @dataclass(frozen=True)
@@ -26,18 +26,18 @@ class Row:
     """A way to end a run.
 
     Attributes:
-        name: As the table has it.
-        do: Makes it happen; returns t0, s on the monotonic clock.
-        status: The exit statuses that are right; negative is the number of a signal.
-        within: From t0 to the last driven motor let go, s, a crouch apart.
-        crouch: A robot whose policy is a crouch may take its time for it.
-        end: What is read afterwards.
-        start: What t0 is.
-        fault: What the program itself does wrong; "" where it is innocent.
-        activities: When it is tried.
-        robots: With which robots; all if empty.
-        network: The robot is behind TCP.
-        errors: What standard error is to program and guardian.
+        name: Name in the table.
+        do: Ends the run; returns t0, s on the monotonic clock.
+        status: The correct exit statuses; a negative one is the number of a signal.
+        within: Longest time from t0 until no motor is driven, without a crouch, s.
+        crouch: Whether a robot whose stop policy is a crouch may take the additional time for it.
+        end: Expected state after the end.
+        start: Description of t0.
+        fault: Fault of the program itself; "" if it has none.
+        activities: Activities in which it is tried.
+        robots: Robots with which it is tried; all if empty.
+        network: Whether the robot is connected by TCP.
+        errors: Kind of standard error of program and guardian.
     """
 
     name: str
@@ -54,5 +54,5 @@ class Row:
     errors: Errors = "a file"
 
     def allowed(self, crouches: bool) -> float:
-        """Return how long it may take with a robot that crouches, or not, s."""
+        """Return the longest time allowed for a robot that crouches, or does not, s."""
         return self.within + (CROUCH_SECONDS + SLACK if crouches and self.crouch else 0.0)

@@ -1,4 +1,4 @@
-"""The table: every way to end a run that anybody has thought of, and what is right for each."""
+"""The table: all known ways to end a run, with the correct result of each."""
 
 from math import inf
 from signal import (
@@ -28,13 +28,13 @@ KILLED, ASKED, FAILED, BUS = (-SIGKILL,), (130,), (1,), (3,)
 X_SERVOS = ("op3",)
 """Robots whose servos have a bus watchdog."""
 FELL = (1, 3)
-"""What ends a run that falls may be seen before or after its fall."""
+"""Exit statuses of a run that falls: the cause may be detected before or after the fall."""
 STALE = 0.25
-"""How long a joint may be silent before that ends a run, s."""
+"""Age of a joint's state that ends a run, s."""
 BELIEF = 0.6
-"""How long the watch over supply and IMU takes to believe what it reads, s."""
+"""Time until the watches of supply and IMU confirm a finding, s."""
 HEAT = 3.5
-"""The same for heat: a servo's temperature is read once in 1.6 s, and has to be read twice."""
+"""The same for heat, s: a servo's temperature is read every 1.6 s, and must be read twice."""
 
 SIGNALS = (
     Row("SIGINT", press(SIGINT), ASKED),

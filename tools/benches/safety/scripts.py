@@ -1,4 +1,4 @@
-"""What a program does with its robot: it stands, walks, crouches, or is written carelessly."""
+"""Behaviour of the program: it stands, walks, crouches, or is written carelessly."""
 
 import os
 import threading
@@ -13,15 +13,15 @@ from windup.tools.robot.robot import Robot
 
 BY_ITSELF = "its walk ended by itself"
 FOR_EVER = 3600.0
-"""Longer than anything here, s."""
+"""Longer than any trial, s."""
 WARM_UP = 0.4
-"""From the end of the first motion to a robot that stands still, s."""
+"""Time from the end of the first motion until the robot stands still, s."""
 
 Body = Callable[[Robot, Activity, Begin], None]
 
 
 def move(robot: Robot, activity: Activity, begin: Begin) -> None:
-    """Stand, walk, or crouch at the end."""
+    """Stand, walk, or perform the closing crouch."""
     if activity == "walking":
         robot.walk(steps=1000, on_step=[lambda number, _: begin.now("walking")])
         raise WindupError(f"{BY_ITSELF}: {robot.loop.reason}")
@@ -34,7 +34,7 @@ def move(robot: Robot, activity: Activity, begin: Begin) -> None:
 
 
 def _goes_on(robot: Robot, activity: Activity, begin: Begin) -> None:
-    """Catch Ctrl-C, and want to go on."""
+    """Catch Ctrl-C, and try to continue."""
     try:
         move(robot, activity, begin)
     except KeyboardInterrupt:
@@ -42,21 +42,21 @@ def _goes_on(robot: Robot, activity: Activity, begin: Begin) -> None:
 
 
 def _in_a_thread(robot: Robot, activity: Activity, begin: Begin) -> None:
-    """Run outside of the main thread, which only waits."""
+    """Run in another thread, while the main thread only waits."""
     thread = threading.Thread(target=move, args=(robot, activity, begin))
     thread.start()
     thread.join()
 
 
 def _leaves(robot: Robot, activity: Activity, begin: Begin) -> None:
-    """End between two calls, without having closed the robot."""
+    """Exit between two calls, without closing the robot."""
     robot.stand(WARM_UP)
     begin.now("standing")
     _sleep(begin)
 
 
 def _leaves_at_once(robot: Robot, activity: Activity, begin: Begin) -> None:
-    """End between two calls, and without a word to Python."""
+    """Exit between two calls by `os._exit`, without any clean-up of Python."""
     robot.stand(WARM_UP)
     begin.now("standing")
     _sleep(begin)
@@ -69,7 +69,7 @@ def _sleep(begin: Begin) -> None:
 
 
 def _nobody_reads(robot: Robot, activity: Activity, begin: Begin) -> None:
-    """Print to somebody who has gone."""
+    """Print to a pipe whose reader has closed it."""
     reading, writing = os.pipe()
     os.close(reading)
 
@@ -89,4 +89,4 @@ SCRIPTS: dict[str, Body] = {
     "nobody reads its output": _nobody_reads,
 }
 LEFT_OPEN = ("exits between two calls", "os._exit")
-"""Those that never close their robot."""
+"""Scripts that never close their robot."""

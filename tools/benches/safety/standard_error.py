@@ -1,4 +1,4 @@
-"""Where program and guardian print: to a file, to a pipe that nobody reads, or nowhere."""
+"""Standard error of program and guardian: a file, an unread pipe, or closed."""
 
 import os
 import sys
@@ -13,7 +13,7 @@ STANDARD_ERROR = 2
 
 @contextmanager
 def unread(path: Path) -> Iterator[None]:
-    """Make a pipe, by name, that somebody holds open and does not read."""
+    """Create a named pipe and keep it open without reading from it."""
     os.mkfifo(path)
     held = os.open(path, os.O_RDWR | os.O_NONBLOCK)
     try:
@@ -23,7 +23,7 @@ def unread(path: Path) -> Iterator[None]:
 
 
 def fill(path: Path) -> None:
-    """Fill a pipe: whoever writes to it from now on waits for ever."""
+    """Fill a pipe, so that every further write to it blocks."""
     pipe = os.open(path, os.O_WRONLY | os.O_NONBLOCK)
     try:
         for size in (4096, 1):
@@ -35,9 +35,9 @@ def fill(path: Path) -> None:
 
 
 def replace_standard_error(errors: Errors, path: Path) -> None:
-    """Let this process print to a file or a pipe; or nowhere, as one does that `2>&-` started."""
+    """Replace standard error by a file or pipe, or close it, as `2>&-` does."""
     if errors == "closed":
-        sys.stderr = sys.__stderr__ = None  # type: ignore[misc]  # as Python does it itself
+        sys.stderr = sys.__stderr__ = None  # type: ignore[misc]  # as Python itself does
         os.close(STANDARD_ERROR)
         return
     opened = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o600)

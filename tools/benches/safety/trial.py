@@ -1,4 +1,4 @@
-"""A trial that is under way: an emulated robot, a program that moves it, and its guardian."""
+"""A trial in progress: an emulated robot, a program that moves it, and its guardian."""
 
 import os
 import signal
@@ -13,13 +13,13 @@ from windup.tools.benches.safety.emulated import Journal
 from windup.tools.benches.safety.moment import Moment
 
 PATIENCE = 60.0
-"""Until a program is under way, s."""
+"""Longest time until a program is under way, s."""
 LONGEST = 8.0
-"""From an ending to motors that count as never let go, s."""
+"""Time from an ending after which motors count as never switched off, s."""
 AFTERWARDS = 0.4
-"""How long nothing may be driven again, and for a guardian to see that torque is off, s."""
+"""Time in which no motor may be driven again, and a guardian may see that torque is off, s."""
 LINES = 40
-"""Of what program and guardian have printed, at most."""
+"""Largest number of lines of the log that are shown."""
 
 
 class NotMeasuredError(WindupError):
@@ -27,19 +27,20 @@ class NotMeasuredError(WindupError):
 
 
 class Trial:
-    """A program that moves an emulated robot, and everybody who has to do with it.
+    """A program that moves an emulated robot, and all related processes.
 
     Attributes:
-        program: Its process.
-        guardian: Its guardian's process number.
-        planner: The process number of what plans its steps, or None.
-        emulator: The process of the servos.
-        journal: What became of motors, adapter and supply.
+        program: Process of the program.
+        guardian: Process id of its guardian, or None.
+        planner: Process id of its step planner, or None.
+        emulator: Process of the emulated servos.
+        journal: Events of motors, adapter and supply.
         robot: Name of the robot.
         port: Its port.
-        moment: When it is ended.
-        said: What the program said last.
-        log: What program and guardian print.
+        moment: The moment at which the run is ended.
+        said: Last message of the program.
+        log: Output of program and guardian.
+        taken: Descriptors to close afterwards.
     """
 
     def __init__(
@@ -52,9 +53,10 @@ class Trial:
         self.log = Path(os.devnull)
         self.guardian: int | None = None
         self.planner: int | None = None
+        self.taken: list[int] = []
 
     def kill(self, *who: str, number: int = signal.SIGKILL) -> float:
-        """Send a signal to "program", "guardian", "planner", "emulator" at once; return when."""
+        """Send a signal to "program", "guardian", "planner", "emulator"; return the time, s."""
         pids = {
             "program": self.program.pid,
             "emulator": self.emulator.pid,
@@ -67,10 +69,21 @@ class Trial:
             if pid is not None:
                 with suppress(ProcessLookupError):
                     os.kill(pid, number)
+        if "emulator" in who and number == signal.SIGKILL:
+            self._take_its_terminals()
         return when
 
+    def _take_its_terminals(self) -> None:
+        """Open as many pseudo-terminals as the emulator had, to occupy their numbers.
+
+        Otherwise the next emulator would get them, and this trial's guardian would control the
+        robot of another trial.
+        """
+        self.emulator.join(PATIENCE)
+        self.taken += [end for _ in self.port.split(",") for end in os.openpty()]
+
     def press(self, number: int, times: int = 1, every: float = 0.0) -> float:
-        """Send signals to the program, `every` so many s; return when the first was sent."""
+        """Send `times` signals to the program at intervals of `every` s; return the first time."""
         when = self.kill("program", number=number)
         for _ in range(times - 1):
             self.journal.listen(every)
@@ -78,12 +91,12 @@ class Trial:
         return when
 
     def inject(self, faults: str) -> float:
-        """Let something go wrong on the bus, and return when it was told to."""
+        """Inject faults into the bus; return the time at which they were sent, s."""
         self.journal.pipe.send(faults)
         return time.monotonic()
 
     def wait_for(self, kind: str, seconds: float) -> float:
-        """Return when an event of a kind came, s; at most so many s from now."""
+        """Return the time of the next event of a kind, s; wait for `seconds` at most."""
         since, until = time.monotonic(), time.monotonic() + seconds
         while time.monotonic() < until:
             self.journal.listen(0.01)
@@ -92,10 +105,10 @@ class Trial:
         raise NotMeasuredError(f"the emulator said nothing of {kind!r}")
 
     def hear(self, kind: str, seconds: float = PATIENCE) -> tuple[str, float]:
-        """Wait until the program says something of a kind; return what, and when.
+        """Wait for a message of a kind from the program; return its content and time, s.
 
         Raises:
-            NotMeasuredError: It ended, or is silent.
+            NotMeasuredError: The program ended, or sent no such message in time.
         """
         until = time.monotonic() + seconds
         while (left := until - time.monotonic()) > 0.0:
@@ -121,7 +134,7 @@ class Trial:
         return ""
 
     def errors(self) -> str:
-        """Return what error the program has said since, if any."""
+        """Return the last message of the program, such as its error, or ""."""
         with suppress(EOFError, OSError):
             while self._told.poll(0.0):
                 self.said = str(self._told.recv()[1])

@@ -1,4 +1,4 @@
-"""What became of a trial: how soon, what the vendor's SDK reads, how the program ended."""
+"""Judges a trial: time to torque off, torque as the vendor's SDK reads it, exit status."""
 
 import time
 from contextlib import suppress
@@ -14,21 +14,21 @@ from windup.tools.benches.safety.row import Row
 from windup.tools.benches.safety.trial import AFTERWARDS, LONGEST, Trial
 
 READS, BETWEEN = 4, 0.3
-"""How often an independent client tries to read, and how long it waits between, s."""
+"""Number of attempts of an independent client to read, and the time between them, s."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """What was seen.
+    """The result of a trial.
 
     Attributes:
-        activity: What the program was busy with.
-        after: When it was ended, s into that.
-        seconds: From t0 to the last driven motor let go, s; infinite if never.
-        status: The program's exit status.
-        found: What is found afterwards, as a row's `end`, or what else.
-        wrong: What is not as it should be; "" for a safe ending.
-        words: What program and guardian have printed, where something is wrong.
+        activity: Activity of the program.
+        after: Time from the beginning of the activity to the ending, s.
+        seconds: Time from t0 until no motor was driven, s; infinite if never.
+        status: Exit status of the program.
+        found: State after the end, a row's `end` or a description.
+        wrong: Deviations from the expected result; "" for a safe ending.
+        words: Output of program and guardian, if something is wrong.
     """
 
     activity: str
@@ -41,7 +41,7 @@ class Verdict:
 
 
 def judge(trial: Trial, row: Row, robot: RobotDescription, t0: float) -> Verdict:
-    """Wait for the end and return what was seen."""
+    """Wait for the end of the trial and return its result."""
     gone = row.end in ("unknown", "unattended")
     seconds = 0.0 if gone or row.end == "frozen" else _undriven(trial, t0)
     trial.program.join(LONGEST)
@@ -60,7 +60,7 @@ def judge(trial: Trial, row: Row, robot: RobotDescription, t0: float) -> Verdict
 
 
 def _undriven(trial: Trial, t0: float) -> float:
-    """Return how long after t0 the last motor was let go, s."""
+    """Return the time from t0 until the last motor was no longer driven, s."""
     if not trial.journal.wait_until_still(LONGEST):
         return inf
     trial.program.join(LONGEST)
@@ -70,7 +70,7 @@ def _undriven(trial: Trial, t0: float) -> float:
 
 
 def _watched(trial: Trial, row: Row) -> bool:
-    """Return whether a guardian is left, once it has had the time to end."""
+    """Return whether a guardian is still running after the time in which it should end."""
     until = time.monotonic() + (LONGEST if row.end == "off" else 0.0)
     while alive(trial.guardian) and time.monotonic() < until:
         time.sleep(0.01)
@@ -78,7 +78,7 @@ def _watched(trial: Trial, row: Row) -> bool:
 
 
 def _read(trial: Trial, robot: RobotDescription) -> dict[str, int | None]:
-    """Return the torque of each joint; a guardian that still tries takes answers away."""
+    """Return the torque of each joint; a guardian that is still trying may disturb the reading."""
     for _ in range(READS - 1):
         with suppress(OSError, SerialException):
             return torque_of(robot, trial.port)
@@ -87,11 +87,11 @@ def _read(trial: Trial, robot: RobotDescription) -> dict[str, int | None]:
 
 
 def _found(trial: Trial, row: Row, robot: RobotDescription) -> str:
-    """Return what an independent client finds, and whether a guardian is left."""
+    """Return the state that an independent client reads, and whether a guardian is left."""
     watched = _watched(trial, row)
     if row.end in ("unknown", "unattended"):
         if not watched and trial.journal.driven == 0:
-            return row.end  # torque was off before the adapter died: there is nothing to watch
+            return row.end  # torque was off before the adapter died: no guardian is needed
         return "unknown" if watched else "unattended"
     if trial.program.is_alive():
         return "the program goes on"

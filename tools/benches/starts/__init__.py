@@ -1,1 +1,1 @@
-"""Random starts of a robot: how it is when it is switched on, and what may be wrong with it."""
+"""Random starts of a robot: its initial postures and faults."""

@@ -1,4 +1,4 @@
-"""What may be wrong with a robot when it is switched on: in its file, or in a joint."""
+"""Faults of a robot when it is switched on: in its file, or in a joint."""
 
 import re
 import shutil
@@ -21,8 +21,8 @@ class Broken:
     """One fault.
 
     Attributes:
-        fault: "sign": flipped in robot.toml. "swap": two ids exchanged there. "jam": a joint does
-            not move. "motor": it turns the other way.
+        fault: "sign": inverted in robot.toml. "swap": two ids exchanged there. "jam": a joint does
+            not move. "motor": a motor turns the wrong way.
         joints: Indices of the joints that have it.
     """
 
@@ -33,8 +33,8 @@ class Broken:
     def random(cls, robot: RobotDescription, fault: Fault, rng: np.random.Generator) -> "Broken":
         """Return the fault at random joints.
 
-        What is wrong in the file is so for legs: nothing shows where other limbs really are. Ids
-        are swapped with the other side's, or with the next joint's.
+        Faults in the file concern the legs: nothing reveals where other limbs really are. Ids are
+        swapped with the other side's, or with the next joint's.
         """
         joints = np.arange(len(robot.joints))
         if fault in IN_THE_FILE:
@@ -48,7 +48,7 @@ class Broken:
         )
 
     def folder(self, robot: RobotDescription, inside: Path) -> Path:
-        """Return a copy of the robot's folder whose robot.toml has the fault."""
+        """Return a copy of the robot's folder with the fault in its robot.toml."""
         copy = Path(shutil.copytree(robot.folder, inside / robot.name))
         path = copy / "robot.toml"
         text = path.read_text()
@@ -64,7 +64,7 @@ class Broken:
 
 
 def _changed(text: str, joint: str, what: str, by: str) -> str:
-    """Return a robot.toml with one thing changed in the line of a joint."""
+    """Return the text of a robot.toml with a replacement in the line of a joint."""
     lines = text.splitlines(keepends=True)
     row = next(row for row, line in enumerate(lines) if f'name = "{joint}"' in line)
     lines[row] = re.sub(what, by, lines[row])

@@ -1,4 +1,4 @@
-"""Postures that a robot may be in when it is switched on: a pose, and how its base is turned."""
+"""Initial postures of a robot: joint positions, and orientation of the base."""
 
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -18,14 +18,14 @@ KINDS: tuple[Kind, ...] = get_args(Kind)
 
 
 def kinds_of(robot: RobotDescription) -> tuple[Kind, ...]:
-    """Return the postures that a robot can be in: who has no graph for it cannot sit."""
+    """Return the postures of a robot; one without a graph for sitting cannot sit."""
     return tuple(kind for kind in KINDS if kind != "sitting" or "sit" in robot.gaits())
 
 
 JITTER = np.radians(4.0)
-"""Standard deviation of every joint, where hands have put it, rad; limp limbs lie twice as wild."""
+"""Standard deviation of a joint placed by hand, rad; that of a limp joint is twice as large."""
 LEAN = 0.25
-"""How far one may be tilted that hangs, rad."""
+"""Largest tilt of a hanging robot, rad."""
 SIDES = (("front", 0.35), ("back", 0.35), ("left", 0.15), ("right", 0.15))
 QUARTER = np.pi / 2.0
 TURNS: dict[str, tuple[Array, float]] = {
@@ -38,14 +38,14 @@ TURNS: dict[str, tuple[Array, float]] = {
 
 @dataclass(frozen=True)
 class Placed:
-    """A robot somewhere.
+    """The initial state of a robot.
 
     Attributes:
-        pose: (n,) rad.
+        pose: (n,) joint positions, rad.
         turn: (4,) orientation of the base, wxyz.
-        lift: Of its lowest point above the floor, m.
-        held: Hands hold it until its servos are driven; else it lies, limp.
-        hangs: They hold its base for ever.
+        lift: Height of its lowest point above the floor, m.
+        held: Whether it is held until its servos are driven; else it lies, limp.
+        hangs: Whether its base is held for ever.
     """
 
     pose: Array
@@ -56,7 +56,7 @@ class Placed:
 
 
 def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator) -> Placed:
-    """Return a random posture of a robot that faces anywhere."""
+    """Return a random posture of a robot, with a random heading."""
     joints = robot.joints
     jitter = JITTER * rng.normal(size=len(joints))
     around = turned([0.0, 0.0, 1.0], float(rng.uniform(-np.pi, np.pi)))
@@ -82,9 +82,9 @@ def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator
 
 
 def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Array]:
-    """Return a pose (n,) near `pose` and a turn (4,) with flat soles and the weight over them.
+    """Return a pose (n,) near `pose`, and a base orientation (4,) with flat soles under the CoM.
 
-    The ankles do it, as hands would that put a limp robot down.
+    The ankles are adjusted, as when a limp robot is put down by hand.
     """
     model = robot.model
     data = mujoco.MjData(model)
@@ -116,7 +116,7 @@ def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Array]:
 
 
 def _ankles(robot: RobotDescription) -> Array:
-    """Return the indices of the joints that lay soles flat: ankles, and hips where these pitch."""
+    """Return the indices of the joints that level the soles: ankles, and hip rolls if necessary."""
     names = robot.joints.names
     rolls = [row for row, name in enumerate(names) if name.endswith(("ank_roll", "ankle_roll"))]
     hips = [row for row, name in enumerate(names) if name.endswith("hip_roll")]
@@ -125,12 +125,12 @@ def _ankles(robot: RobotDescription) -> Array:
 
 
 def _leaning_back(robot: RobotDescription, pose: Array) -> Array:
-    """Return the turn (4,) with which a robot sits: on its seat and its heels."""
+    """Return the base orientation (4,) in which a robot sits on its seat and heels."""
     model = robot.model
     sense = PostureSense(model, [foot.body for foot in robot.feet])
 
     def seat(lean: float) -> float:
-        """Return how far the seat is above the heels, m."""
+        """Return the height of the seat above the heels, m."""
         feet, others = sense.lowest(pose, np.array([np.sin(lean), 0.0, np.cos(lean)]))
         return others - feet
 
@@ -138,14 +138,14 @@ def _leaning_back(robot: RobotDescription, pose: Array) -> Array:
 
 
 def turned(axis: Array | list[float], angle: float) -> Array:
-    """Return (4,) wxyz, a turn by `angle` rad about `axis` (3,)."""
+    """Return a quaternion (4,) wxyz, a rotation by `angle` rad about `axis` (3,)."""
     turn = np.empty(4)
     mujoco.mju_axisAngle2Quat(turn, np.asarray(axis, dtype=np.float64), angle)
     return turn
 
 
 def after(first: Array, then: Array) -> Array:
-    """Return the product of two turns (4,) wxyz."""
+    """Return the product of two quaternions (4,) wxyz."""
     turn = np.empty(4)
     mujoco.mju_mulQuat(turn, first, then)
     return turn

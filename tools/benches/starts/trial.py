@@ -1,4 +1,4 @@
-"""One start of an emulated robot: somebody puts it down, and runs what fits."""
+"""One start of an emulated robot: place it in a posture, and run the motion that fits."""
 
 import tempfile
 from contextlib import ExitStack
@@ -22,26 +22,26 @@ from windup.tools.robot.robot import Robot
 from windup.tools.testing.servo_bus import ServoBus
 
 LIE = 2.0
-"""How long limp limbs take to come to rest, s."""
+"""Time for limp limbs to come to rest, s."""
 STAND = 1.0
-"""How long it stands, s."""
+"""Duration of standing, s."""
 CLOSE = np.radians(8.0)
-"""How far from its stance one that stands may be, rad: loads hold joints back."""
+"""Largest deviation of a standing robot from its stance, rad: loads hold joints back."""
 CAUGHT_WITHIN = 15.0
-"""How far a joint with a fault may come, degrees."""
+"""Largest allowed motion of a joint with a fault, degrees."""
 SHOWS = np.radians(10.0)
-"""A joint that is to move by less does not show that it is jammed, rad."""
+"""Smallest commanded motion that reveals a jammed joint, rad."""
 
 
 @dataclass(frozen=True)
 class Start:
-    """What is tried.
+    """Description of a start.
 
     Attributes:
         robot: Name of the robot.
         kind: Its posture.
-        seed: Of everything random.
-        fault: What is wrong with it, or None.
+        seed: Seed of all random numbers.
+        fault: Its fault, or None.
     """
 
     robot: str
@@ -50,17 +50,17 @@ class Start:
     fault: Fault | None = None
 
     def generator(self) -> np.random.Generator:
-        """Return the random numbers of this start."""
+        """Return the random number generator of this start."""
         return np.random.default_rng([self.seed, KINDS.index(self.kind)])
 
 
 def try_start(start: Start) -> dict[str, Any]:
-    """Return what came of a start.
+    """Return the result of a start.
 
-    "outcome" is "done", "refused" (its posture does not do), "first motion" (a joint did not
-    follow), "fell", or another error; "said" are the words; "told" whether a robot that lies or
-    sits was told so before torque came on; "moved" how far joints with a fault came, degrees;
-    "harm" whether such a fault that nobody has caught should have been.
+    "outcome" is "done", "refused" (unsuitable posture), "first motion" (a joint did not follow),
+    "fell", or another error; "said" is the message; "told" whether a robot that lies or sits
+    was refused before torque came on; "moved" the largest motion of joints with a fault, degrees;
+    "harm" whether a fault had an effect for which it should have been caught.
     """
     truth, rng = load_robot(start.robot), start.generator()
     placed = random_posture(truth, start.kind, rng)
@@ -88,7 +88,7 @@ def try_start(start: Start) -> dict[str, Any]:
 
 
 def _does_harm(robot: Robot, broken: Broken, placed: Placed, row: dict[str, Any]) -> bool:
-    """Return whether something came of a fault: a fall, a long way, a joint that stayed behind."""
+    """Return whether a fault had an effect: a fall, a large motion, a joint that did not move."""
     way = np.abs(robot.description.stance - placed.pose)[list(broken.joints)].max()
     if broken.fault == "jam":
         return bool(row["outcome"] != "done" or way > SHOWS)
@@ -97,10 +97,10 @@ def _does_harm(robot: Robot, broken: Broken, placed: Placed, row: dict[str, Any]
 
 @dataclass
 class _Moved:
-    """How far some joints of a twin have come, at most.
+    """Measures the largest motion of some joints of a twin.
 
     Attributes:
-        most: Degrees.
+        most: Largest motion so far, degrees.
     """
 
     twin: Twin
@@ -117,7 +117,7 @@ class _Moved:
 
 
 def _place(robot: Robot, world: BusWorld, placed: Placed) -> None:
-    """Put the twin there; limp limbs come to rest, and everything has been felt and read."""
+    """Place the twin in a posture, and let limp limbs come to rest and sensors settle."""
     physics, twin = world.physics, robot.twin
     assert isinstance(physics, TwinPhysics)
     twin.reset(placed.pose)
@@ -132,7 +132,7 @@ def _place(robot: Robot, world: BusWorld, placed: Placed) -> None:
 
 
 def _lowest(twin: Twin) -> float:
-    """Return the height of the lowest point of the robot, m: a corner of a box around a geom."""
+    """Return the height of the lowest corner of the boxes around the robot's geoms, m."""
     model, data = twin.model, twin.data
     solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
     geoms = np.flatnonzero(solid & (model.geom_bodyid > 0))
@@ -143,7 +143,7 @@ def _lowest(twin: Twin) -> float:
 
 
 def _break(world: BusWorld, broken: Broken) -> None:
-    """Jam a joint, or have a motor turn the other way; a file's fault is none of the world's."""
+    """Jam a joint, or invert a motor; faults in the file need no change of the world."""
     physics = world.physics
     assert isinstance(physics, TwinPhysics)
     if broken.fault == "jam":
@@ -155,9 +155,9 @@ def _break(world: BusWorld, broken: Broken) -> None:
 
 
 def _run(robot: Robot, kind: Kind) -> dict[str, Any]:
-    """Run what fits; return what came of it.
+    """Run the motion that fits the posture, and return its result.
 
-    One that is down is asked to stand first. If that is refused it gets up, where it can.
+    A robot that lies or sits is asked to stand first. If that is refused, it gets up if it can.
     """
     row: dict[str, Any] = {}
     try:
@@ -172,7 +172,7 @@ def _run(robot: Robot, kind: Kind) -> dict[str, Any]:
 
 
 def _stand(robot: Robot) -> dict[str, Any]:
-    """Stand, and return what came of it.
+    """Stand, and return the result.
 
     Raises:
         PostureError: It was refused.
@@ -192,7 +192,7 @@ def _stand(robot: Robot) -> dict[str, Any]:
 
 
 def _rise(robot: Robot) -> dict[str, Any]:
-    """Get up, and return what came of it."""
+    """Get up, and return the result."""
     report: dict[str, Any] = {"sides": [], "peak_load": 0.0, "up": False, "reason": ""}
     try:
         rise(robot, 3, report)

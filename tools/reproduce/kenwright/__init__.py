@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from windup import control, robots, sim_twin
-from windup.tools.reproduce.figure import Study, folder_of
 from windup.tools.reproduce.kenwright import (
     comfort,
     falls,
@@ -16,6 +15,7 @@ from windup.tools.reproduce.kenwright import (
     walking,
     work,
 )
+from windup.tools.reproduce.study.figure import Study, folder_of
 
 KENWRIGHT = Study(
     name="kenwright",

@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.kenwright.jobs import AROUND, FOUR, STEP, cell, count, push
 from windup.tools.reproduce.kenwright.pushes import FACING, RELAXED, facing, relaxed
 from windup.tools.reproduce.kenwright.recorder import apart, column
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 
 IMPULSE = 1.8  # N s
 FAR = 0.02  # m

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Results
 from windup.tools.reproduce.kenwright.jobs import AROUND, FOUR, cell, fall
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Results
 
 ALL = AROUND[::2]
 SOFT = 0.3

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Results
 from windup.tools.reproduce.kenwright.jobs import AROUND, FOUR, cell, count, push
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Results
 
 SMALL = 0.7  # N s
 GRID = (1.4, 1.6, 1.8, 2.0)  # N s

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from windup.tools.reproduce.figure import Job, Result, Results
+from windup.tools.reproduce.study.figure import Job, Result, Results
 
 STEP = "predictive"
 OVER = 4.0  # N s, nothing stands that

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.kenwright.jobs import cell, count, push
 from windup.tools.reproduce.kenwright.recorder import apart, column
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 
 IMPULSE = 1.8  # N s
 EVERY = 8.0  # s; time to come to rest between the two

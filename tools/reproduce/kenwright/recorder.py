@@ -12,7 +12,7 @@ from windup.control.stepping.stepper import Stepper
 from windup.hal.controller import Controller
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
-from windup.tools.reproduce.figure import Result
+from windup.tools.reproduce.study.figure import Result
 from windup.tools.robot.robot import Robot
 
 EVERY = 2  # ticks

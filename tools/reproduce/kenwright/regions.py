@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Results
 from windup.tools.reproduce.kenwright.jobs import AROUND, FOUR, cell, count, push
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Results
 
 IMPULSE = 1.8  # N s
 SUPPORTS = ("hull", "capsule")

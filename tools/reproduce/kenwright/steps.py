@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.kenwright.jobs import AROUND, FOUR, STEP, cell, count, push
 from windup.tools.reproduce.kenwright.recorder import column
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 
 LARGE = (1.8, 2.0)  # N s
 PERIOD = 4.0  # ms, of a tick at 250 Hz

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 
 from windup.hal.joints import Array
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.kenwright.jobs import push
 from windup.tools.reproduce.kenwright.pushes import FACING, facing
 from windup.tools.reproduce.kenwright.recorder import column
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 
 IMPULSE = 1.8  # N s, at a shoulder: 0.11 N m s about the vertical
 SHOULDERS = ("l_sho_pitch_link", "r_sho_pitch_link")

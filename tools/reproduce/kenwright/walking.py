@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from windup.hal.geometry.angles import wrapped
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.kenwright.jobs import stride
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 
 SPEED = 0.1  # m/s
 HEADINGS = (0.0, 45.0, 90.0, 135.0, 180.0, -90.0)

@@ -14,8 +14,8 @@ from windup.tools.behaviours.push_trial import push_robot
 from windup.tools.commands.push import Push
 from windup.tools.commands.stride import Stride
 from windup.tools.measures.fall_report import fall_result
-from windup.tools.reproduce.figure import Job, Result
 from windup.tools.reproduce.kenwright.recorder import Recorder
+from windup.tools.reproduce.study.figure import Job, Result
 from windup.tools.robot.robot import Robot
 
 ARMS = ("l_el_link", "r_el_link")

@@ -3,7 +3,6 @@
 from pathlib import Path
 
 from windup import control, robots, sim_twin
-from windup.tools.reproduce.figure import Study, folder_of
 from windup.tools.reproduce.laszlo import (
     discrete,
     following,
@@ -21,6 +20,7 @@ from windup.tools.reproduce.laszlo import (
     turning,
     work,
 )
+from windup.tools.reproduce.study.figure import Study, folder_of
 
 LASZLO = Study(
     name="laszlo",

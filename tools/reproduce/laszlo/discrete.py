@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from windup.hal.joints import Array
-from windup.tools.reproduce.figure import Claim, Figure, Job, Result, Results
 from windup.tools.reproduce.laszlo.jobs import NAMES, walk, walked
 from windup.tools.reproduce.laszlo.recorder import records
+from windup.tools.reproduce.study.figure import Claim, Figure, Job, Result, Results
 
 STEADY = 20  # steps left out as start-up
 BAND = 0.02  # of the steady value: settled

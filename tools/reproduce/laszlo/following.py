@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.laszlo.jobs import cell
 from windup.tools.reproduce.laszlo.recorder import column
 from windup.tools.reproduce.laszlo.tours import tour
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 
 WAY = 6.0  # m to each point
 BEARINGS = (45, -45, 90, -90, 150)  # degrees

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from windup.tools.reproduce.figure import Job, Result, Results
+from windup.tools.reproduce.study.figure import Job, Result, Results
 
 STEPS = 60
 SEEDS = 8

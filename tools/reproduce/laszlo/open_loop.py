@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, Figure, Job, Results
 from windup.tools.reproduce.laszlo.jobs import SEEDS, cell, seeds
 from windup.tools.reproduce.laszlo.recorder import column
+from windup.tools.reproduce.study.figure import Claim, Figure, Job, Results
 
 THESIS_STEPS = 5  # chapter 4
 

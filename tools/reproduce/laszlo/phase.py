@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 
 from windup.hal.joints import Array
-from windup.tools.reproduce.figure import Claim, Figure, Job, Result, Results
 from windup.tools.reproduce.laszlo.jobs import NAMES, walk
 from windup.tools.reproduce.laszlo.recorder import column
+from windup.tools.reproduce.study.figure import Claim, Figure, Job, Result, Results
 
 UP = (
     walk(sampling="fl", forward=0.25),

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Result
 from windup.tools.reproduce.laszlo.jobs import walked
 from windup.tools.reproduce.laszlo.recorder import column
+from windup.tools.reproduce.study.figure import Result
 
 HIP_EVERY = 8  # samples of a trace: 0.16 s, as in the thesis
 HALF = 0.5  # m, half a hip line; "approximately 1 meter"

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.laszlo.jobs import NAMES, SAMPLINGS, SEEDS, STEPS, cell, seeds, walked
 from windup.tools.reproduce.laszlo.pictures import hip_plot, numbers, steps_text
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 
 UP_GRID = (0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4)
 FEW = (0.25, 0.4)

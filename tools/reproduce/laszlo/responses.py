@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from windup.hal.joints import Array
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.laszlo.work import VECTORS
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 
 STEPS = (1, 2, 3, 4)  # by the fourth the figure is falling noticeably
 RANGES = ((-20.0, 20.0), (-10.0, 10.0))  # degrees of pitch and roll

@@ -3,10 +3,10 @@
 from functools import partial
 from typing import Any
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Results
 from windup.tools.reproduce.laszlo.jobs import cell, walked
 from windup.tools.reproduce.laszlo.recorder import column, records
 from windup.tools.reproduce.laszlo.tours import tour
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Results
 
 SEEDS = 4
 STEPS = 60

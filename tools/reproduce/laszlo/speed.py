@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.laszlo.jobs import walk, walked
 from windup.tools.reproduce.laszlo.pictures import hip_plot, numbers
 from windup.tools.reproduce.laszlo.recorder import records
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 
 GRID = (0.1, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5)
 FEW = (0.2, 0.35)

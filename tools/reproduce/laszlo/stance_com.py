@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Results
 from windup.tools.reproduce.laszlo.jobs import walk
 from windup.tools.reproduce.laszlo.recorder import records
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Results
 
 # Target, then the thesis' K forward, K lateral, Q forward, Q lateral.
 THESIS = {

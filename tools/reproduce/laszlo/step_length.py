@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, Figure, Job, Result, Results
 from windup.tools.reproduce.laszlo.jobs import walk
 from windup.tools.reproduce.laszlo.recorder import records
+from windup.tools.reproduce.study.figure import Claim, Figure, Job, Result, Results
 
 UP = walk(sampling="fl", forward=0.25)
 SWING = walk(rv=["swing_com"], sampling="sp", forward=0.05)

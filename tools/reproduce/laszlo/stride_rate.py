@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.laszlo.jobs import cell, walked
 from windup.tools.reproduce.laszlo.recorder import records
 from windup.tools.reproduce.laszlo.tours import tour
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 
 HOLDS = (-0.05, 0.0, 0.05, 0.1)  # s more in each timed state
 FEW = (-0.05, 0.05)

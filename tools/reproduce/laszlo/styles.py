@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, Figure, Job, Result, Results
 from windup.tools.reproduce.laszlo.jobs import walked
 from windup.tools.reproduce.laszlo.recorder import column
 from windup.tools.reproduce.laszlo.tours import tour
+from windup.tools.reproduce.study.figure import Claim, Figure, Job, Result, Results
 
 BEGIN, END = 5.0, 14.0  # s: in and out again
 STEPS = 60

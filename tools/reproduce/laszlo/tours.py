@@ -12,8 +12,8 @@ from windup.tools.assembly.build import body_of, build_walk
 from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.measures.gauges import Gauges
 from windup.tools.measures.walk_end import WalkEnd
-from windup.tools.reproduce.figure import Job, Result
 from windup.tools.reproduce.laszlo.recorder import Recorder
+from windup.tools.reproduce.study.figure import Job, Result
 from windup.tools.robot.robot import Robot
 
 NOISE = 0.2  # degrees

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.laszlo.jobs import NAMES, SAMPLINGS, cell, walk, walked
 from windup.tools.reproduce.laszlo.pictures import hip_plot
 from windup.tools.reproduce.laszlo.recorder import records
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 
 DEGREES = (2.0, 4.0, 6.0, 8.0)
 FEW = (2.0, 8.0)

@@ -15,10 +15,10 @@ from windup.hal.errors import DivergedError
 from windup.hal.joints import Array
 from windup.tools.assembly.build import body_of, build_walk
 from windup.tools.assembly.walk_options import WalkOptions
-from windup.tools.reproduce.figure import Job, Result
 from windup.tools.reproduce.laszlo.laws import ConstantTurn, SpeedLaw
 from windup.tools.reproduce.laszlo.recorder import Recorder
 from windup.tools.reproduce.laszlo.tours import run_tour
+from windup.tools.reproduce.study.figure import Job, Result
 from windup.tools.robot.robot import Robot
 
 ROBOT = "human"

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from windup import control, robots, sim_twin
-from windup.tools.reproduce.figure import Study, folder_of
+from windup.tools.reproduce.study.figure import Study, folder_of
 from windup.tools.reproduce.wu_zordan import directed, pendulum, reactive, work
 
 WU_ZORDAN = Study(

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from windup.tools.reproduce.figure import Job, Result, Results
+from windup.tools.reproduce.study.figure import Job, Result, Results
 
 DURATION = 0.1  # s, of a push
 AROUND = tuple(22.5 * k for k in range(16))

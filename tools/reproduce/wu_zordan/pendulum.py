@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Result, Results
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 from windup.tools.reproduce.wu_zordan.jobs import AROUND, FOUR, cell, count, push, where
 
 SMALL, LARGE = 170.0, 250.0  # N, of the paper

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Job, Results
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Results
 from windup.tools.reproduce.wu_zordan.jobs import AROUND, EIGHT, FOUR, cell, count, push, where
 
 FORCE = 170.0  # N, of the paper

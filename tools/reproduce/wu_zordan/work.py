@@ -16,7 +16,7 @@ from windup.tools.assembly.stepping import find_stepping
 from windup.tools.behaviours.directed import build_checks, build_directed, loop_rate, walk_prints
 from windup.tools.behaviours.push_trial import push_robot
 from windup.tools.commands.push import Push
-from windup.tools.reproduce.figure import Job, Result
+from windup.tools.reproduce.study.figure import Job, Result
 from windup.tools.reproduce.wu_zordan.jobs import DURATION
 from windup.tools.robot.robot import Robot
 

@@ -5,13 +5,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from windup.tools.reproduce.figure import Figure, Job, Result
 from windup.tools.reproduce.kenwright import KENWRIGHT, falls, pushes, regions, turning, walking
 from windup.tools.reproduce.kenwright.comfort import before
 from windup.tools.reproduce.kenwright.jobs import fall, push, stride
 from windup.tools.reproduce.kenwright.recorder import NAMES, column
 from windup.tools.reproduce.kenwright.steps import paths
 from windup.tools.reproduce.kenwright.work import work
+from windup.tools.reproduce.study.figure import Figure, Job, Result
 
 
 def fake_result(job: Job, good: bool = True) -> Result:

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from windup.tools.reproduce.figure import Figure, Job, Result
+from windup.tools.reproduce.study.figure import Figure, Job, Result
 from windup.tools.reproduce.wu_zordan import WU_ZORDAN, pendulum, reactive
 from windup.tools.reproduce.wu_zordan.jobs import push, turn
 from windup.tools.reproduce.wu_zordan.work import work

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from windup.hal.errors import UsageError
-from windup.tools.reproduce.figure import Job, Result
+from windup.tools.reproduce.study.figure import Job, Result
 from windup.tools.terminal.output import plain
 from windup.tools.terminal.writing import writing
 

@@ -5,9 +5,9 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from windup.tools.reproduce.figure import Figure, Result, Results, Study, distinct
-from windup.tools.reproduce.page import Entry, page
-from windup.tools.reproduce.store import Store
+from windup.tools.reproduce.study.figure import Figure, Result, Results, Study, distinct
+from windup.tools.reproduce.study.page import Entry, page
+from windup.tools.reproduce.study.store import Store
 from windup.tools.terminal.output import plain
 from windup.tools.terminal.parallel import side_by_side
 from windup.tools.terminal.picture import load_pyplot

@@ -7,7 +7,7 @@ from importlib.metadata import PackageNotFoundError, version
 
 import mujoco
 
-from windup.tools.reproduce.figure import Claim, DataTable, Figure, Study
+from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Study
 
 STYLE = """
 body { font: 15px/1.5 sans-serif; max-width: 1060px; margin: 2em auto; padding: 0 1em; color: #222 }
