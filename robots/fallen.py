@@ -1,4 +1,4 @@
-"""What "fallen" means, for a robot, its twin and a batch of rollouts alike."""
+"""The criterion for a fall, the same for a robot, its twin and batches of rollouts."""
 
 from typing import Any
 
@@ -8,13 +8,13 @@ from windup.robots.records import Fall
 
 
 def has_fallen(fall: Fall, height: Any, upright: Any) -> Any:
-    """Return whether a robot counts as fallen, or each (m,) of many.
+    """Return whether a robot has fallen, as a bool or an array (m,) of bools.
 
-    What is not a number has fallen, too.
+    Values that are not a number count as a fall.
 
     Args:
-        fall: When it does.
-        height: Of its base above the ground, m.
-        upright: Vertical component of its torso's z axis: the cosine of its tilt.
+        fall: Limits of height and tilt.
+        height: Height of the base above the ground, m.
+        upright: Vertical component of the torso's z axis, the cosine of its tilt.
     """
     return (height < fall.height) | np.logical_not(upright > np.cos(fall.tilt))

@@ -27,7 +27,7 @@ def imu_of(imu: Imu | None, buses: Sequence[Bus]) -> ImuKind | None:
 
 
 def imu_mistakes(imu: Imu, buses: Sequence[Bus]) -> Iterator[Mistake]:
-    """Yield key and mistake of what an [imu] says of its kind and mounting."""
+    """Yield key and mistake of the kind and the mounting of an [imu]."""
     try:
         kind = imu_of(imu, buses)
     except UnknownNameError as error:

@@ -1,4 +1,4 @@
-"""What was made of the files of a folder, kept as long as they do not change."""
+"""A cache of objects made from the files of a folder, valid until a file changes."""
 
 import os
 import time
@@ -10,14 +10,14 @@ Made = TypeVar("Made")
 Stamp = tuple[tuple[int, int, int], ...]
 
 FRESH = 0.1
-"""A file that is younger may change again without a newer time of its own, s."""
+"""Minimum age of a file, s: a younger one may change again with the same modification time."""
 
 
 class Loaded(Generic[Made]):
-    """Keeps what was made of the folders that were read last.
+    """Keeps one object per folder.
 
     Args:
-        most: How many.
+        most: Maximum number of folders.
     """
 
     def __init__(self, most: int = 32) -> None:
@@ -25,7 +25,7 @@ class Loaded(Generic[Made]):
         self._kept: dict[tuple[str, str], tuple[Sequence[Path], Stamp, Made]] = {}
 
     def of(self, folder: Path) -> Made | None:
-        """Return what was made of a folder, if its files are still the same."""
+        """Return the object kept for a folder if its files are unchanged, else None."""
         kept = self._kept.get(_key(folder))
         if kept is None:
             return None
@@ -33,7 +33,7 @@ class Loaded(Generic[Made]):
         return made if _stamp(files) == stamp else None
 
     def keep(self, folder: Path, files: Sequence[Path], made: Made) -> None:
-        """Keep what was made of the `files` of a folder, unless one has only just been written."""
+        """Keep the object made from the `files` of a folder, unless one was just written."""
         stamp = _stamp(files)
         newest = max((changed for changed, _, _ in stamp), default=0)
         if len(stamp) == len(files) and time.time() - newest * 1e-9 > FRESH:
@@ -44,12 +44,12 @@ class Loaded(Generic[Made]):
 
 
 def _key(folder: Path) -> tuple[str, str]:
-    """Return the folder as it was named, which messages repeat, and where that is now."""
+    """Return the folder as named, which error messages repeat, and its absolute path."""
     return str(folder), os.path.abspath(folder)
 
 
 def _stamp(files: Sequence[Path]) -> Stamp:
-    """Return time, size and inode of each file; nothing if one is not there."""
+    """Return modification time, size and inode of each file; () if one is missing."""
     try:
         found = [os.stat(file) for file in files]
     except OSError:

@@ -1,1 +1,1 @@
-"""Angles, axes, gravity and the smooth step: what every room means by them, each once."""
+"""Angles, the up axis, gravity and the smooth step, shared by all rooms."""

@@ -1,4 +1,4 @@
-"""Angles that go round."""
+"""Angles modulo a full turn."""
 
 from math import pi
 from typing import TypeVar

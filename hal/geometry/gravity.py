@@ -1,6 +1,6 @@
-"""How strongly things fall, and what a data sheet means by one g."""
+"""Acceleration of gravity, and the unit g of data sheets."""
 
 GRAVITY = 9.81
-"""m/s2: MuJoCo's own, which the twin and the controllers' equations share."""
+"""m/s2: the value of MuJoCo, the twin and the controllers."""
 STANDARD_GRAVITY = 9.80665
-"""m/s2: the unit g in which accelerometers count (ISO 80000-3)."""
+"""m/s2: the unit g of accelerometers (ISO 80000-3)."""

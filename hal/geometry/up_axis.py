@@ -1,4 +1,4 @@
-"""Which way is up for a body that is tilted: its own z axis, in the world."""
+"""The up axis of a body: its z axis in the world frame."""
 
 from typing import Any
 
@@ -7,19 +7,19 @@ import numpy as np
 from windup.hal.joints import Array
 
 UP_AXIS = slice(2, None, 3)
-"""Where the z axis of a body stands in its rotation matrix (9,), row by row."""
+"""Slice of the z axis of a body in its row-major rotation matrix (9,)."""
 
 
 def up_axis(orientation: Array) -> Array:
-    """Return the z axis (..., 3) in the world of what has orientations (..., 4) wxyz."""
+    """Return the z axes (..., 3) in the world of bodies with orientations (..., 4) wxyz."""
     w, x, y, z = np.moveaxis(orientation, -1, 0)
     return np.stack([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), uprightness(x, y)], axis=-1)
 
 
 def uprightness(x: Any, y: Any) -> Any:
-    """Return the vertical component of that axis, from `x` and `y` of the quaternion.
+    """Return the vertical component of that axis, the cosine of the tilt.
 
-    It is the cosine of the tilt.
+    `x` and `y` are components of the orientation wxyz.
 
     >>> uprightness(0.0, 0.0), uprightness(1.0, 0.0)
     (1.0, -1.0)

@@ -1,14 +1,13 @@
 """Bosch BNO055 on I2C: gyroscope, accelerometer and an orientation fused on the chip.
 
 Registers, units and times are those of the data sheet BST-BNO055-DS000-14 (revision 1.4). In the
-mode "IMU" the chip fuses gyroscope and accelerometer a hundred times a second, and leaves out the
-magnetometer, which servos would mislead. Registers 0x08 to 0x27 hold, each little-endian::
+mode "IMU" the chip fuses gyroscope and accelerometer at 100 Hz, without the magnetometer, which
+servo currents disturb. Registers 0x08 to 0x27 hold, each little-endian::
 
     acceleration x y z | magnetic field x y z | angular rate x y z | Euler angles | w x y z
 
-They are one read: 0.8 ms at 400 kHz, 3.2 ms at 100 kHz. The chip holds the clock line while it
-fuses (clock stretching), which the hardware I2C of a Raspberry Pi up to 4 does not wait for: there
-use a bus of the overlay `i2c-gpio`.
+They are one read: 0.8 ms at 400 kHz, 3.2 ms at 100 kHz. The chip stretches the I2C clock, which the
+I2C hardware of a Raspberry Pi up to model 4 does not support: use a bus of the `i2c-gpio` overlay.
 """
 
 import contextlib
@@ -28,43 +27,43 @@ from windup.hal.observation import ImuState
 from windup.hal.port.replug import RETRY, Opener
 
 ADDRESS = 0x28
-"""Of the chip; 0x29 where its pin COM3 is high (section 4.6)."""
+"""I2C address of the chip; 0x29 if its pin COM3 is high (section 4.6)."""
 CHIP_ID, PAGE_ID, DATA, UNIT_SEL, OPR_MODE = 0x00, 0x07, 0x08, 0x3B, 0x3D
 BNO055_ID = 0xA0
 CONFIG, IMU_MODE = 0x00, 0x08
-"""Values of OPR_MODE, whose upper four bits mean nothing (table 3-5)."""
+"""Values of OPR_MODE; its upper four bits are unused (table 3-5)."""
 UNITS = 0x82
-"""UNIT_SEL: m/s2, rad/s, and the sense of rotation after a reset (tables 3-11 and 3-12)."""
+"""UNIT_SEL: m/s2 and rad/s; the orientation format is the default (tables 3-11 and 3-12)."""
 LENGTH = 32
-"""Bytes from DATA to the end of the quaternion."""
+"""Number of bytes from DATA to the end of the quaternion."""
 ACCELERATION = 0.01
 """m/s2 of one count (1 m/s2 = 100 LSB)."""
 GYRO = 1.0 / 900.0
 """rad/s of one count (table 3-22)."""
 QUATERNION = 2.0**-14
 PERIOD = 0.01
-"""From one sample to the next, s (table 3-14)."""
+"""Sample period, s (table 3-14)."""
 TO_CONFIG, TO_IMU = 0.019, 0.007
-"""Time that a change of mode takes, s (table 3-6)."""
+"""Duration of a change of mode, s (table 3-6)."""
 START_UP = 0.65
-"""From power on to a chip that answers, s (table 0-2)."""
+"""Time from power on until the chip answers, s (table 0-2)."""
 STEPS = 6
-"""Changes of mode after which a chip that still does not measure never will."""
+"""Maximum number of changes of mode until the chip measures."""
 FASTEST = 36.0
-"""rad/s: the gyroscope ends at 2000 degrees/s."""
+"""Maximum plausible rate, rad/s: the range of the gyroscope is 2000 degrees/s."""
 
 
 class Bno055:
-    """The IMU in the body frame.
+    """Driver of a BNO055; its samples are in the body frame.
 
     Args:
-        url: Its bus, and its address if that is another one; see `windup.hal.imu.i2c`.
-        mounting: How it is turned in the body.
+        url: URL of its I2C bus, see `windup.hal.imu.i2c`.
+        mounting: Orientation of the chip in the body.
         opener: Opens the bus.
 
     Attributes:
-        lag: Delay of its own filters, s.
-        implausible: Samples that said what cannot be.
+        lag: Delay of the chip's filters, s.
+        implausible: Number of samples outside the physical range.
     """
 
     def __init__(
@@ -78,7 +77,7 @@ class Bno055:
         self.implausible = 0
 
     def connect(self, opener: Opener) -> "Bno055Link":
-        """Open the bus and have the chip measure; see `ImuSource`.
+        """Open the bus and start the chip; see `ImuSource`.
 
         Raises:
             PortError: The bus cannot be opened, or there is no BNO055 at this address.
@@ -86,9 +85,9 @@ class Bno055:
         return Bno055Link(self, self._opener(self.url, ADDRESS))
 
     def take(self, data: bytes, now: float) -> None:
-        """Take in what the registers from DATA on hold at `now` s.
+        """Decode the registers from DATA on, read at `now` s.
 
-        A sample that was read before is not taken again: it ages. A new one is half a period old.
+        A new sample is half a period old on average. An unchanged one was read before: it ages.
         """
         if data == self._data:
             return
@@ -118,11 +117,11 @@ class Bno055:
 
 @dataclass
 class _Setting:
-    """How far the chip has been set, which takes some steps with waits between them.
+    """Progress of configuring the chip, in steps with waits between them.
 
     Attributes:
-        due: When the next step may be taken, s.
-        done: It measures.
+        due: Earliest time of the next step, s.
+        done: The chip measures.
     """
 
     due: float = -np.inf
@@ -130,10 +129,10 @@ class _Setting:
 
 
 class Bno055Link:
-    """A BNO055 and its bus, which may lose the chip and find it again; an `ImuConnection`.
+    """An open BNO055, which is configured again after it lost power; an `ImuConnection`.
 
     Args:
-        imu: Who takes the samples.
+        imu: Decodes the samples.
         chip: The chip on its bus.
 
     Raises:
@@ -155,12 +154,12 @@ class Bno055Link:
             raise
 
     def poll(self) -> None:
-        """Read the newest sample, if the chip measures; bring it there again after a reset."""
+        """Read the newest sample; configure the chip again if it was reset."""
         now = self.clock.now()
         try:
             if self._set_up(now):
                 self._imu.take(self._chip.read(DATA, LENGTH), self.clock.now())
-        except OSError:  # unplugged: the last sample ages, and whoever needs it stops
+        except OSError:  # unplugged: the last sample ages until the IMU watch reports it as silent
             self._setting = _Setting(due=now + RETRY)
 
     def close(self) -> None:
@@ -169,7 +168,7 @@ class Bno055Link:
             self._chip.close()
 
     def _find(self) -> None:
-        """Wait for the chip, which may have got its power a moment ago."""
+        """Wait until the chip answers: it may have been powered a moment ago."""
         end = self.clock.now() + START_UP
         while (found := self._identity()) != BNO055_ID:
             if self.clock.now() > end:
@@ -181,7 +180,7 @@ class Bno055Link:
             self.clock.wait_until(self.clock.now() + PERIOD)
 
     def _begin(self) -> None:
-        """Have the chip measure, with the waits that takes.
+        """Configure the chip, with the waits that this takes.
 
         Raises:
             PortError: It does not take its settings.
@@ -200,7 +199,7 @@ class Bno055Link:
             return None
 
     def _set_up(self, now: float) -> bool:
-        """Take the next step to a chip that measures in our units; return whether it does.
+        """Do the next step of configuring the chip; return whether it measures in our units.
 
         Raises:
             OSError: The chip did not answer.
@@ -228,7 +227,7 @@ BNO055 = ImuKind(
     rate=1.0 / PERIOD,
     cutoff=32.0,  # the gyroscope's; the accelerometer's is 62.5 Hz (table 3-4)
     noise=(radians(0.014), 150e-6 * STANDARD_GRAVITY),  # typical, table 0-2
-    bias=(radians(0.3), 0.05),  # our guess of what its calibration while it runs leaves
+    bias=(radians(0.3), 0.05),  # our guess of the residual after its continuous calibration
     unit=(GYRO, ACCELERATION),
     driver=Bno055,
 )

@@ -31,9 +31,8 @@ def imu_kind(name: str) -> ImuKind:
 
 
 def usual_kind(protocol: str | None) -> ImuKind:
-    """Return the IMU of a robot.toml that names no kind: what was there before there were kinds.
+    """Return the default kind for a robot whose first servo bus has `protocol`; None: no bus.
 
-    An OpenCR where the first servo bus speaks `protocol` "dynamixel2", or where there is no bus; on
-    other buses a BNO08x with a port of its own.
+    An OpenCR for "dynamixel2" and without a bus, a BNO08x with its own port otherwise.
     """
     return OPENCR if protocol in (None, "dynamixel2") else BNO08X_RVC

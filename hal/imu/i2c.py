@@ -1,4 +1,4 @@
-"""Registers of a chip on an I2C bus, of the kernel's or of another maker's of buses.
+"""Access to the registers of a chip on an I2C bus.
 
 A URL is the bus's device file, and the chip's address where it has several:
 ``/dev/i2c-1`` or ``/dev/i2c-1?address=0x29``.
@@ -13,7 +13,7 @@ from windup.hal.clock import WallClock
 from windup.hal.errors import PortError, UsageError
 
 LONGEST = 32
-"""Bytes that one read takes at most (SMBus 2.0, section 5.5.7)."""
+"""Maximum number of bytes of one read (SMBus 2.0, section 5.5.7)."""
 
 
 class I2cChip(Protocol):
@@ -51,15 +51,15 @@ class I2cChip(Protocol):
 
 I2cOpener = Callable[[str, int], I2cChip]
 HANDLERS: dict[str, I2cOpener] = {}
-"""URL scheme to who opens it, such as "twin"."""
+"""Maps a URL scheme, such as "twin", to its opener."""
 
 
 def open_i2c(url: str, address: int) -> I2cChip:
-    """Open a chip at `url`; `address` is its address on the bus where the URL has none.
+    """Open a chip at `url`; `address` is used if the URL names none.
 
     Raises:
         PortError: The bus cannot be opened; the message says what to do.
-        UsageError: The URL is none of an I2C bus.
+        UsageError: The URL names no I2C bus.
     """
     scheme, separator, _ = url.partition("://")
     if separator:
@@ -72,7 +72,7 @@ def open_i2c(url: str, address: int) -> I2cChip:
 
 
 def _address(url: str, query: str, usual: int) -> int:
-    """Return the chip's address from what follows the ? of a URL."""
+    """Return the chip's address from the query of a URL."""
     if not query:
         return usual
     key, _, text = query.partition("=")
@@ -81,7 +81,7 @@ def _address(url: str, query: str, usual: int) -> int:
             return address
     except ValueError:
         pass
-    raise UsageError(f"{url}: behind the ? comes the chip's address, as in ?address=0x29")
+    raise UsageError(f"{url}: after the ? give the address of the chip, as in ?address=0x29")
 
 
 class KernelChip:

@@ -1,4 +1,4 @@
-"""A kind of IMU: all that the stack has to know of it, as one small table."""
+"""The parameters of one kind of IMU: rate, lag, noise, wiring and mounting."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -12,21 +12,21 @@ from windup.hal.imu.source import ImuSource
 
 @dataclass(frozen=True)
 class ImuKind:
-    """What one kind of IMU measures, how late, how noisily, and how it is connected.
+    """What one kind of IMU measures and how it is connected.
 
     Attributes:
-        name: What `[imu] kind` of a robot.toml calls it.
-        wiring: "board": it is a device on the first servo bus, read with the servos; "serial" or
-            "i2c": it has a connection of its own, the port "imu".
-        rate: New samples a second, Hz.
-        cutoff: Of its own low-pass filter, taken as one of first order, Hz.
-        noise: Densities of gyroscope and accelerometer, rad/s and m/s2 in a root of hertz.
-        bias: Standard deviations on each axis, rad/s and m/s2.
-        unit: One count, rad/s and m/s2.
-        gyroscope: It sends angular rates. One without sends its orientation, and rates are
-            differences of that.
-        axes: How it is mounted unless robot.toml says otherwise, see `Mounting`.
-        driver: Makes the driver of one with a connection of its own from URL and mounting.
+        name: Its name in `[imu] kind` of a robot.toml.
+        wiring: "board": a device on the first servo bus, read with the servos; "serial" or "i2c":
+            a port of its own, named "imu".
+        rate: Sample rate, Hz.
+        cutoff: Cutoff frequency of its low-pass filter, modelled as first order, Hz.
+        noise: Noise densities of gyroscope and accelerometer, rad/s/sqrt(Hz) and m/s2/sqrt(Hz).
+        bias: Standard deviations of the biases on each axis, rad/s and m/s2.
+        unit: Size of one count, rad/s and m/s2.
+        gyroscope: It sends angular rates. An IMU without sends its orientation, and rates are
+            differences of orientations.
+        axes: Default mounting, see `Mounting`.
+        driver: Makes the driver of an IMU with a port of its own, from URL and mounting.
     """
 
     name: str
@@ -42,14 +42,14 @@ class ImuKind:
 
     @property
     def lag(self) -> float:
-        """Delay of its own filter, s."""
+        """Delay of its filter, s."""
         return 1.0 / (2.0 * pi * self.cutoff)
 
     @cached_property
     def mounting(self) -> Mounting:
-        """How its axes lie in the body.
+        """Orientation of its axes in the body.
 
         Raises:
-            ConfigError: They cannot lie so.
+            ConfigError: The axes are not those of a rotation.
         """
         return Mounting(self.axes)

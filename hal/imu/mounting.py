@@ -1,4 +1,4 @@
-"""How an IMU is turned in the body: in quarter turns, as boards are screwed down."""
+"""Orientation of an IMU in the body, in quarter turns."""
 
 from functools import cached_property
 from math import sqrt
@@ -14,15 +14,14 @@ WORDS = ("x", "y", "z", "-x", "-y", "-z")
 
 
 class Mounting:
-    """Turns vectors and orientations from an IMU's axes to the body's.
+    """Rotates vectors between the frame of an IMU and the body frame.
 
     Args:
         axes: The axes of the IMU that point along the body's x (forward), y (left) and z (up):
-            ("-y", "x", "z") is a board whose own y axis points backward and whose x axis points
-            to the left.
+            ("-y", "x", "z") is a board whose y axis points backward and whose x axis points left.
 
     Attributes:
-        axes: The same.
+        axes: As given.
 
     Raises:
         ConfigError: A word is no axis, an axis is named twice, or the axes are left-handed.
@@ -43,11 +42,11 @@ class Mounting:
             )
 
     def body(self, vector: Array) -> Array:
-        """Return a vector (3,) of the IMU's axes in the body's."""
+        """Return a vector (3,) of the IMU frame in the body frame."""
         return vector[self._from] * self._signs
 
     def chip(self, vector: Array) -> Array:
-        """Return a vector (3,) of the body's axes in the IMU's."""
+        """Return a vector (3,) of the body frame in the IMU frame."""
         turned = np.empty(3)
         turned[self._from] = vector * self._signs
         return turned

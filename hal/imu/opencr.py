@@ -83,7 +83,7 @@ OPENCR = ImuKind(
     rate=1000.0,  # the firmware's loop over the chip
     cutoff=CUTOFF,
     noise=(radians(0.01), 300e-6 * STANDARD_GRAVITY),  # data sheet of the MPU9250, tables 1 and 2
-    bias=(radians(0.3), 0.05),  # our guess of what the calibration at rest leaves
+    bias=(radians(0.3), 0.05),  # our guess of the residual after calibration at rest
     unit=(GYRO, ACCELERATION),
     axes=IN_OP3.axes,
 )

@@ -1,4 +1,4 @@
-"""A command as it would be typed: for files that say how they were made."""
+"""The command line of a parsed command, for files that record how they were made."""
 
 import shlex
 from dataclasses import fields

@@ -1,4 +1,4 @@
-"""The world of a twin:// port: made for one robot, or named and shared."""
+"""The worlds behind twin:// ports: private to one robot, or named and shared."""
 
 from itertools import count
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Which port each bus of a robot has, and its IMU, from what a person writes after --port."""
+"""The URLs of the buses of a robot, and of its IMU, from the value of --port."""
 
 import windup.sim_twin.wire as wire
 from windup.hal.errors import UsageError

@@ -1,4 +1,4 @@
-"""When a run is over, and why: asked at every tick."""
+"""Decides at every tick whether a run is over, and why."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,19 +15,19 @@ EPSILON = 1e-9  # s
 
 @dataclass(kw_only=True)
 class RunEnd:
-    """Ends a run: because somebody asks for it, at a fall, or as its caller says.
+    """Ends a run on a stop request, at a fall, after its time, or for a reason of the caller.
 
     Attributes:
-        asked: Who has asked for the end.
-        wishes: Each returns who wants the end now, or nothing.
+        asked: Counts the stop requests.
+        wishes: Each returns the source of a new stop request, or a false value.
         fallen: Returns whether the robot has fallen.
         loop: Report of the run.
-        opened: When the run began, s.
-        seconds: How long it lasts from the end of the first motion on, s; for ever if None.
-        until: Gives another reason to end it.
+        opened: Start of the run, s.
+        seconds: Duration from the end of the first motion on, s; None: no limit.
+        until: Returns another reason to end the run, or None.
         down: The robot may lie: a fall does not end the run.
-        approach: The first motion after torque came on, if it is due.
-        protected: What softens a fall: the run then goes on until the robot lies still.
+        approach: First motion after torque came on, if it is due.
+        protected: Protection against falls; a run with a fall goes on until the robot lies still.
     """
 
     asked: Asked

@@ -1,8 +1,8 @@
-"""A Bosch BNO055 on I2C: a table of registers with a new sample a hundred times a second.
+"""An emulated Bosch BNO055 on I2C: registers, and a new sample every 10 ms.
 
-Addresses, units, reset values and times are those of the data sheet BST-BNO055-DS000-14. Only what
-a host of the mode "IMU" needs is there: in other modes, and while the mode changes, the data
-registers stand still.
+Addresses, units, reset values and times are those of the data sheet BST-BNO055-DS000-14. Only the
+mode "IMU" is emulated: in other modes, and during a change of mode, the data registers keep their
+values.
 """
 
 import errno
@@ -25,11 +25,11 @@ PER_M_S2, PER_RAD_S, PER_DEGREE_S, PER_ONE = 100.0, 900.0, 16.0, 16_384.0
 
 
 class Bno055Registers:
-    """The chip, as its host sees it.
+    """The registers of the chip.
 
     Args:
-        imu: The motion, in the chip's axes.
-        schedule: Of its world.
+        imu: Source of the motion, in the frame of the chip.
+        schedule: Schedule of its world.
     """
 
     def __init__(self, imu: ImuSource, schedule: Schedule) -> None:
@@ -44,16 +44,16 @@ class Bno055Registers:
         """Return `count` registers from one on.
 
         Raises:
-            OSError: It says nothing now.
+            OSError: The chip is silent.
         """
         self._answer()
         return bytes(self._memory[register : register + count])
 
     def write(self, register: int, value: int) -> None:
-        """Set a register; those that are not to be written stay as they are.
+        """Set a register; read-only ones keep their value.
 
         Raises:
-            OSError: It says nothing now.
+            OSError: The chip is silent.
         """
         self._answer()
         if register in WRITABLE:
@@ -73,7 +73,7 @@ class Bno055Registers:
         self._schedule.at(now + PERIOD, self._sample)
 
     def _data(self) -> bytes:
-        """Return acceleration, no magnetic field, rates, no angles, and the quaternion."""
+        """Return the registers from DATA on; magnetic field and Euler angles are 0."""
         rate = PER_RAD_S if self._memory[UNIT_SEL] & 0x02 else math.degrees(PER_DEGREE_S)
         none: Array = np.zeros(3)
         rows = [

@@ -44,11 +44,11 @@ class RestingImu:
 
 
 class MountedImu:
-    """The same motion in the axes of an IMU that is turned in the body.
+    """A source in the frame of an IMU whose axes differ from those of the body.
 
     Args:
-        source: The motion in the body's axes.
-        mounting: How the IMU is turned.
+        source: The motion in the body frame.
+        mounting: Orientation of the IMU in the body.
     """
 
     def __init__(self, source: ImuSource, mounting: Mounting) -> None:

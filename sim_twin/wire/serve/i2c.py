@@ -1,4 +1,4 @@
-"""``twin://`` as an I2C bus: the chip that an emulated robot's IMU is."""
+"""``twin://`` as an I2C bus, with the chip of an emulated robot's IMU."""
 
 from windup.hal.errors import UsageError
 from windup.sim_twin.wire.imu.bno055 import Bno055Registers
@@ -9,14 +9,14 @@ from windup.sim_twin.wire.world.worlds import enter, leave
 CLOCK_RATE = 400_000.0
 """Bits a second of the bus."""
 OVERHEAD = 4
-"""Bytes of a read beside its data: address, register, address again, start and stop."""
+"""Bytes of a read besides its data: address, register, address again, start and stop."""
 
 
 class TwinI2c:
     """A chip on the I2C bus of a world; see `windup.hal.imu.i2c.I2cChip`.
 
     Args:
-        url: Of the IMU's port in the world.
+        url: URL of the IMU's port in the world.
 
     Raises:
         UsageError: The IMU there is not on I2C.

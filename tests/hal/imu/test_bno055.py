@@ -202,7 +202,7 @@ def test_an_open_ducks_chip_lies_on_its_back() -> None:
 @pytest.mark.parametrize(
     ("url", "says"),
     [
-        ("/dev/i2c-1?address=0x99", "behind the ? comes the chip's address"),
+        ("/dev/i2c-1?address=0x99", "after the ? give the address of the chip"),
         ("socket://host:3000", "no I2C bus; give one such as /dev/i2c-1"),
     ],
 )
