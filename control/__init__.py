@@ -1,1 +1,1 @@
-"""Controllers: observations in, joint commands out."""
+"""Controllers, which map observations to joint commands."""

@@ -1,4 +1,4 @@
-"""The robots: a folder each, with a robot.toml, a model.xml and gaits."""
+"""Robot descriptions: one folder per robot, with robot.toml, model.xml and gaits."""
 
 from windup.robots.description import RobotDescription, load_robot, robot_names
 from windup.robots.records import Bus, Drive, Fall, Foot, Imu

@@ -1,6 +1,6 @@
-"""Cross-checks of a robot.toml: within itself, and against its MJCF.
+"""Consistency checks of a robot.toml: within itself, and against its MJCF.
 
-Every error is one line with the file, the key and, where a name is wrong, the likely word.
+Every error is one line with the file, the key and, for an unknown name, the most similar one.
 """
 
 from collections.abc import Iterable
@@ -21,7 +21,7 @@ from windup.robots.records import Foot, JointEntry, RobotFile
 from windup.robots.structure import mistakes
 
 SLACK = 1e-6
-"""Rounding that a limit may carry, rad."""
+"""Tolerance of limits for rounding, rad."""
 
 TOUCH = mujoco.mjtSensor.mjSENS_TOUCH
 IMU_SENSORS = {
@@ -47,9 +47,9 @@ class Checks:
     """The checks of one robot.
 
     Attributes:
-        path: Its robot.toml, for messages.
-        robot: What the file says.
-        model: Its MJCF, compiled.
+        path: Path of its robot.toml, for messages.
+        robot: The decoded robot.toml.
+        model: The compiled MJCF.
     """
 
     path: Path
@@ -57,10 +57,10 @@ class Checks:
     model: mujoco.MjModel
 
     def run(self) -> None:
-        """Check everything.
+        """Run all checks.
 
         Raises:
-            ConfigError: The first thing that cannot be.
+            ConfigError: A check failed; the message is about the first one.
         """
         self._rate()
         self._joint_names()
@@ -113,7 +113,7 @@ class Checks:
             self._known(f"{key}: follows", "joint", coupling.follows, entries)
 
     def _no_limits(self) -> None:
-        """Fail with all the joints of which nothing says how far they go."""
+        """Fail if there are joints without limits, and name all of them."""
         lost = [joint.name for joint in self.robot.joint if isnan(joint.upper - joint.lower)]
         if lost:
             names = ", ".join(repr(name) for name in lost)
@@ -133,7 +133,7 @@ class Checks:
             self._fail(key, f"lower {joint.lower:g} is not below upper {joint.upper:g}")
         hinge = self.model.joint(joint.name)
         if not self.model.jnt_limited[hinge.id]:
-            return  # it could turn for ever; the file's limits are the only ones
+            return  # the MJCF has no limits; those of robot.toml apply
         low, high = hinge.range
         if joint.lower < low - SLACK or joint.upper > high + SLACK:
             given = f"{joint.lower:g} to {joint.upper:g} rad"
@@ -154,7 +154,7 @@ class Checks:
             self._fail(key, mistake)
 
     def _bus(self, key: str, joint: JointEntry) -> None:
-        """Fail unless a servo speaks as its bus does."""
+        """Fail unless a servo's protocol and baud rate match its bus."""
         family = family_of(str(joint.servo))
         bus = next(bus for bus in self.robot.bus if bus.name == joint.bus)
         if family.protocol != bus.protocol:
@@ -238,7 +238,7 @@ class Checks:
             self._known("fall.way.pose", "pose", way.pose, self.robot.poses)
 
     def _sensor(self, key: str, name: str, kind: mujoco.mjtSensor) -> None:
-        """Fail unless the MJCF has a sensor `name` of the right kind."""
+        """Fail unless the MJCF has a sensor `name` of the given kind."""
         wanted = [
             other
             for other in mjcf.names(self.model, "sensor")

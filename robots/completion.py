@@ -1,4 +1,4 @@
-"""What an MJCF needs not have: sensors (IMU, feet, centre of mass' velocity), couplings."""
+"""Completion of an MJCF with sensors (IMU, feet, CoM velocity) and couplings that it lacks."""
 
 from collections.abc import Iterable
 
@@ -15,11 +15,11 @@ IMU_KINDS = {
     ACCELEROMETER: mujoco.mjtSensor.mjSENS_ACCELEROMETER,
 }
 REACH = 0.01
-"""So far the zone of a touch sensor goes beyond the geoms of its foot, m."""
+"""Margin of a touch sensor's zone around the geoms of its foot, m."""
 
 
 def complete_for(robot: RobotFile, spec: mujoco.MjSpec) -> None:
-    """Add what the MJCF lacks of what a `robot.toml` asks for."""
+    """Add to an MJCF what it lacks of what a `robot.toml` requires."""
     feet = [entry.foot() for entry in robot.foot]
     complete(spec, robot.base, robot.imu, feet, robot.coupling)
 
@@ -31,14 +31,14 @@ def complete(
     feet: Iterable[Foot],
     couplings: Iterable[CouplingEntry] = (),
 ) -> None:
-    """Add couplings, and sensors that nobody names otherwise; wrong names are left to the checks.
+    """Add couplings, and missing sensors of default names; unknown names are left to the checks.
 
     Args:
-        spec: The robot's MJCF.
-        base: Name of its base.
-        imu: Its IMU: a gyroscope and an accelerometer of the names that are the default.
-        feet: Its feet: a touch sensor of all the foot where it names none.
-        couplings: What robot.toml couples.
+        spec: The robot's MJCF, changed in place.
+        base: Name of its base; a sensor for the velocity of the CoM is added.
+        imu: Its IMU: a gyroscope and an accelerometer are added if they have default names.
+        feet: Its feet: a touch sensor of the whole foot is added if it has the default name.
+        couplings: Couplings of robot.toml.
     """
     add_couplings(spec, couplings)
     there = {sensor.name for sensor in spec.sensors}
@@ -55,7 +55,7 @@ def complete(
 
 
 def _add_touch(spec: mujoco.MjSpec, foot: Foot, name: str) -> None:
-    """Add a sensor of all that touches a foot; its zone is a ball around the sole's middle."""
+    """Add a touch sensor of a whole foot; its zone is a ball around the sole's centre."""
     body, sole = spec.body(foot.body), spec.site(foot.site)
     if body is None or sole is None or sole.parent.name != foot.body:
         return

@@ -1,7 +1,7 @@
-"""Joints that a linkage turns with others: put into an MJCF as constraints, and brought in step.
+"""Couplings: passive joints that a linkage moves with other joints, as constraints of an MJCF.
 
-MuJoCo's `<equality><joint>` says ``y - y0 = a0 + a1 (x - x0) + .. + a4 (x - x0)^4`` (MuJoCo
-XMLreference), with y0 and x0 where the joints are in the MJCF's own zero pose.
+MuJoCo's `<equality><joint>` means ``y - y0 = a0 + a1 (x - x0) + .. + a4 (x - x0)^4`` (MuJoCo
+XMLreference), with y0 and x0 the joint positions in the MJCF's own zero pose.
 """
 
 from collections.abc import Iterable, Iterator
@@ -18,11 +18,11 @@ JOINT = mujoco.mjtObj.mjOBJ_JOINT
 KIND = mujoco.mjtEq.mjEQ_JOINT
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 SLACK = 1e-6
-"""Rounding that a range may carry, rad."""
+"""Tolerance of ranges for rounding, rad."""
 
 
 def add_couplings(spec: mujoco.MjSpec, couplings: Iterable[CouplingEntry]) -> None:
-    """Add what robot.toml couples; wrong names are left to the checks."""
+    """Add the couplings of robot.toml; unknown names are left to the checks."""
     for coupling in couplings:
         y, x = spec.joint(coupling.joint), spec.joint(coupling.follows)
         if y is None or x is None or coupling.joint == coupling.follows:
@@ -35,9 +35,9 @@ def add_couplings(spec: mujoco.MjSpec, couplings: Iterable[CouplingEntry]) -> No
 
 
 def bring_in_step(model: mujoco.MjModel, qpos: Array, driven: Iterable[str]) -> None:
-    """Put coupled joints where the `driven` ones in `qpos` (nq,) have them.
+    """Set the coupled joints in `qpos` (nq,) consistent with the `driven` ones, in place.
 
-    A linkage that is bent otherwise would jump into place in the first step.
+    A linkage that violates its constraint would jump into place in the first physics step.
     """
     known = {model.joint(name).id for name in driven}
     left = np.flatnonzero((model.eq_type == int(KIND)) & model.eq_active0.astype(bool)).tolist()
@@ -49,7 +49,7 @@ def bring_in_step(model: mujoco.MjModel, qpos: Array, driven: Iterable[str]) -> 
 
 
 def coupling_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[tuple[str, str]]:
-    """Yield key and mistake of the couplings of a robot.toml, whose joints are in the MJCF."""
+    """Yield key and message of each mistake in the couplings; their joints must be in the MJCF."""
     entries = {joint.name: joint for joint in robot.joint}
     for coupling in robot.coupling:
         key, joint = f"coupling {coupling.joint!r}", model.joint(coupling.joint)
@@ -69,13 +69,13 @@ def coupling_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[tuple
 
 
 def _zero(spec: mujoco.MjSpec, joint: mujoco.MjsJoint) -> float:
-    """Return where a joint is in the MJCF's zero pose, rad or m."""
+    """Return the position of a joint in the MJCF's zero pose, rad or m."""
     hinge = int(joint.type) == mjcf.HINGE
     return radians(joint.ref) if hinge and spec.compiler.degree else float(joint.ref)
 
 
 def _from(model: mujoco.MjModel, eq: int) -> set[int]:
-    """Return the joints of a constraint from which its other one follows."""
+    """Return the joints of a constraint from which its other joint can be computed."""
     first, second = int(model.eq_obj1id[eq]), int(model.eq_obj2id[eq])
     if second < 0:
         return set()
@@ -84,7 +84,7 @@ def _from(model: mujoco.MjModel, eq: int) -> set[int]:
 
 
 def _solve(model: mujoco.MjModel, qpos: Array, eq: int, known: set[int]) -> None:
-    """Put the joint of a constraint that is not `known` where the other one has it."""
+    """Set the joint of a constraint that is not `known` from the other one, in `qpos`."""
     joints = [int(model.eq_obj1id[eq]), int(model.eq_obj2id[eq])]
     (y, y0), (x, x0) = ((at, model.qpos0[at]) for at in model.jnt_qposadr[joints])
     factors = model.eq_data[eq, :5]

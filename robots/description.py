@@ -1,4 +1,4 @@
-"""A robot as the rest of the stack sees it: robot.toml and model.xml, read and cross-checked."""
+"""Description of a robot for the rest of the stack, from its checked robot.toml and model.xml."""
 
 import os
 from dataclasses import dataclass, field
@@ -40,33 +40,33 @@ from windup.robots.records import (
 FOLDER = Path(__file__).parent
 FILE = "robot.toml"
 NEVER = Fall(height=1e-9, tilt=4.0)
-"""How a robot falls that is fixed."""
+"""Fall criterion of a robot with a fixed base, which is never met."""
 _loaded: "Loaded[RobotDescription]" = Loaded()
 
 
 @dataclass(frozen=True, eq=False)
 class RobotDescription:
-    """Everything about a robot but its state. Arrays are (n,) in MJCF order.
+    """All constant data of a robot. Arrays are (n,) in MJCF order.
 
     Attributes:
-        folder: Where its files are.
-        name: Its name.
-        title: Its name for people.
-        sources: Where its numbers come from.
-        model_path: Its MJCF.
+        folder: Folder of its files.
+        name: Name of the robot.
+        title: Display name.
+        sources: Sources of the numbers.
+        model_path: Path of the MJCF.
         timestep: Physics step of the MJCF, s.
         rate_hz: Rate of the control loop, Hz.
         wire_rate_hz: Rate of the control loop on a servo bus, Hz.
-        model_latency: From the start of a step to its plan acting, where time is the wall's, s.
-        base: Body with the free joint; where the robot is `fixed`, one that never moves.
-        fixed: The base is fixed to the world, as an arm's.
-        passive: Joints of the MJCF that no servo moves.
-        couplings: Which of them robot.toml lets follow others.
+        model_latency: Time from the start of a step until its plan applies, on the wall clock, s.
+        base: Body with the free joint; of a `fixed` robot, a body that never moves.
+        fixed: The base is fixed to the world, as of an arm.
+        passive: Joints of the MJCF without a servo.
+        couplings: Couplings by which robot.toml lets passive joints follow others.
         torso: Body whose z axis is the robot's "up".
         joints: The joints.
         axes: (n, 3) joint axes in the base frame, zero pose.
         servos: The servo of each joint; None for ideal torque joints.
-        drive: What moves the joints, and how late.
+        drive: Kind of actuators, and their latencies.
         buses: The servo buses.
         feet: The feet, left before right by custom.
         contacts: The contact sensors, grouped by foot.
@@ -74,10 +74,10 @@ class RobotDescription:
         poses: Pose name to (n,) rad.
         stance: (n,) pose to stand in, rad.
         crouch: (n,) pose to crouch in, rad, or None.
-        stop: What "stop" means.
-        safety: What keeps it safe when nobody commands it.
-        fall: When the robot counts as fallen.
-        model: Its MJCF compiled, with its sensors. It is shared: copy what you change.
+        stop: Stop policy: hold, crouch or limp.
+        safety: Time-outs and levels of the `[safety]` table.
+        fall: Criterion for a fallen robot, and protective falls.
+        model: The compiled MJCF with its sensors. It is shared: copy it to change it.
     """
 
     folder: Path
@@ -112,7 +112,7 @@ class RobotDescription:
 
     @cached_property
     def mirror(self) -> Mirror:
-        """The map between left and right.
+        """Map that mirrors joint positions left to right.
 
         Raises:
             ConfigError: The robot is not symmetric.
@@ -121,26 +121,26 @@ class RobotDescription:
 
     @cached_property
     def imu_kind(self) -> ImuKind | None:
-        """What its IMU is, mounted as in this robot; None without one."""
+        """Kind of its IMU with the mounting in this robot, or None."""
         return imu_of(self.imu, self.buses)
 
     @cached_property
     def health(self) -> HealthLevels:
-        """When its joints are unwell."""
+        """Warning and stop levels of the joints' health."""
         return HealthLevels.of(self.servos, self.drive.supply, self.safety.given())
 
     def spec(self) -> mujoco.MjSpec:
-        """Return the MJCF, parsed afresh, with its sensors: change it as you like."""
+        """Return a new parse of the MJCF, completed with sensors; callers may change it."""
         spec = mjcf.parse_mjcf(self.model_path)
         complete(spec, self.base, self.imu, self.feet, self.couplings)
         return spec
 
     def gaits(self) -> dict[str, Path]:
-        """Return the robot's gaits: name to file."""
+        """Return the paths of the robot's gait files by name."""
         return {path.stem: path for path in sorted((self.folder / "gaits").glob("*.toml"))}
 
     def physics_steps(self, rate_hz: float | None = None) -> int:
-        """Return the physics steps in one tick of `rate_hz` (by default the robot's own).
+        """Return the physics steps per tick at `rate_hz` (by default the robot's own rate).
 
         Raises:
             UsageError: The period is not a whole number of physics steps.
@@ -165,13 +165,13 @@ def robot_names() -> tuple[str, ...]:
 
 
 def load_robot(name_or_path: str | Path) -> RobotDescription:
-    """Return a robot by the name of a folder in `robots`, or by the path of your own folder.
+    """Return a robot by the name of a folder in `robots`, or by the path of another folder.
 
     A robot whose files have not changed since is the same object as before.
 
     Raises:
         UnknownNameError: There is neither such a robot nor such a folder.
-        ConfigError: A file of the robot says something that cannot be.
+        ConfigError: A file of the robot cannot be read or failed a check.
     """
     folder = _folder(name_or_path)
     if (known := _loaded.of(folder)) is not None:
@@ -196,7 +196,7 @@ def _load(folder: Path) -> RobotDescription:
 def _folder(name_or_path: str | Path) -> Path:
     if str(name_or_path) in robot_names():
         return FOLDER / name_or_path
-    if os.path.isdir(name_or_path):  # False, and no error, for a name that no file can have
+    if os.path.isdir(name_or_path):  # False without an error even for an invalid path
         return Path(name_or_path)
     raise UnknownNameError("robot", str(name_or_path), robot_names())
 
@@ -242,7 +242,7 @@ def _describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDes
 
 
 def _mount(entry: JointEntry) -> ServoMount | None:
-    """Return the servo of a joint; `Checks` has seen that it is all there."""
+    """Return the servo of a joint, or None; `Checks` has verified that the entry is complete."""
     if entry.servo is None or entry.bus is None or entry.id is None:
         return None
     model = servo_model(entry.servo)
@@ -260,7 +260,7 @@ def _mount(entry: JointEntry) -> ServoMount | None:
 
 
 def _joint(entry: JointEntry, servo: ServoMount | None, drive: Drive) -> Joint:
-    """Return a joint; what its entry leaves open is what its servo can do."""
+    """Return a joint; torque and velocity that its entry omits are the maxima of its servo."""
     torque = velocity = goal_speed = float("inf")
     if servo is not None:
         motor = servo.model.motor(drive.supply)

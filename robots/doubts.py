@@ -1,4 +1,4 @@
-"""What an MJCF may say, and is seldom meant: a robot with it runs, but not as its owner thinks."""
+"""Warnings about valid but probably unintended contents of an MJCF."""
 
 from collections.abc import Iterator
 
@@ -10,11 +10,11 @@ from windup.robots.description import RobotDescription
 
 POINTS = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 DEEP = 1e-3
-"""Bodies that are no deeper than this in each other only touch, m."""
+"""Maximum penetration of bodies that only touch, m."""
 
 
 def doubts(robot: RobotDescription) -> list[str]:
-    """Return what is doubtful about a robot's MJCF, a line each, with what would be better."""
+    """Return warnings about a robot's MJCF, one line each, with a remedy."""
     model = robot.model
     data = mujoco.MjData(model)
     for name, angle in zip(robot.joints.names, robot.stance, strict=True):
@@ -30,7 +30,7 @@ def doubts(robot: RobotDescription) -> list[str]:
 
 
 def _floor(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
-    """Yield that there is nothing to stand on."""
+    """Yield a warning if there is no floor."""
     solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
     if not robot.fixed and not (solid & (model.body_weldid[model.geom_bodyid] == 0)).any():
         plane = '<geom type="plane" size="0 0 0.05"/>'
@@ -38,7 +38,7 @@ def _floor(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
 
 
 def _points(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[str]:
-    """Yield the feet whose lowest geoms are round, and too few to bear a moment."""
+    """Yield a warning for each foot without colliding geoms, or on fewer than 3 round ones."""
     solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
     for foot in robot.feet:
         geoms = np.flatnonzero(solid & (model.geom_bodyid == model.body(foot.body).id))
@@ -53,6 +53,7 @@ def _points(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData)
 
 
 def _armature(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
+    """Yield a warning if joints with servos have no armature."""
     bare = [
         (name, servo)
         for name, servo in zip(robot.joints.names, robot.servos, strict=True)
@@ -68,7 +69,7 @@ def _armature(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
 
 
 def _neighbours(model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[str]:
-    """Yield the pairs of bodies that are in each other where the robot stands."""
+    """Yield a warning for each pair of bodies that penetrate each other in the stance."""
     mujoco.mj_collision(model, data)
     pairs = set()
     for contact in data.contact:

@@ -1,4 +1,4 @@
-"""`[safety]`: the levels at which a joint is unwell, and how they go with its servo's own."""
+"""Warning and stop levels of the joints' health, as given in the `[safety]` table."""
 
 from collections.abc import Iterator
 from typing import Annotated
@@ -12,21 +12,21 @@ Amount = Annotated[float, Meta(gt=0.0, le=1000.0)]
 
 
 class Level(Record, frozen=True):
-    """A value from which on a warning is due, and one from which on the robot is stopped."""
+    """A warning level, and a stop level at which the robot is stopped."""
 
     warn: Amount
     stop: Amount
 
 
 class JointLevels(Record, frozen=True):
-    """When the joints of a robot are unwell; what is left out follows from their servos.
+    """Warning and stop levels of the joints; omitted ones follow from their servos.
 
     Attributes:
-        supply_low: Supply below which a warning, and a stop, is due, V; for a battery.
-        supply_high: Supply above which they are due, V.
-        temperature: Of a servo, degrees C.
-        load: Mean torque over about a second, as a share of that at stall.
-        stall: How long a joint pushes at its limit without moving, s.
+        supply_low: Minimum supply voltage, V; for a battery.
+        supply_high: Maximum supply voltage, V.
+        temperature: Maximum temperature of a servo, degrees C.
+        load: Maximum mean torque over about a second, as a share of the stall torque.
+        stall: Maximum time that a joint pushes at its torque limit without moving, s.
     """
 
     supply_low: Level | None = None
@@ -36,12 +36,12 @@ class JointLevels(Record, frozen=True):
     stall: Level | None = None
 
     def given(self) -> dict[Kind, tuple[float, float]]:
-        """Return warning and stop of the kinds that are stated."""
+        """Return the warning and stop levels that are given, by kind."""
         levels = {kind: getattr(self, kind.name.lower()) for kind in Kind}
         return {kind: (level.warn, level.stop) for kind, level in levels.items() if level}
 
     def mistakes(self, supply: float) -> Iterator[tuple[str, str]]:
-        """Yield key and mistake of what cannot be for a robot with a supply of `supply` V."""
+        """Yield key and message of each mistake, for a robot with a supply of `supply` V."""
         for kind, (warn, stop) in self.given().items():
             key, low = kind.name.lower(), kind is Kind.SUPPLY_LOW
             if warn < stop if low else warn > stop:

@@ -1,4 +1,4 @@
-"""How far a joint goes: what robot.toml says, else the MJCF, else as far as its servo counts."""
+"""Limits of a joint: those of robot.toml, else of the MJCF, else the servo's range of counts."""
 
 from collections.abc import Iterator
 from math import isnan, pi
@@ -12,11 +12,11 @@ from windup.robots import mjcf
 from windup.robots.records import JointEntry
 
 TURNS = 255
-"""So many turns of its servo either way a joint goes that turns on and on; a servo counts 256."""
+"""Servo turns either way that limit a joint without limits of its own; a servo counts 256."""
 
 
 def with_limits(entry: JointEntry, model: mujoco.MjModel) -> JointEntry:
-    """Return a joint with the limits that it leaves out; nan where nothing says them."""
+    """Return a joint with omitted limits filled in; they stay nan if they are given nowhere."""
     if entry.name not in mjcf.hinge_names(model):
         return entry
     hinge = model.joint(entry.name)
@@ -33,7 +33,7 @@ def with_limits(entry: JointEntry, model: mujoco.MjModel) -> JointEntry:
 
 
 def travel_mistakes(entry: JointEntry) -> Iterator[str]:
-    """Yield what is wrong with how far the servo of a joint has to turn."""
+    """Yield messages about limits of a joint that its servo cannot reach in its mode."""
     servo = servo_model(str(entry.servo))
     can = family_of(servo.name).extended is not None
     if entry.mode == "extended":

@@ -1,4 +1,4 @@
-"""The mirror map of a robot, from the names and axes of its joints."""
+"""The left-right mirror map of a robot, from the names and axes of its joints."""
 
 import numpy as np
 
@@ -10,8 +10,8 @@ from windup.hal.mirror import Mirror, other_side
 def mirror_map(names: tuple[str, ...], axes: Array) -> Mirror:
     """Return the mirror of joints `names` with `axes` (n, 3) in the base frame, zero pose.
 
-    A turn by q about (x, y, z) seen in the mirror y = 0 is a turn by q about (-x, y, -z): where
-    that is the partner's axis the sign is +1, where it is the opposite -1.
+    A rotation by q about (x, y, z), mirrored at the plane y = 0, is a rotation by q about
+    (-x, y, -z): if that is the partner's axis the sign is +1, if it is the opposite, -1.
 
     Raises:
         ConfigError: A joint has no partner, or one with a different axis.

@@ -1,4 +1,4 @@
-"""The MJCF side of a robot: parsed and compiled, with errors of one line, and asked for names."""
+"""Parsing and compiling of an MJCF, with one-line errors, and look-up of its names."""
 
 from codecs import BOM_UTF8
 from collections.abc import Callable
@@ -23,10 +23,10 @@ FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
 
 def parse_mjcf(path: Path) -> mujoco.MjSpec:
-    """Return the MJCF, or URDF, at `path`, parsed afresh, whatever its name ends in.
+    """Return a new parse of the MJCF or URDF at `path`; its suffix does not matter.
 
     Raises:
-        ConfigError: The file is missing or not MJCF.
+        ConfigError: The file is missing, cannot be read, or is not MJCF.
     """
     if not path.is_file():
         raise ConfigError(f"{path}: cannot be read: no such file")
@@ -35,7 +35,7 @@ def parse_mjcf(path: Path) -> mujoco.MjSpec:
     try:
         if path.suffix == ".xml" and not path.read_bytes().startswith(BOM_UTF8):
             return mujoco.MjSpec.from_file(str(path))
-        # MuJoCo reads by the name's ending, and takes a byte-order mark for a letter.
+        # MuJoCo selects the parser by the suffix, and fails at a byte-order mark.
         spec = mujoco.MjSpec.from_string(path.read_text("utf-8-sig"))
         spec.modelfiledir = str(path.parent)
         return spec
@@ -48,10 +48,10 @@ def parse_mjcf(path: Path) -> mujoco.MjSpec:
 def compile_mjcf(
     path: Path, complete: Callable[[mujoco.MjSpec], None] | None = None
 ) -> mujoco.MjModel:
-    """Return the MJCF at `path` as a model, after `complete` has added to it.
+    """Return the MJCF at `path` as a model, after `complete` has changed its spec.
 
     Raises:
-        ConfigError: The file is missing, MuJoCo refuses it, or a number in it cannot be.
+        ConfigError: The file is missing, MuJoCo rejects it, or a number in it is invalid.
     """
     try:
         spec = parse_mjcf(path)
@@ -89,7 +89,7 @@ def hinge_names(model: mujoco.MjModel) -> tuple[str, ...]:
 
 
 def hinge_axes(model: mujoco.MjModel, names: tuple[str, ...]) -> Array:
-    """Return the unit axes (n, 3) of hinges in the world, in the zero pose."""
+    """Return the unit axes (n, 3) of hinges in the world frame, in the zero pose."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     return data.xaxis[[model.joint(name).id for name in names]].copy()

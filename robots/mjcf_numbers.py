@@ -1,4 +1,4 @@
-"""Numbers of an MJCF that MuJoCo takes and that cannot be: not finite, huge, or negative."""
+"""Check for invalid numbers of an MJCF that MuJoCo accepts: not finite, huge, or negative."""
 
 from typing import Any, Final
 
@@ -8,7 +8,7 @@ import numpy as np
 from windup.hal.config import LARGEST
 
 KINDS: Final = {"body": "body", "jnt": "joint", "dof": "joint", "geom": "geom", "site": "site"}
-"""What the fields of a model begin with, and what people call that."""
+"""Kinds of objects in messages, by the prefix of a model's fields."""
 NOT_NEGATIVE: Final = ("dof_armature", "dof_damping", "dof_frictionloss", "jnt_stiffness")
 FIELDS: Final = (
     *("body_pos", "body_quat", "body_mass", "body_inertia", "body_ipos"),
@@ -16,13 +16,13 @@ FIELDS: Final = (
     *("geom_size", "geom_pos", "geom_quat", "geom_friction", "geom_margin", "geom_gap"),
     *("geom_solref", "geom_solimp", "site_pos", "site_quat", "site_size"),
 )
-"""Fields that an MJCF sets."""
+"""Checked fields of a model, which an MJCF sets."""
 TIMESTEP: Final = (1e-5, 0.05)
-"""Physics steps that can be simulated, s."""
+"""Minimum and maximum physics step, s."""
 
 
 def wrong_number(model: mujoco.MjModel) -> str:
-    """Return what is wrong with a number of `model`, and where; "" where all are right."""
+    """Return a message about the first invalid number of `model`, or "" if there is none."""
     step, gravity = float(model.opt.timestep), model.opt.gravity
     if not TIMESTEP[0] <= step <= TIMESTEP[1]:
         return f"option timestep: {step:g} s is outside {TIMESTEP[0]:g} .. {TIMESTEP[1]:g} s"
@@ -38,7 +38,7 @@ def wrong_number(model: mujoco.MjModel) -> str:
 
 
 def _said(model: mujoco.MjModel, field: str, values: Any, fine: Any, what: str) -> str:
-    """Return the object and the field of the first value that is not `fine`."""
+    """Return a message with object, field and value of the first value that is not `fine`."""
     at = tuple(np.argwhere(~fine)[0])
     kind, _, name = field.partition("_")
     index = int(model.dof_jntid[at[0]]) if kind == "dof" else int(at[0])

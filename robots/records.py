@@ -1,4 +1,4 @@
-"""What `robot.toml` may say: one record a table, strict, SI units."""
+"""Format of `robot.toml`: one strict record per table, SI units."""
 
 from math import nan
 from typing import Annotated, Literal
@@ -12,26 +12,26 @@ from windup.hal.mirror import Side, side_of
 from windup.robots.levels import JointLevels
 
 GYRO, ACCELEROMETER = "gyro", "accelerometer"
-"""Names of the sensors of an IMU that names none."""
+"""Default names of the sensors of an IMU."""
 
 Wait = Annotated[float, Meta(gt=0.0, le=86_400.0)]
 Share = Annotated[float, Meta(ge=0.05, le=1.0)]
 
 
 class Drive(Record, frozen=True):
-    """What moves the joints.
+    """Actuators of the joints, their latencies, and defaults of the joints.
 
     Attributes:
-        kind: "servo" (position servos on a bus) or "torque" (ideal joints that obey the torque
+        kind: "servo" (position servos on a bus) or "torque" (ideal joints that follow the torque
             law at every physics step).
-        supply: Voltage of the servos, V.
-        command_delay: From a write to the joint acting on it, s.
-        sensor_delay: From the joint moving to its state being read, s.
-        wire_delay: From a state being measured to a command for it acting, on the bus, s.
-        servo: Servo of the joints that name none.
-        bus: Bus of the joints that name none.
-        stiffness: Of the joints that state none, N m/rad.
-        damping: Of the joints that state none, N m s/rad.
+        supply: Supply voltage of the servos, V.
+        command_delay: Latency from a write to the joint's reaction, s.
+        sensor_delay: Latency from the joint's motion to the reading of its state, s.
+        wire_delay: Latency from a measured state to the effect of its command, on the bus, s.
+        servo: Default servo model of the joints.
+        bus: Default bus of the joints.
+        stiffness: Default stiffness of the joints, N m/rad.
+        damping: Default damping of the joints, N m s/rad.
     """
 
     kind: Literal["servo", "torque"]
@@ -46,7 +46,7 @@ class Drive(Record, frozen=True):
 
 
 class Bus(Record, frozen=True):
-    """A wire full of servos; its port is named when the robot is opened."""
+    """A servo bus; its serial port is given when the robot is opened."""
 
     name: str
     protocol: Literal["dynamixel1", "dynamixel2", "feetech"]
@@ -56,18 +56,20 @@ class Bus(Record, frozen=True):
 class JointEntry(Record, frozen=True):
     """One joint: limits rad, gains N m/rad and N m s/rad, and the servo that drives it.
 
-    What `servo`, `bus`, `stiffness` and `damping` leave out, the drive's defaults say.
+    Omitted `servo`, `bus`, `stiffness` and `damping` are the defaults of the drive.
 
     Attributes:
-        lower: Smallest target, rad; by default the MJCF's.
-        upper: Largest target, rad; by default the MJCF's.
-        mode: How its servo counts: "position" is one turn; "extended" is 256 turns either way,
-            which Dynamixel X servos have, and forget without power.
-        torque: Largest torque, N m; by default the servo's at stall, or none.
-        velocity: Largest velocity, rad/s; by default the servo's without load, or none.
-        zero: Counts of the servo at joint angle 0; by default half a turn.
-        ratio: Turns of the servo for one of the joint.
-        offset: Counts that the servo holds in its own homing offset, which shifts all its counts.
+        lower: Minimum target, rad; by default the MJCF's.
+        upper: Maximum target, rad; by default the MJCF's.
+        mode: Operating mode of the servo: "position" is one turn; "extended" is 256 turns either
+            way, which Dynamixel X servos have; they lose the turn count without power.
+        torque: Maximum torque, N m; by default the servo's stall torque, or no limit.
+        velocity: Maximum velocity, rad/s; by default the servo's no-load speed, or no limit.
+        id: Id of the servo on its bus.
+        sign: -1 if the servo turns opposite to the joint.
+        zero: Counts of the servo at joint angle 0; by default the middle of its range.
+        ratio: Gear ratio: turns of the servo per turn of the joint.
+        offset: Homing offset stored in the servo, counts; it shifts all its positions.
     """
 
     name: str
@@ -88,15 +90,15 @@ class JointEntry(Record, frozen=True):
 
 
 class CouplingEntry(Record, frozen=True):
-    """A joint without a servo that a linkage turns with another one, as URDF's <mimic> says.
+    """A joint without a servo that a linkage moves with another one, like URDF's <mimic>.
 
-    ``angle of joint = offset + ratio (angle of follows)``, kept by the twin as a constraint.
+    ``angle of joint = offset + ratio (angle of follows)``, a constraint in the twin.
 
     Attributes:
         joint: The passive joint, a hinge or a slide of the MJCF.
         follows: The [[joint]] that moves it.
-        ratio: rad (of a slide m) of it for one rad of the other.
-        offset: Where it is while the other is at 0, rad (m).
+        ratio: Motion of `joint`, rad (m for a slide), per rad of `follows`.
+        offset: Position of `joint`, rad (m for a slide), with `follows` at 0.
     """
 
     joint: str
@@ -109,11 +111,11 @@ class Foot(Record, frozen=True):
     """One foot.
 
     Attributes:
-        name: Its name.
-        body: Its body.
+        name: Name of the foot.
+        body: Its body in the MJCF.
         site: The site at the centre of its sole.
         sensors: Its touch sensors in the MJCF.
-        side: The side that it is on; "" where nothing says so.
+        side: Its side; "" if that is unknown.
     """
 
     name: str
@@ -124,7 +126,7 @@ class Foot(Record, frozen=True):
 
 
 class FootEntry(Record, frozen=True):
-    """A foot as the file has it: without `sensors` it gets one, without `side` its name tells."""
+    """A foot in the file; by default it gets one sensor, and its side follows from its name."""
 
     name: str
     body: str
@@ -133,26 +135,26 @@ class FootEntry(Record, frozen=True):
     side: Side | None = None
 
     def foot(self) -> Foot:
-        """Return the foot."""
+        """Return the foot with defaults filled in."""
         sensors = (f"{self.name}_touch",) if self.sensors is None else self.sensors
         side = self.side or side_of(self.name)
         return Foot(name=self.name, body=self.body, site=self.site, sensors=sensors, side=side)
 
 
 class Imu(Record, frozen=True):
-    """The IMU: the site it sits at and the names of its sensors in the MJCF.
+    """The IMU: its site and the names of its sensors in the MJCF.
 
-    A gyroscope and an accelerometer that the MJCF lacks are added, where the file names none.
+    A gyroscope and an accelerometer of the default names are added if the MJCF lacks them.
 
     Attributes:
-        site: A site whose axes are the base's.
-        kind: What it is: opencr, bno08x_rvc, bno055 or open_duck. By default an OpenCR where the
-            first bus has protocol "dynamixel2" or there is none, and a BNO08x elsewhere.
+        site: A site whose axes are those of the base.
+        kind: opencr, bno08x_rvc, bno055 or open_duck. The default is opencr if the first bus has
+            protocol "dynamixel2" or there is no bus, else bno08x_rvc.
         mounting: The axes of the IMU that point along the base's x (forward), y (left) and z (up),
-            such as ["-y", "x", "z"]; by default those of its kind.
-        gyro: Name of a sensor in the MJCF.
-        accelerometer: Name of a sensor in the MJCF.
-        orientation: Name of a sensor in the MJCF, if it has one.
+            such as ["-y", "x", "z"]; the default is that of the kind.
+        gyro: Name of the gyroscope in the MJCF.
+        accelerometer: Name of the accelerometer in the MJCF.
+        orientation: Name of an orientation sensor in the MJCF, or None.
     """
 
     site: str
@@ -164,9 +166,9 @@ class Imu(Record, frozen=True):
 
 
 class Shares(Record, frozen=True):
-    """Shares of the joints' stiffness: of those between base and feet, and of all others.
+    """Shares of the joints' stiffness: for joints between base and feet, and for all others.
 
-    None is small enough to leave a joint limp.
+    The minimum is large enough that no joint is limp.
     """
 
     legs: Share
@@ -174,14 +176,14 @@ class Shares(Record, frozen=True):
 
 
 class FallWay(Record, frozen=True):
-    """How to fall toward one side.
+    """Pose and stiffness of a protective fall in one direction.
 
     Attributes:
-        toward: Which side, rad from straight ahead, positive to the left.
-        pose: Name of the pose to take.
-        soften: Tilt of the base from which the impact is near, rad.
-        falling: Stiffness until then.
-        impact: Stiffness from then on.
+        toward: Direction, rad from straight ahead, positive to the left.
+        pose: Name of the landing pose.
+        soften: Tilt of the base at which the joints are softened for the impact, rad.
+        falling: Shares of the stiffness until then.
+        impact: Shares of the stiffness from then on.
     """
 
     toward: Annotated[float, Meta(ge=-4.0, le=4.0)]
@@ -192,11 +194,12 @@ class FallWay(Record, frozen=True):
 
 
 class Fall(Record, frozen=True):
-    """When the robot counts as fallen: base lower than `height` m or torso past `tilt` rad.
+    """Criterion for a fallen robot: base lower than `height` m or torso tilted by over `tilt` rad.
 
     Attributes:
-        reach: How far outside the hull of its soles it can put a foot, m; ways need it.
-        way: How it falls when it must; without any it falls as it is.
+        reach: Maximum distance outside the hull of its soles at which it can put a foot, m;
+            required with `way`.
+        way: Protective falls; without any, falls are not predicted.
     """
 
     height: Length
@@ -206,16 +209,16 @@ class Fall(Record, frozen=True):
 
 
 class Safety(JointLevels, frozen=True):
-    """What keeps an armed robot safe: levels of its joints' health, and when nobody commands it.
+    """Safety of an armed robot: levels of its joints' health, time-outs, and the first motion.
 
     Attributes:
-        idle: How long it is held between two calls of a program before its torque goes off, s.
-        hold: How long the guardian holds a robot whose `stop` is "hold" once its program is gone,
-            before its torque goes off, s.
-        first_speed: Largest speed of a joint in the first motion after torque came on, rad/s.
-        first_stiffness: Shares of the joints' stiffness that this motion begins with. Legs have to
-            bear the robot.
-        first_lag: How far a joint may be behind its goal in it, rad.
+        idle: Maximum time between two calls of a program before torque is disabled, s.
+        hold: Time for which the guardian holds a robot whose `stop` is "hold" after its program
+            has ended, before torque is disabled, s.
+        first_speed: Maximum speed of a joint in the first motion after torque enable, rad/s.
+        first_stiffness: Shares of the joints' stiffness at the start of the first motion; those of
+            the legs must be enough to bear the robot.
+        first_lag: Maximum position error of a joint in the first motion, rad.
     """
 
     idle: Wait = 10.0
@@ -229,7 +232,7 @@ INHERITED = ("servo", "bus", "stiffness", "damping")
 
 
 def with_defaults(entry: JointEntry, drive: Drive) -> JointEntry:
-    """Return the joint with what it leaves out taken from the drive."""
+    """Return the joint with the drive's defaults for keys that it omits."""
     missing = [key for key in INHERITED if getattr(entry, key) is None]
     return replace(entry, **{key: getattr(drive, key) for key in missing})
 
@@ -238,24 +241,24 @@ class RobotFile(Record, frozen=True):
     """A whole `robot.toml`.
 
     Attributes:
-        name: The robot's name, as its folder.
-        title: Its name for people.
-        sources: Where the numbers come from.
-        model: The MJCF beside this file.
+        name: Name of the robot, as its folder.
+        title: Display name.
+        sources: Sources of the numbers.
+        model: File name of the MJCF beside this file.
         rate_hz: Rate of the control loop, Hz.
         wire_rate_hz: Rate of the control loop on a servo bus, Hz; by default the same.
-        base: Body with the free joint; of a robot that is fixed, such as an arm, the body that is.
+        base: Body with the free joint; of a fixed robot, such as an arm, a body fixed to the world.
         torso: Body whose z axis is the robot's "up".
-        stop: What "stop" means: hold, crouch, or limp.
+        stop: Stop policy: hold, crouch, or limp.
         stance: Name of the pose to stand in.
         crouch: Name of the pose to crouch in.
-        model_latency: From the start of a step to its plan acting, where time is the wall's, s.
+        model_latency: Time from the start of a step until its plan applies, on the wall clock, s.
         contact_threshold: Force above which a contact sensor counts as pressed, N.
-        passive: Joints of the MJCF that no servo moves: springs, casters, and what the MJCF's own
-            <equality> couples.
-        coupling: Passive joints that follow others, and how, where the MJCF does not say so.
-        fall: When it counts as fallen; a robot that is fixed has none.
-        poses: Pose name to joint name to rad; joints not named are at 0.
+        passive: Joints of the MJCF without a servo: springs, casters, and joints that the MJCF's
+            own <equality> couples.
+        coupling: Passive joints that follow others, if the MJCF does not couple them.
+        fall: Criterion for a fallen robot; a fixed robot has none.
+        poses: Joint positions, rad, by pose and joint name; joints not named are at 0.
     """
 
     name: Annotated[str, Meta(min_length=1, max_length=64)]
@@ -284,6 +287,6 @@ class RobotFile(Record, frozen=True):
 
     @property
     def unmoved(self) -> tuple[str, ...]:
-        """The joints of the MJCF that no servo moves, followers too."""
+        """The joints of the MJCF without a servo, including coupled ones."""
         followers = tuple(coupling.joint for coupling in self.coupling)
         return tuple(dict.fromkeys((*self.passive, *followers)))

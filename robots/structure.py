@@ -1,4 +1,4 @@
-"""What an MJCF is made of: its base, which stands, floats or is fixed, and the joints in it."""
+"""Checks of base and joints of an MJCF against its robot.toml."""
 
 from collections.abc import Iterator
 
@@ -13,12 +13,12 @@ SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 
 def is_fixed(model: mujoco.MjModel) -> bool:
-    """Return whether nothing in the MJCF floats: the base stands where it stands, as an arm's."""
+    """Return whether the MJCF has no free joint: the base is fixed to the world, as of an arm."""
     return mjcf.FREE not in model.jnt_type
 
 
 def mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
-    """Yield key and mistake of what robot and MJCF do not agree on about base and joints."""
+    """Yield key and message of each mismatch between robot.toml and MJCF in base and joints."""
     yield from _of_the_base(robot, model)
     if model.nu:
         yield "model", _actuators(model)
@@ -43,7 +43,7 @@ def _of_the_base(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
 
 
 def _actuators(model: mujoco.MjModel) -> str:
-    """Return what to delete, by name."""
+    """Return the message for an MJCF with actuators, with their names."""
     listed = [model.actuator(i).name or f"number {i + 1}" for i in range(model.nu)]
     shown = ", ".join(listed[:4]) + (", ..." if len(listed) > 4 else "")
     return (
@@ -70,7 +70,7 @@ def _of_the_joints(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]
 
 
 def _undriven(kind: int) -> str:
-    """Return what a joint is that no servo can move, and what to do."""
+    """Return the message for a joint that no servo can move: its kind, and the remedy."""
     if kind == SLIDE:
         return "a slide, and servos turn hinges: name it in passive, if no servo moves it"
     return "a ball joint: make it three hinges"

@@ -1,1 +1,1 @@
-"""From IMU, joints and foot contacts to the state of the base."""
+"""Estimation of the base state from IMU, joints and foot contacts."""

@@ -1,11 +1,11 @@
-"""The base state from what a robot can measure: IMU, encoders, contacts.
+"""Estimation of the base state from the robot's sensors: IMU, encoders, contacts.
 
-The IMU carries the state from tick to tick. Whichever soles bear the weight say, through the
-encoders, how fast the base moves over the ground; a Kalman filter weighs both, and finds tilt and
-gyro bias by their difference. The yaw is the integral of the gyro, whose bias about the vertical
-is found while a sole does not turn. The lowest point of the soles touches a flat floor, exactly:
-rollouts begin from here, and a sole under the floor would kick them off it. The position is the
-integral of the velocity.
+The IMU is integrated from tick to tick. The soles that bear the weight give, through the encoders,
+the velocity of the base relative to the ground (leg odometry); a Kalman filter fuses both, and
+corrects tilt and gyro bias by their difference. The yaw is the integral of the gyro, whose bias
+about the vertical is measured while a sole does not turn. The lowest point of the soles is placed
+exactly on a flat floor: rollouts start from this state, and a sole below the floor would be
+pushed out of it. The horizontal position is the integral of the velocity.
 """
 
 import mujoco
@@ -22,30 +22,30 @@ from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState, ImuState, Observation
 
-STALE = 0.02  # age of an IMU sample, beside the joints', that doubles its noise, s
-LONGEST = 0.1  # longest time bridged with one sample, s
-PATIENCE = 0.25  # time without a foot down that halves the confidence, s
-AIRBORNE = 1.0  # standard deviation of the velocity of a robot long without a foot down, m/s
-LYING = 0.5  # cosine of the tilt past which a robot does not stand, whatever its soles touch
-STILL = 1.0  # how far from gravity an accelerometer at rest may be, m/s2
-TILT, VELOCITY = 0.09, 0.2  # deviations that each halve the confidence, rad and m/s
+STALE = 0.02  # age of an IMU sample, relative to the joints', that doubles its noise, s
+LONGEST = 0.1  # maximum time integrated with one sample, s
+PATIENCE = 0.25  # time without foot contact that halves the confidence, s
+AIRBORNE = 1.0  # standard deviation of the velocity after a long time without contact, m/s
+LYING = 0.5  # minimum cosine of the tilt for the soles to count as bearing weight
+STILL = 1.0  # maximum deviation of an accelerometer at rest from gravity, m/s2
+TILT, VELOCITY = 0.09, 0.2  # standard deviations that each halve the confidence, rad and m/s
 
 
 class BaseEstimator:
-    """Fills in `Observation.base`, and `contacts` where the robot has no sensors for them.
+    """Fills in `Observation.base`, and `contacts` if the robot has no contact sensors.
 
-    The estimate is for the instant at which the joints were read. IMU samples that are older, or
-    come through a low-pass filter, are led by as much: for a filter of first order that is exact.
+    The estimate is for the time of the joint samples. IMU samples that are older, or low-pass
+    filtered, are extrapolated by that delay; for a first-order filter this is exact.
 
     Args:
-        load: Who bears the weight, and the soles.
-        imu: (3,) m, place of the IMU in the base; its axes are the base's.
+        load: Distribution of the weight over the soles.
+        imu: (3,) position of the IMU in the base frame, m; its axes are the base's.
         lag: Delay of the IMU's own low-pass filter, s.
-        noise: What is believed about the IMU.
-        feet: What is believed about the feet.
-        fused: The IMU tells its attitude instead of rates; those it has are differences, half
-            the time between two samples late.
-        read: How much older than their age the joints' samples are, s.
+        noise: Noise model of the IMU.
+        feet: Noise model of the feet.
+        fused: The IMU measures its attitude instead of rates; its rates are differences, which
+            lag by half the time between two samples.
+        read: Additional age of the joint samples beyond `age`, s.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class BaseEstimator:
         self.reset()
 
     def reset(self) -> None:
-        """Begin anew at the next observation; what is known of the gyro's bias stays."""
+        """Start over at the next observation; the estimate of the gyro's bias is kept."""
         self._last: tuple[float, float, float, ImuState] | None = None
         self._height = HeightFilter()
         if self._fused is not None:
@@ -76,13 +76,13 @@ class BaseEstimator:
 
     @property
     def gyro_bias(self) -> Array:
-        """(3,) rad/s that the gyro shows too much, in the base."""
+        """(3,) estimated bias of the gyro in the base frame, rad/s."""
         return self._filter.bias
 
     def update(self, observation: Observation, dt: float) -> Observation:
         """Return `observation` with its base, and with contacts.
 
-        Times and ages come from the observation, so that late and lost ticks do no harm.
+        Times and ages are taken from the observation, so that late or lost ticks have no effect.
 
         Raises:
             StateMissingError: The observation has no IMU.
@@ -104,7 +104,7 @@ class BaseEstimator:
         return Observation(observation.time, joints, imu, contacts, base)
 
     def _carry(self, time: float, youngest: float, imu: ImuState) -> tuple[float, Array]:
-        """Integrate the IMU; return the joints' time that has passed, s, and the gyro (3,)."""
+        """Integrate the IMU; return the time between joint samples, s, and the rate (3,), rad/s."""
         lead = min(imu.age - youngest - self.read, LONGEST) + self.lag
         last = self._last
         if last is None or time < last[0]:
@@ -119,7 +119,7 @@ class BaseEstimator:
         if passed <= 0.0:
             return 0.0, imu.angular_velocity
         before, old = last[2], last[3]
-        # Between two samples the trapezoid, and each sample held over its lead.
+        # Trapezoidal rule between two samples; each sample is held constant over its lead.
         half = 0.5 * (passed - lead + before)
         now, then = half + lead, half - before
         rate = imu.angular_velocity
@@ -134,7 +134,7 @@ class BaseEstimator:
         return passed, rate
 
     def _stand(self, contacts: Array, imu: ImuState, rate: Array, passed: float) -> Array:
-        """Let the soles correct the filter; return (p,) their shares of the weight."""
+        """Correct the filter by leg odometry; return (p,) the points' shares of the weight."""
         shares = self.load.shares(contacts, imu.acceleration)
         if self._filter.frame[2, 2] < LYING:
             shares = np.zeros_like(shares)
@@ -178,7 +178,7 @@ class BaseEstimator:
 
 
 def _upright(imu: ImuState) -> Array:
-    """Return the vertical (3,) that a robot at rest feels, or the base's own in any other."""
+    """Return the vertical (3,) by the accelerometer; the base's z axis if it is not at rest."""
     felt = float(np.linalg.norm(imu.acceleration))
     if abs(felt - GRAVITY) > STILL:
         return np.array([0.0, 0.0, 1.0])

@@ -1,4 +1,4 @@
-"""Which points of the soles bear the weight: from contact sensors, or from where the soles are."""
+"""Distribution of the weight over the soles' points, by contact sensors or by the kinematics."""
 
 import numpy as np
 
@@ -6,19 +6,19 @@ from windup.control.kinematics.soles import Soles
 from windup.hal.contacts import ContactSensors
 from windup.hal.joints import Array
 
-SKIN = 2e-3  # a point bears less by a factor e for each such height above the lowest one, m
-TOUCH = 3e-3  # a point not higher than this above the lowest one touches, m
-FREE_FALL = 3.0  # who feels less acceleration than this stands on nothing, m/s2
+SKIN = 2e-3  # height above the lowest point at which a point's load is smaller by a factor e, m
+TOUCH = 3e-3  # maximum height of a point in contact above the lowest point, m
+FREE_FALL = 3.0  # accelerometer magnitude below which the robot is in free fall, m/s2
 
 
 class FootLoad:
-    """Shares the weight among the points of the soles.
+    """Distributes the weight over the points of the soles.
 
     Args:
         soles: The soles.
         contacts: The contact sensors.
-        sensed: The robot has these sensors; without, its lowest points bear the weight.
         weight: Weight of the robot, N.
+        sensed: The robot has these sensors; otherwise its lowest points bear the weight.
     """
 
     def __init__(
@@ -29,15 +29,15 @@ class FootLoad:
         self._sensed = sensed and self._sensors > 0 and bool((soles.sensor >= 0).all())
 
     def sensed(self, contacts: Array) -> bool:
-        """Return True when `contacts` (k,) N can be believed."""
+        """Return True if `contacts` (k,) N are measured forces."""
         return self._sensed and len(contacts) == self._sensors
 
     def shares(self, contacts: Array, acceleration: Array) -> Array:
-        """Return (p,) shares of the weight, all 0 when the robot stands on nothing.
+        """Return the points' shares (p,) of the weight, all 0 without ground contact.
 
         Args:
-            contacts: (k,) N.
-            acceleration: (3,) m/s2, as the accelerometer has it.
+            contacts: (k,) contact forces, N.
+            acceleration: (3,) accelerometer reading, m/s2.
         """
         heights = self.soles.heights
         near = np.exp((heights.min() - heights) / SKIN)
@@ -54,7 +54,7 @@ class FootLoad:
         return (force / (total * around))[sensor] * near
 
     def forces(self, shares: Array) -> Array:
-        """Return (k,) N: what contact sensors would say where there are none."""
+        """Return the estimated readings (k,) of contact sensors that the robot lacks, N."""
         heights, sensor = self.soles.heights, self.soles.sensor
         near = (heights - heights.min() < TOUCH) & (shares > 0.0) & (sensor >= 0)
         force = np.zeros(self._sensors)

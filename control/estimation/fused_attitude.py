@@ -1,4 +1,4 @@
-"""Rotation and rates of an IMU that tells its attitude, now and then, and has no gyroscope."""
+"""Rotation and rates from an IMU that reports its attitude at a low rate, without a gyroscope."""
 
 from typing import NamedTuple
 
@@ -9,17 +9,17 @@ from windup.hal.joints import Array
 from windup.hal.observation import ImuState
 
 LONGEST = 0.05
-"""Time over which the change of the rates is carried on at most, s."""
+"""Maximum time of extrapolation of the rates, s."""
 SAME = 1e-3
-"""Two samples that are not so far apart in time are one, s."""
+"""Minimum time between two different samples, s."""
 
 
 class Motion(NamedTuple):
-    """What has happened since the last look.
+    """Motion since the last call.
 
     Attributes:
-        turn: (3,) rotation, rad.
-        rate: (3,) rad/s now.
+        turn: (3,) rotation vector, rad.
+        rate: (3,) present angular velocity, rad/s.
     """
 
     turn: Array
@@ -27,29 +27,29 @@ class Motion(NamedTuple):
 
 
 class FusedAttitude:
-    """Follows the attitude from sample to sample, and carries it on to the present.
+    """Computes rotations from attitude samples, and extrapolates them to the present.
 
-    The rates between two samples are those of half the time in between. They go on changing as
-    they did from one pair to the next.
+    The mean rate between two samples is taken as the rate at the middle of that interval. The
+    rates are extrapolated linearly from the last two intervals.
     """
 
     def __init__(self) -> None:
         self.reset()
 
     def reset(self) -> None:
-        """Begin anew with the next sample."""
+        """Start over at the next sample."""
         self._orientation: Array | None = None
         self._sampled = self._half = 0.0
         self._rate, self._slope = np.zeros(3), np.zeros(3)
         self._ahead = np.zeros(3)
 
     def follow(self, imu: ImuState, sampled: float, now: float) -> Motion:
-        """Return the motion up to `now` s.
+        """Return the motion since the last call, up to `now`.
 
         Args:
             imu: The last sample.
-            sampled: When it was taken, s.
-            now: s; later or a little earlier than that.
+            sampled: Timestamp of the sample, s.
+            now: Present time, s; later or a little earlier than `sampled`.
         """
         turn = self._turn(imu, sampled) - self._ahead
         lead = min(now - self._sampled, LONGEST)
@@ -57,7 +57,7 @@ class FusedAttitude:
         return Motion(turn + self._ahead, self._rate + (self._half + lead) * self._slope)
 
     def _turn(self, imu: ImuState, sampled: float) -> Array:
-        """Return the rotation (3,) since the last sample, rad, and take its rates."""
+        """Return the rotation (3,) since the last sample, rad, and update the rates."""
         last, orientation = self._orientation, imu.orientation
         assert orientation is not None, "an IMU without a gyroscope tells its attitude"
         passed = sampled - self._sampled

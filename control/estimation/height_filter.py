@@ -1,27 +1,27 @@
-"""Height and vertical velocity: the accelerometer in the short run, the soles in the long one.
+"""Complementary filter for height and vertical velocity, from accelerometer and soles.
 
-The ground under a foot gives way by millimetres at each impact, so a sole that stands still is a
-good witness of horizontal motion and a bad one of vertical motion. Its height over the floor is
-good in the mean. A second-order observer with natural frequency w joins both::
+The ground under a foot yields by millimetres at each impact, so a still sole is a good reference
+for horizontal motion and a bad one for vertical motion; its mean height over the floor is good.
+A second-order observer with natural frequency w fuses both::
 
     dz / dt = v + 2 d w (h - z)    dv / dt = a + w^2 (h - z) + c    dc / dt = w^2 (h - z) / T
 
-The correction c is what the accelerometer is wrong by, and the tilt of a still robot adds to it.
+The correction c compensates the accelerometer's error, including that by a tilt error at rest.
 """
 
 FREQUENCY = 10.0
-"""w, rad/s."""
+"""Natural frequency w, rad/s."""
 DAMPING = 0.7
-"""d."""
+"""Damping ratio d."""
 LEARNING = 1.0
-"""T, s."""
+"""Time constant T of the correction, s."""
 
 
 class HeightFilter:
-    """Follows the height that the soles say, with the accelerometer's quickness.
+    """Observer of height and vertical velocity.
 
     Attributes:
-        height: m; None before the first measurement.
+        height: Estimated height z, m; None before the first measurement.
     """
 
     def __init__(self) -> None:
@@ -32,8 +32,8 @@ class HeightFilter:
         """Return the corrected vertical velocity, m/s.
 
         Args:
-            height: What the soles say, m.
-            velocity: What the accelerometer has integrated to, m/s.
+            height: Height h by the soles, m.
+            velocity: Vertical velocity integrated from the accelerometer, m/s.
             dt: Time since the last measurement, s.
         """
         if self.height is None:
@@ -45,7 +45,13 @@ class HeightFilter:
         return velocity + (pull + self._correction) * dt
 
     def fly(self, lowest: float, velocity: float, dt: float) -> float:
-        """Return the height, m, of a robot with no foot down; no sole is under the floor."""
+        """Return the height, m, without foot contact: integrated, and at least `lowest`.
+
+        Args:
+            lowest: Height at which the lowest point of the soles is on the floor, m.
+            velocity: Vertical velocity, m/s.
+            dt: Time since the last call, s.
+        """
         before = lowest if self.height is None else self.height
         self.height = max(lowest, before + velocity * dt)
         return self.height

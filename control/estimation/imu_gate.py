@@ -1,4 +1,4 @@
-"""What stands between an IMU and the estimator: a sample that cannot be trusted does not pass."""
+"""Gate between IMU and estimator, which rejects samples that cannot be trusted."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -19,7 +19,7 @@ class ImuUser(Protocol):
     """An estimator that uses the IMU, such as `estimator.BaseEstimator`."""
 
     def reset(self) -> None:
-        """Begin anew at the next observation."""
+        """Start over at the next observation."""
         ...
 
     def update(self, observation: Observation, dt: float) -> Observation:
@@ -28,16 +28,16 @@ class ImuUser(Protocol):
 
 
 class ImuGate:
-    """An estimator for a robot whose IMU may fail.
+    """An estimator with handling of IMU failures.
 
-    A controller that needs the IMU is stopped. One that does not goes on with an IMU that seems to
-    rest where it was upright last, and a base that nobody is sure of.
+    A controller that needs the IMU is stopped by an error. Another one continues with a substitute
+    sample (at rest, with the last trusted vertical) and a base state of confidence 0.
 
     Args:
-        estimator: Who uses the IMU.
-        watch: Judges it.
-        needed: Does the controller need it?
-        look: What a message ends with: the command that shows more.
+        estimator: The estimator.
+        watch: Monitor of the IMU.
+        needed: The controller needs the IMU.
+        look: End of error messages: the command that shows more.
     """
 
     def __init__(self, estimator: ImuUser, watch: ImuWatch, needed: bool, look: str = "") -> None:
@@ -47,10 +47,13 @@ class ImuGate:
         self._failed = False
 
     def admit(self, read: Callable[[], Observation]) -> None:
-        """Look at the IMU before anything moves, a few times: an answer may get lost.
+        """Check the IMU before any motion, with retries because an answer may get lost.
+
+        Args:
+            read: Reads the robot.
 
         Raises:
-            ImuError: It says nothing, and the controller needs it.
+            ImuError: There is no recent sample, and the controller needs the IMU.
         """
         looks = ATTEMPTS if self._needed else 0
         for _ in range(looks):
@@ -84,10 +87,10 @@ class ImuGate:
         return replace(estimated, imu=imu)
 
     def _guess(self, observation: Observation, dt: float) -> Observation:
-        """Return `observation` with a base that stands as it did last; its confidence is 0."""
+        """Return `observation` with a base as last estimated, at rest, with confidence 0."""
         if not self._failed:
             self._failed = True
-            self._estimator.reset()  # it may have followed what was wrong
+            self._estimator.reset()  # it may have used wrong samples
         up = GRAVITY * np.array(self._watch.gyro.up)
         resting = ImuState(self._last.orientation, np.zeros(3), up, 0.0)
         guessed = self._estimator.update(replace(observation, imu=resting), dt)

@@ -1,4 +1,4 @@
-"""How fast the base moves over the soles that bear its weight."""
+"""Leg odometry: the velocity of the base relative to the soles that bear its weight."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -13,12 +13,13 @@ ONES = np.ones(3)
 
 @dataclass(frozen=True)
 class FootNoise:
-    """How still a sole that bears weight is believed to be; standard deviations.
+    """Noise model of a sole that bears weight; standard deviations.
 
     Attributes:
-        velocity: Of a sole with all the weight on it, m/s.
-        rolling: Rate of a foot that doubles the variance: it rocks over an edge, or slaps, rad/s.
-        turning: Rate of a still leg's sole about the vertical, rad/s.
+        velocity: Velocity of a sole that bears all the weight, m/s.
+        rolling: Angular speed of a foot that doubles the variance, rad/s: it rocks over an edge,
+            or slaps on the ground.
+        turning: Rate about the vertical of a sole whose leg does not move, rad/s.
     """
 
     velocity: float = 0.04
@@ -27,13 +28,14 @@ class FootNoise:
 
 
 class Odometry(NamedTuple):
-    """What standing soles say about the base.
+    """Velocities of the base, measured by the soles that bear weight.
 
     Attributes:
-        velocity: (3,) m/s of the IMU, seen from the base.
+        velocity: (3,) velocity of the IMU in the base frame, m/s.
         deviation: Standard deviation of each component, m/s.
-        rate: (3,) rad/s of the base if the more loaded sole does not turn, seen from the base.
-        rate_deviation: Standard deviation of its part about the vertical, rad/s.
+        rate: (3,) angular velocity of the base in the base frame, rad/s, assuming that the more
+            loaded sole does not turn.
+        rate_deviation: Standard deviation of its component about the vertical, rad/s.
     """
 
     velocity: Array
@@ -45,17 +47,17 @@ class Odometry(NamedTuple):
 def leg_odometry(
     soles: Soles, shares: Array, rate: Array, imu: Array, noise: FootNoise
 ) -> Odometry | None:
-    """Return what the soles say, or None when none bears weight.
+    """Return the leg odometry, or None if no sole bears weight.
 
-    Each foot speaks for the points of it that bear weight, so a foot that rocks over an edge
-    speaks for that edge; it counts by its share of the weight, and less when it turns.
+    The velocity of each foot is the weighted mean over its points, so for a foot that rocks over
+    an edge it is that of the edge. Feet are weighted by their share of the load, less if they turn.
 
     Args:
         soles: The soles.
-        shares: (p,) shares of the weight.
-        rate: (3,) rad/s of the base, in the base.
-        imu: (3,) m, place of the IMU in the base.
-        noise: How still soles are.
+        shares: (p,) the points' shares of the weight.
+        rate: (3,) angular velocity of the base in the base frame, rad/s.
+        imu: (3,) position of the IMU in the base frame, m.
+        noise: Noise model of the soles.
     """
     share = soles.members @ shares
     if not share.any():
@@ -63,7 +65,7 @@ def leg_odometry(
     place, flow = soles.flow(shares)
     flow += (place - share[:, None] * imu) @ spin(rate).T
     turning = soles.rotation + rate
-    # Each foot's velocity is flow / share, its information share / rolling.
+    # Each foot's velocity is flow / share; its information is share times `believed`.
     believed = 1.0 / (1.0 + (turning * turning) @ ONES / noise.rolling**2)
     information = float(believed @ share)
     still = soles.rotation[share.argmax()]

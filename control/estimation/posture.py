@@ -1,8 +1,8 @@
-"""How a robot at rest is: on its feet or held in the air, sitting, or lying on one of its sides.
+"""Posture of a robot at rest: on its feet or held in the air, sitting, or lying on a side.
 
-An accelerometer at rest shows the vertical; the encoders show what is lowest: the feet, or
-something else. Whether the feet bear anything a limp robot does not feel: one that hangs in
-somebody's hands is told as one that stands.
+An accelerometer at rest gives the vertical; the encoders give what is lowest: the feet, or another
+part. Foot load is not measured: a robot that hangs in somebody's hands cannot be told from one
+that stands.
 """
 
 from collections.abc import Sequence
@@ -19,18 +19,18 @@ from windup.hal.observation import Observation
 
 Side = Literal["front", "back", "left side", "right side"]
 UNSURE = 2.0
-"""An accelerometer farther than this from gravity is not at rest, m/s2."""
+"""Maximum deviation of an accelerometer at rest from gravity, m/s2."""
 
 
 @dataclass(frozen=True)
 class Posture:
-    """How a robot at rest is.
+    """Posture of a robot at rest.
 
     Attributes:
-        tilt: Of the base from upright, rad.
-        side: The side that is down, where it lies.
-        height: Of the base above the lowest point of the feet, m.
-        clearance: Of everything but the feet above the same point, m.
+        tilt: Tilt of the base from upright, rad.
+        side: The side of the base that faces down the most.
+        height: Height of the base above the lowest point of the feet, m.
+        clearance: Height of the lowest point of all other bodies above the same point, m.
     """
 
     tilt: float
@@ -40,7 +40,7 @@ class Posture:
 
 
 class PostureSense:
-    """Tells how one robot is.
+    """Measures the posture of one robot.
 
     Args:
         model: The robot alone: a free joint, then n hinges in MJCF order.
@@ -52,12 +52,12 @@ class PostureSense:
         solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
         self._geoms = np.flatnonzero(solid & (model.geom_bodyid > 0))
         self._of_feet = np.isin(model.geom_bodyid[self._geoms], [model.body(f).id for f in feet])
-        # Boxes around the geoms, in their frames.
+        # Bounding boxes of the geoms, in their frames.
         self._centre = model.geom_aabb[self._geoms, :3]
         self._size = model.geom_aabb[self._geoms, 3:]
 
     def posture(self, seen: Sequence[Observation]) -> Posture | None:
-        """Return the mean posture over some observations at rest; None where it is not known."""
+        """Return the mean posture over some observations; None without an IMU or not at rest."""
         felt = [item.imu.acceleration for item in seen if item.imu is not None]
         if not felt:
             return None
@@ -71,11 +71,11 @@ class PostureSense:
         return Posture(tilt, _side(up), -feet, others - feet)
 
     def lowest(self, position: Array, up: Array) -> tuple[float, float]:
-        """Return how high above the base's origin the lowest foot is, and all else, m.
+        """Return the heights above the base's origin of the lowest points of feet and others, m.
 
         Args:
-            position: (n,) rad.
-            up: (3,) the vertical as the base sees it.
+            position: (n,) joint positions, rad.
+            up: (3,) vertical in the base frame.
         """
         data = self._data
         data.qpos[:7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
@@ -88,7 +88,7 @@ class PostureSense:
 
 
 def _side(up: Array) -> Side:
-    """Return which side of the base points down the most, with the vertical (3,) as it sees it."""
+    """Return the side of the base that faces down the most, for the vertical (3,) in its frame."""
     x, y, _ = up.tolist()
     if abs(x) >= abs(y):
         return "back" if x > 0.0 else "front"

@@ -1,4 +1,4 @@
-"""A Kalman filter over tilt, velocity and gyro bias, fed by an IMU and by feet that stand still.
+"""A Kalman filter for tilt, velocity and gyro bias, from an IMU and leg odometry.
 
 The errors of a floating base obey, for a tilt error about one horizontal axis, the velocity error
 along the other, and the gyro's bias about the first (g is gravity; signs as for pitch and x)::
@@ -6,9 +6,10 @@ along the other, and the gyro's bias about the first (g is gravity; signs as for
     d tilt / dt = -bias        d velocity / dt = g tilt        d bias / dt = 0
 
 and the velocity is measured. Both horizontal axes have the same noise, so one covariance (3, 3)
-serves both. It is what is left of Bloesch 2012 ("State estimation for legged robots") once nothing
-may be learned about the yaw, which nobody measures. The accelerometer's vertical is seen only
-through the velocity that it integrates to, so that walking does not look like leaning.
+serves both. The filter is that of Bloesch 2012 ("State estimation for legged robots") reduced to
+these states; the yaw is not measured, and not corrected. The accelerometer is not used as a
+direction of the vertical but only integrated to a velocity, so that the accelerations of walking
+cause no tilt error.
 """
 
 from dataclasses import dataclass
@@ -22,12 +23,12 @@ from windup.hal.joints import Array
 
 @dataclass(frozen=True)
 class ImuNoise:
-    """What the filter believes about the IMU; standard deviations, densities in a root of hertz.
+    """Noise model of the IMU; standard deviations, the first three per square root of hertz.
 
     Attributes:
-        gyro: rad/s; little noise, mostly what sampling loses of fast motion.
-        acceleration: m/s2; mostly what sampling loses of impacts.
-        drift: Of the gyro's bias, rad/s2.
+        gyro: Angular rate, rad/s; sensor noise is small, most is the sampling error of fast motion.
+        acceleration: Acceleration, m/s2; most is the sampling error of impacts.
+        drift: Drift of the gyro's bias, rad/s2.
         start_tilt: Tilt at the start, rad.
         start_velocity: Velocity at the start, m/s.
         start_bias: Bias of the gyro at the start, rad/s.
@@ -44,16 +45,16 @@ class ImuNoise:
 
 
 class TiltFilter:
-    """Attitude and horizontal velocity of the point where the IMU sits, and the gyro's bias.
+    """Estimates attitude and horizontal velocity at the IMU's position, and the gyro's bias.
 
     Args:
-        noise: See `ImuNoise`.
+        noise: Noise model of the IMU.
 
     Attributes:
         orientation: (4,) wxyz, body to world.
         frame: (3, 3) the same as a matrix.
-        velocity: (3,) m/s in the world; its vertical part is only ever integrated here.
-        bias: (3,) of the gyro, rad/s in the body.
+        velocity: (3,) velocity in the world, m/s; its vertical part is integrated, not corrected.
+        bias: (3,) bias of the gyro in the body frame, rad/s.
     """
 
     def __init__(self, noise: ImuNoise | None = None) -> None:
@@ -63,9 +64,9 @@ class TiltFilter:
         self.start(np.array([0.0, 0.0, 1.0]))
 
     def start(self, up: Array) -> None:
-        """Begin at rest, facing along x, with the vertical (3,) as the body sees it.
+        """Start at rest with heading 0 and the vertical `up` (3,) in the body frame.
 
-        What is known of the bias stays.
+        The estimate of the bias is kept.
         """
         self.orientation = np.empty(4)
         mujoco.mju_quatZ2Vec(self.orientation, up)
@@ -83,13 +84,13 @@ class TiltFilter:
         return float(self._covariance[0, 0] ** 0.5), float(self._covariance[1, 1] ** 0.5)
 
     def predict(self, turn: Array, boost: Array, dt: float, doubt: float = 1.0) -> None:
-        """Let `dt` s pass.
+        """Predict the state and its covariance over `dt` s.
 
         Args:
             turn: (3,) integral of the gyro, rad.
             boost: (3,) integral of the accelerometer, m/s.
-            dt: s.
-            doubt: Multiplies the samples' noise.
+            dt: Time since the last prediction, s.
+            doubt: Factor on the standard deviations of the noise.
         """
         before = self.frame
         mujoco.mju_quatIntegrate(self.orientation, turn - self.bias * dt, 1.0)
@@ -104,13 +105,13 @@ class TiltFilter:
         self._covariance = p
 
     def measure_velocity(self, velocity: Array, deviation: float) -> None:
-        """Take a measured velocity (3,) m/s in the world; only its horizontal parts count."""
+        """Correct by a velocity (3,) m/s in the world, of which only x and y are used."""
         x, y, _ = (velocity - self.velocity).tolist()
-        # What turns the base so that gravity shows as this velocity: pitch for x, -roll for y.
+        # The rotation by which gravity explains this velocity error: pitch for x, -roll for y.
         self._correct(1, deviation, self.frame.T @ (-y, x, 0.0), np.array([x, y, 0.0]))
 
     def measure_up(self, up: Array) -> None:
-        """Take the vertical (3,) as the body sees it, from the IMU's own fusion."""
+        """Correct by the vertical (3,) in the body frame, from the IMU's own orientation."""
         a, b = up.tolist(), self.frame[2].tolist()
         axis = np.array(
             [
@@ -123,21 +124,28 @@ class TiltFilter:
         self._correct(0, self.noise.fused, axis, np.array([y, -x, 0.0]))
 
     def measure_yaw_bias(self, bias: Array, deviation: float) -> None:
-        """Take a measured bias (3,) rad/s of the gyro; only its part along the vertical counts."""
+        """Correct by a gyro bias (3,) rad/s, of which only the vertical component is used."""
         gain = self._yaw_variance / (self._yaw_variance + deviation**2)
         up = self.frame[2]
         self.bias = self.bias + gain * float((bias - self.bias) @ up) * up
         self._yaw_variance *= 1.0 - gain
 
     def _prepare(self, dt: float) -> None:
-        """Work out what `dt` s do to the errors."""
+        """Compute transition matrix and process noise for `dt` s."""
         noise, fall = self.noise, GRAVITY * dt
         self._dt = dt
         self._step = np.array([[1.0, 0.0, -dt], [fall, 1.0, -0.5 * fall * dt], [0.0, 0.0, 1.0]])
         self._spread = np.diag(np.square([noise.gyro, noise.acceleration, noise.drift])) * dt
 
     def _correct(self, row: int, deviation: float, axis: Array, along: Array) -> None:
-        """Correct all by an error seen in state `row`: as a rotation and as a velocity."""
+        """Correct all states by a measurement of state `row` (0 tilt, 1 velocity).
+
+        Args:
+            row: Index of the measured state.
+            deviation: Standard deviation of the measurement.
+            axis: (3,) measured error as a rotation in the body frame.
+            along: (3,) measured error as a velocity in the world.
+        """
         p = self._covariance
         gain = p[row] / (p[row, row] + deviation**2)
         tilt, velocity, bias = gain.tolist()

@@ -1,1 +1,1 @@
-"""Foreseeing a fall, and falling softly."""
+"""Prediction of falls, and protective falling."""

@@ -1,10 +1,10 @@
-"""Falls that nothing can prevent: has the capture point left every place that a foot can reach?
+"""Prediction of falls that no step can prevent, by the capture point.
 
 A robot that does not step falls as soon as its capture point has left its soles. One that steps
-catches itself where it can put a foot there: so a fall is certain once the capture point is
-farther outside the soles' hull than a step reaches (Kenwright 2012, algorithm V-1, case C). Tilt
-and tilt rate are both in it: a robot that tips about an edge of its soles carries its centre of
-mass outwards, and the velocity of that adds as much again.
+prevents the fall if it can put a foot there: so a fall is certain once the capture point is
+farther outside the soles' hull than a step reaches (Kenwright 2012, algorithm V-1, case C). The
+criterion covers tilt and tilt rate: a robot that tips about an edge of its soles moves its centre
+of mass outwards, and the capture point adds the velocity of that.
 """
 
 from math import atan2, cos, hypot, sin
@@ -21,21 +21,21 @@ from windup.hal.joints import Array
 from windup.hal.observation import Observation
 
 CONFIRM = 0.006
-"""How long the capture point has to be out of reach, s: one sample of noise is no fall."""
+"""Minimum time of the capture point out of reach, s: one noisy sample is not a fall."""
 
 
 def unreachable(body: Momenta, soles: Array, reach: float) -> Array | None:
-    """Return where (2,) the robot falls to, seen from its soles, or None where a step may do.
+    """Return the direction (2,) of the fall from the soles, m, or None if a step can prevent it.
 
     Args:
         body: The momenta.
         soles: (p, 2) points of the soles, m, whether or not they bear load.
-        reach: How far outside their hull a foot can be put, m.
+        reach: Maximum distance outside their hull at which a foot can be put, m.
     """
     point = capture_point(body)
     away = point - soles
     if np.einsum("ij,ij->i", away, away).min() <= reach * reach:
-        return None  # nearer to a corner than that: no need for the hull
+        return None  # within reach of a corner: the hull is not needed
     if SupportRegion.hull(soles).margin(point) >= -reach:
         return None
     centre = 0.5 * (soles.min(axis=0) + soles.max(axis=0))
@@ -43,16 +43,16 @@ def unreachable(body: Momenta, soles: Array, reach: float) -> Array | None:
 
 
 class FallPredictor:
-    """Watches the observations of one robot for a fall that cannot be prevented.
+    """Detects in the observations of one robot a fall that cannot be prevented.
 
     Args:
         body: Kinematics of the robot.
-        soles: Where its soles can touch the ground.
-        reach: How far outside the hull of its soles it can put a foot, m.
+        soles: Points of its soles that can touch the ground.
+        reach: Maximum distance outside the hull of its soles at which it can put a foot, m.
 
     Attributes:
-        toward: Direction of the fall that was found, rad from straight ahead, positive to the
-            left, in -pi .. pi; None as long as there is none.
+        toward: Direction of the predicted fall, rad from straight ahead, positive to the left,
+            in -pi .. pi; None as long as no fall is predicted.
     """
 
     def __init__(self, body: Body, soles: Soles, reach: float) -> None:
@@ -61,7 +61,7 @@ class FallPredictor:
         self.reset()
 
     def reset(self) -> None:
-        """Forget what was seen."""
+        """Start over, with no fall predicted."""
         self.toward: float | None = None
         self._since: float | None = None
 
@@ -83,7 +83,7 @@ class FallPredictor:
         return self.toward is not None
 
     def _way(self, observation: Observation) -> Array | None:
-        """Return the direction (2,) of a certain fall, ahead and to the left, or None."""
+        """Return the unit direction (2,) of a certain fall (ahead, left), or None."""
         base = observation.base
         if base is None:
             raise StateMissingError(

@@ -1,8 +1,8 @@
-"""Falling well: a pose to land in, strong while it is taken, soft as the ground comes near.
+"""Protective falling: a landing pose, taken with high stiffness, softened before the impact.
 
 Kenwright 2012, algorithm V-1, case C: not a limp ragdoll, but arms toward the fall and a low body.
-Servos that hold the body never go limp in mid-air: knees that give way at once drop the trunk
-freely, and arms without strength catch nothing.
+The servos never go limp during the fall: with limp knees the trunk would drop freely, and limp
+arms would not absorb the impact.
 """
 
 from collections.abc import Sequence
@@ -21,25 +21,25 @@ from windup.hal.joints import Array, Joints
 from windup.hal.observation import JointState, Observation
 
 EFFORT = 0.85
-"""Share of a joint's largest torque that is asked of it."""
+"""Maximum commanded torque, as a share of a joint's largest torque."""
 STILL = 0.3
-"""Turn rate below which a base lies still, rad/s."""
+"""Angular speed below which the base is still, rad/s."""
 REST = 0.3
-"""How long it has to, s."""
+"""Minimum time at that before the robot counts as lying, s."""
 LONGEST = 2.5
-"""A fall takes no longer than this, s; a robot that has not landed by then does not fall."""
+"""Maximum duration of a fall, s; a robot that has not landed by then is not falling."""
 
 
 @dataclass(frozen=True)
 class FallWay:
-    """How to fall toward one side.
+    """Pose and stiffness of a fall in one direction.
 
     Attributes:
-        toward: Which side, rad from straight ahead, positive to the left.
-        pose: (n,) rad to take.
-        falling: (n,) share of each joint's stiffness until the impact is near.
-        impact: (n,) the same from then on.
-        soften: Tilt of the base at which the impact is near, rad.
+        toward: Direction, rad from straight ahead, positive to the left.
+        pose: (n,) landing pose, rad.
+        falling: (n,) share of each joint's stiffness until the tilt exceeds `soften`.
+        impact: (n,) share of each joint's stiffness from then on.
+        soften: Tilt of the base at which the joints are softened for the impact, rad.
     """
 
     toward: float
@@ -50,10 +50,10 @@ class FallWay:
 
 
 def bounded(joints: Joints, pose: Array, share: Array, state: JointState) -> JointCommand:
-    """Return the command that takes a pose and asks of no joint more than `EFFORT`.
+    """Return the command to take a pose with at most `EFFORT` of each joint's torque.
 
-    A servo that is thrown back while it pulls with all its voltage bears more than at stall, for
-    its back-EMF adds up. So goals stay as near as the torque law allows::
+    A servo that is driven backwards at full voltage carries more than its stall torque, because
+    its back-EMF adds up. So the goals are clipped to keep the torque law within::
 
         |stiffness (goal - q) - damping dq| <= EFFORT torque
 
@@ -73,7 +73,7 @@ def bounded(joints: Joints, pose: Array, share: Array, state: JointState) -> Joi
 
 
 class Phase(Enum):
-    """What a protected controller is at."""
+    """Phase of a protected controller."""
 
     SAFE = "safe"
     FALLING = "falling"
@@ -82,18 +82,18 @@ class Phase(Enum):
 
 
 class Protected:
-    """Any controller, and a protective fall once its robot can no longer be kept from falling.
+    """A controller that is replaced by a protective fall once a fall cannot be prevented.
 
     Args:
-        controller: Who controls as long as there is no such fall.
-        predictor: Foresees one.
-        ways: How to fall; the one whose side is nearest is taken.
+        controller: Controller until a fall is predicted.
+        predictor: Fall predictor.
+        ways: Available falls; the one nearest to the direction of the fall is chosen.
         joints: The robot's joints.
 
     Attributes:
-        phase: What it is at.
-        way: The way chosen, or None.
-        began: When the fall was foreseen, s, or None.
+        phase: Present phase.
+        way: The chosen fall, or None.
+        began: Time at which the fall was predicted, s, or None.
     """
 
     def __init__(
@@ -115,19 +115,19 @@ class Protected:
 
     @property
     def active(self) -> bool:
-        """True from the moment a fall was foreseen."""
+        """True once a fall has been predicted."""
         return self.phase is not Phase.SAFE
 
     @property
     def finished(self) -> bool:
-        """True once the robot lies still."""
+        """True once the robot lies still, or `LONGEST` s after the fall was predicted."""
         return self.phase is Phase.LYING
 
     def reset(self, observation: Observation) -> None:
-        """Begin anew.
+        """Start over, with no fall predicted.
 
         Raises:
-            StateMissingError: From the controller, or there is no base state to see a fall in.
+            StateMissingError: The observation lacks the base state, or what the controller needs.
         """
         self._clear()
         self.predictor.reset()
@@ -135,7 +135,7 @@ class Protected:
         self.controller.reset(observation)
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the controller's command, or that of the fall.
+        """Return the controller's command, or that of the protective fall.
 
         Raises:
             StateMissingError: The observation has no base.
@@ -151,13 +151,13 @@ class Protected:
         return bounded(self.joints, self.way.pose, share, observation.joints)
 
     def _choose(self) -> FallWay:
-        """Return the way whose side is nearest."""
+        """Return the available fall nearest to the predicted direction."""
         toward = self.predictor.toward
         assert toward is not None, "a fall has a direction"
         return max(self.ways, key=lambda way: cos(way.toward - toward))
 
     def _advance(self, observation: Observation, way: FallWay, passed: float) -> None:
-        """Move on to the next phase when it is time."""
+        """Enter the next phase if it is due."""
         base = observation.base
         if base is None:
             raise StateMissingError("the base state was lost in a fall")

@@ -1,1 +1,1 @@
-"""Directed steps: footprints, the swing to them, and the limbs that follow."""
+"""Walking given footprints: file format, checks, swing curves and controllers."""

@@ -1,4 +1,4 @@
-"""`footprints.toml` of a robot: how it walks footprints. SI units."""
+"""Format of a robot's `footprints.toml`: times, tolerances and gains for footprints. SI units."""
 
 from math import inf
 
@@ -7,22 +7,22 @@ from windup.hal.config import Positive, Record
 
 
 class Directed(Record, frozen=True, kw_only=True):
-    """How a robot walks footprints.
+    """Times, distances and tolerances of steps to footprints.
 
     Attributes:
-        stance: Name of the pose that it starts from, soles flat.
-        shift: Time in which the weight goes onto the foot that stays, s.
-        swing: Time of the other one in the air, where its footprint gives none, s.
-        land: Time until that one bears, s.
-        lift: How high it is lifted, m.
-        height: Of the base above the soles, m.
-        near: The weight is over a foot when the centre of mass is so near to its middle, m,
-        quiet: and no faster than this, m/s.
-        pace: Most acceleration of the centre of mass on its way from foot to foot, m/s2; what
-            is far takes longer than `shift`.
-        patience: After so many times `shift` the step begins all the same.
-        close: A foot is where it should be when it is so near to its place, m,
-        turned: and turned no more from it than this, degrees.
+        stance: Name of the pose that the robot starts from, soles flat.
+        shift: Time to shift the weight onto the stance foot, s.
+        swing: Time of the swing foot in the air if its footprint gives none, s.
+        land: Time from touchdown until the swing foot bears load, s.
+        lift: Height to which the swing foot is lifted, m.
+        height: Height of the base above the soles, m.
+        near: Maximum distance of the CoM from its goal for a weight shift to be complete, m.
+        quiet: Maximum speed of the CoM for a weight shift to be complete, m/s.
+        pace: Maximum acceleration of the CoM during a weight shift, m/s2; long shifts therefore
+            take longer than `shift`.
+        patience: Time-out of a weight shift, in multiples of its duration; then the step begins.
+        close: Maximum distance of a foot that counts as placed from its footprint, m.
+        turned: Maximum yaw error of a foot that counts as placed, degrees.
     """
 
     stance: str
@@ -40,15 +40,15 @@ class Directed(Record, frozen=True, kw_only=True):
 
 
 class ServoDirected(Directed, frozen=True, kw_only=True):
-    """How a robot with position servos does so.
+    """The same for a robot with position servos, with its feedback gains.
 
     Attributes:
-        hold: Proportional gain on the CoM error.
-        brake: Derivative gain on the CoM, s.
-        level: Part of the tilt of the base that the goals lean against it.
-        steady: Time by which the rate of that tilt does so, s.
-        follow: Rate at which what lasts of either is made up for, 1/s.
-        slow: Time constant of the torques that hold the weight, s.
+        hold: Proportional gain on the CoM position error.
+        brake: Derivative gain on the CoM velocity error, s.
+        level: Proportional gain on the tilt of the base.
+        steady: Derivative gain on the tilt rate of the base, s.
+        follow: Integral gain on the CoM error and on the tilt, 1/s.
+        slow: Time constant of the low-pass filter on the gravity torques, s.
     """
 
     hold: Gain

@@ -1,4 +1,4 @@
-"""Can footprints be walked? No foot on or across the other one, none out of a leg's reach."""
+"""Checks that footprints can be walked: no foot on or across the other, none out of reach."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,27 +15,27 @@ from windup.hal.errors import UsageError
 from windup.hal.joints import Array
 
 CLEAR = 0.004
-"""Least distance between the soles, m."""
+"""Minimum distance between the soles, m."""
 CLOSE, FLAT = 0.002, 0.01
-"""How far from its place a foot within reach may be, m and rad."""
+"""Maximum error of the inverse kinematics for a place within reach, m and rad."""
 SEARCH = 60
-"""Most iterations of the inverse kinematics."""
+"""Maximum number of iterations of the inverse kinematics."""
 STEP = 0.001
-"""How finely a place beside the other foot is looked for, m."""
+"""Step size of the search for a place beside the other foot, m."""
 
 
 @dataclass(frozen=True)
 class FootprintChecks:
-    """What a robot with two feet can step to.
+    """Checks footprints against the geometry of a robot with two feet.
 
     Attributes:
-        names: Names of its feet.
-        limbs: Inverse kinematics of its legs.
-        soles: Their outlines, seen from the soles' centres, m.
-        homes: (3,) places of the feet in the stance, seen from the middle between them.
-        stance: (n,) rad, where the inverse kinematics starts.
-        base: (2,) m, the base seen from the centre of mass.
-        height: Of the base above the soles, m.
+        names: Names of the feet.
+        limbs: Inverse kinematics of the legs.
+        soles: Outlines of the soles in the frames of the soles' centres, m.
+        homes: Places (3,) of the feet in the stance, relative to the middle between them.
+        stance: (n,) rad, initial guess of the inverse kinematics.
+        base: (2,) m, position of the base relative to the centre of mass.
+        height: Height of the base above the soles, m.
     """
 
     names: tuple[str, ...]
@@ -47,10 +47,11 @@ class FootprintChecks:
     height: float
 
     def check(self, prints: Sequence[Footprint]) -> None:
-        """Raise where footprints cannot be walked from the stance, one after the other.
+        """Raise if the footprints cannot be walked from the stance, one after the other.
 
         Raises:
-            UsageError: Which step, why, and what would be right.
+            UsageError: A step cannot be walked; the message has its number, the reason and a
+                place that would be right.
         """
         places = list(self.homes)
         for number, one in enumerate(prints, 1):
@@ -61,7 +62,7 @@ class FootprintChecks:
                 raise UsageError(f"{where}{error}") from None
 
     def _one(self, one: Footprint, places: list[Array]) -> None:
-        """Check a step from `places`, and take it there."""
+        """Check one step from `places` (a place for each foot), and update `places`."""
         stance = places[1 - one.foot]
         target = one.place if one.frame == "stance" else seen_from(stance, one.place)
         start = seen_from(stance, places[one.foot])
@@ -70,11 +71,11 @@ class FootprintChecks:
         places[one.foot] = onto(stance, target)
 
     def side(self, foot: int) -> float:
-        """Return 1 for a foot to the left of the other one, -1 for one to the right."""
+        """Return 1 if a foot is to the left of the other one, -1 if it is to the right."""
         return float(np.sign(self.homes[foot][1] - self.homes[1 - foot][1]))
 
     def clear(self, foot: int, target: Array) -> bool:
-        """Return True when a foot at `target`, seen from the other one, is beside that one."""
+        """Return True if a foot at `target` (relative to the other one) is clear of that one."""
         there = _at(self.soles[foot], target)
         on_its_side = target[1] * self.side(foot) > 0.0
         return on_its_side and there.distance(self.soles[1 - foot]) > CLEAR
@@ -110,11 +111,11 @@ class FootprintChecks:
         )
 
     def within_reach(self, foot: int, target: Array) -> bool:
-        """Return True when both legs can stand so, with the weight over either foot.
+        """Return True if both legs reach their places with the weight over either foot.
 
         Args:
-            foot: Which one steps.
-            target: (3,) where to, seen from the other one.
+            foot: Index of the foot that steps.
+            target: (3,) its place relative to the other foot.
         """
         feet = [np.zeros(3), target] if foot == 1 else [target, np.zeros(3)]
         yaw = between(np.zeros(3), target)[2]
@@ -135,15 +136,15 @@ class FootprintChecks:
         return bool(away < CLOSE and tilt < FLAT)
 
     def draw(self, count: int, rng: np.random.Generator) -> list[Footprint]:
-        """Return random steps that can be walked, feet in turn: length, direction and turn.
+        """Return random footprints that can be walked, with alternating feet.
 
-        Seen from the foot that stays, the other one comes down up to .3 of the height of the
-        hips before or behind it, between the nearest it may come and .2 of that height farther,
-        turned up to 20 degrees.
+        Relative to the stance foot, the other one comes down up to 0.3 `height` ahead or behind,
+        to the side between the nearest clear distance and 0.2 `height` more, and turned by up to
+        20 degrees.
 
         Args:
-            count: How many.
-            rng: Draws them.
+            count: Number of steps.
+            rng: Source of the random numbers.
         """
         prints: list[Footprint] = []
         places = list(self.homes)
@@ -161,7 +162,7 @@ class FootprintChecks:
         return prints
 
     def _nearest(self, foot: int) -> float:
-        """Return how close, m, a foot may come beside the other one."""
+        """Return the smallest lateral distance of a foot that is clear of the other one, m."""
         beside = np.zeros(3)
         while not self.clear(foot, beside):
             beside[1] += self.side(foot) * STEP
@@ -169,14 +170,14 @@ class FootprintChecks:
 
 
 def outline(points: Array) -> Polygon:
-    """Return the outline of points (p, 2) m."""
+    """Return the convex outline of points (p, 2) m."""
     hull = MultiPoint(points).convex_hull
     assert isinstance(hull, Polygon), "a sole is a box, or touches in three points or more"
     return hull
 
 
 def _at(sole: Polygon, place: Array) -> BaseGeometry:
-    """Return an outline where its foot is at a place."""
+    """Return the outline `sole` moved to a place (3,)."""
     turned = rotate(sole, float(place[2]), origin=(0.0, 0.0), use_radians=True)
     return translate(turned, float(place[0]), float(place[1]))
 

@@ -1,6 +1,6 @@
-"""Walks footprints, one slow step after the other: the weight goes over the foot that stays first.
+"""Walks footprints with position servos, quasi-statically: first the weight shifts, then a foot.
 
-Everything is planned from the feet as they are measured, so that errors do not pile up.
+Each phase is planned from the measured places of the feet, so that errors do not accumulate.
 """
 
 from collections.abc import Sequence
@@ -22,22 +22,22 @@ Phase = Literal["shift", "swing", "land", "rest"]
 
 
 class FootprintWalker(LegMotion):
-    """Takes the steps of a list of footprints, and comes to rest between the feet.
+    """Controller that walks a list of footprints and ends with the weight between the feet.
 
     Args:
         joints: The robot's joints.
         body: Kinematics of the robot.
         base: Name of the body with the free joint.
-        limbs: Inverse kinematics of its two legs, in the order of its soles.
-        stance: (n,) rad, the pose to start from; joints of no leg keep it.
-        prints: What to do.
+        limbs: Inverse kinematics of the two legs, in the order of the soles.
+        stance: (n,) rad, the pose to start from; joints outside the legs keep it.
+        prints: Footprints to walk, in order.
         how: Gains and times.
 
     Attributes:
         finished: All steps are done and the weight is between the feet.
-        landed: How many feet have come down.
-        stood: How many of these have borne the weight since, as they were told.
-        target: (3,) where the last one should have come down, seen from the foot that stayed.
+        landed: Number of steps whose foot has come down.
+        stood: Number of steps after which the following weight shift has ended.
+        target: (3,) planned place of the current or last swing foot, relative to the stance foot.
     """
 
     target: Array
@@ -57,7 +57,7 @@ class FootprintWalker(LegMotion):
         self.finished, self.landed, self.stood = False, 0, 0
 
     def reset(self, observation: Observation) -> None:
-        """Begin where the feet are."""
+        """Start from the measured places of the feet."""
         super().reset(observation)
         self._origin = between(*self.places)
         self._apart = seen_from(*self.places)
@@ -67,7 +67,7 @@ class FootprintWalker(LegMotion):
         self._enter("rest", observation.time)
 
     def plan(self, now: float, dt: float) -> Aim:
-        """Return what to do now."""
+        """Return the aim of this tick."""
         self._advance(now)
         part = self._now = min((now - self._began) / self._seconds(), 1.0)
         self._aim = self._between(part)
@@ -77,7 +77,7 @@ class FootprintWalker(LegMotion):
         return self._aim
 
     def _between(self, part: float) -> Aim:
-        """Return what is planned at a part of the phase."""
+        """Return the aim at the fraction `part` (0 to 1) of the phase."""
         s = smooth_progress(part)
         pace = 30.0 * (part * (1.0 - part)) ** 2 / self._seconds()
         begin, end = self._from, self._to
@@ -90,7 +90,7 @@ class FootprintWalker(LegMotion):
         )
 
     def _enter(self, phase: Phase, now: float) -> None:
-        """Begin a phase."""
+        """Enter a phase, from the present aim to its goal."""
         self._phase, self._began = phase, now
         self._from = self._aim
         if phase == "shift":
@@ -105,7 +105,7 @@ class FootprintWalker(LegMotion):
         self._to = self._goal(phase)
 
     def _fix(self) -> None:
-        """Fix where the foot should come down, seen from the one that stays."""
+        """Set the start and target place of the swing foot, relative to the stance foot."""
         wanted = self.prints[self.landed]
         stance = self.places[1 - self._foot]
         self._left = seen_from(stance, self.places[self._foot])
@@ -114,7 +114,7 @@ class FootprintWalker(LegMotion):
             self.target = seen_from(stance, onto(self._origin, wanted.place))
 
     def _goal(self, phase: Phase) -> Aim:
-        """Return where a phase should end."""
+        """Return the aim at the end of a phase."""
         middle, yaw = between(*self.places), self._aim.yaw
         if phase == "rest":
             yaw += way_round(yaw, middle[2])
@@ -131,7 +131,7 @@ class FootprintWalker(LegMotion):
         return self.how.land if self._phase == "land" else self.how.shift
 
     def _advance(self, now: float) -> None:
-        """Go on to the next phase when it is time."""
+        """Enter the next phase if the present one is over."""
         if now - self._began < self._seconds() - 1e-9 or self.finished:
             return
         if self._phase in ("shift", "rest"):
@@ -150,21 +150,21 @@ class FootprintWalker(LegMotion):
             self.finished = True
 
     def _calm(self) -> bool:
-        """The weight is over the foot that stays, and rests."""
+        """Return True if the CoM is over the stance foot and at rest, within the tolerances."""
         away = np.hypot(*(self.mass[:2] - self._to.com))
         return bool(away < self.how.near and np.hypot(*self.speed) < self.how.quiet)
 
     def sole(self, foot: int) -> Pose:
-        """Return where the sole on the ground should be.
+        """Return the desired pose of a sole on the ground.
 
-        The one that bears more is where it is; the other one as far from it as it came down, or
-        small forces between the feet would let it creep.
+        The more loaded sole keeps its measured place. The other one is held at the distance at
+        which it came down: otherwise small forces between the feet would make it creep.
         """
         x, y, yaw = self.places[foot] + self._creep(foot)
         return Pose(np.array([x, y, self.ground]), turn(yaw))
 
     def _creep(self, foot: int) -> Array:
-        """Return how far (3,) a foot on the ground should go back, m and rad."""
+        """Return the correction (3,) of a foot on the ground against creep, m and rad."""
         one, other = self.places
         share = self._aim.right_load
         if self._phase == "swing":
@@ -177,7 +177,7 @@ class FootprintWalker(LegMotion):
         return share * np.array([*away[:2], way_round(0.0, away[2])])
 
     def flying(self, foot: int) -> Pose:
-        """Return where the sole in the air should be."""
+        """Return the desired pose of the swing foot's sole."""
         stance = self.places[1 - foot]
         if self._phase == "land":
             x, y, yaw = onto(stance, self.target)

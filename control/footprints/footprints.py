@@ -1,4 +1,4 @@
-"""Footprints: where the feet should come down, one step after the other, and the file of them.
+"""Footprints (target places of the feet, in step order), their file, and operations on places.
 
 A place is (x m, y m, yaw rad) on the ground: x forward, y to the left, yaw to the left.
 """
@@ -32,9 +32,9 @@ class FootprintFile(Record, frozen=True, kw_only=True):
     """A footprint file.
 
     Attributes:
-        frame: "stance": x, y and yaw are seen from the foot that stays, where it is by then;
-            "start": from the middle between both feet at the start.
-        step: The steps in their order.
+        frame: "stance": x, y and yaw are relative to the stance foot as measured at that step;
+            "start": relative to the middle between both feet at the start.
+        step: The steps in order.
     """
 
     frame: Frame = "stance"
@@ -43,13 +43,13 @@ class FootprintFile(Record, frozen=True, kw_only=True):
 
 @dataclass(frozen=True)
 class Footprint:
-    """Where one foot should come down.
+    """Target place of one foot.
 
     Attributes:
         foot: Index of the foot.
         place: (3,) x m, y m, yaw rad.
-        frame: What the place is seen from; see `FootprintFile`.
-        duration: Of the swing, s; None takes the controller's own.
+        frame: Frame of the place; see `FootprintFile`.
+        duration: Duration of the swing, s; None takes the controller's default.
     """
 
     foot: int
@@ -63,7 +63,7 @@ def read_footprints(path: Path, feet: tuple[str, ...]) -> list[Footprint]:
 
     Raises:
         ConfigError: The file cannot be read, or is no footprint file.
-        UsageError: It has no step, or one of a foot that is not there.
+        UsageError: It has no step, or names a foot that the robot does not have.
     """
     file = load_toml(path, FootprintFile)
     if not file.step:
@@ -78,7 +78,7 @@ def read_footprints(path: Path, feet: tuple[str, ...]) -> list[Footprint]:
 
 
 def footprint(row: StepRecord, frame: Frame, feet: tuple[str, ...]) -> Footprint:
-    """Return what a row says, for a robot with these feet.
+    """Return the footprint of one row of the file, for a robot with these feet.
 
     Raises:
         UsageError: The robot has no such foot.
@@ -88,10 +88,10 @@ def footprint(row: StepRecord, frame: Frame, feet: tuple[str, ...]) -> Footprint
 
 
 def foot_index(name: str, feet: tuple[str, ...]) -> int:
-    """Return which foot is meant; "left" means "left_foot" or "left_hand" as well.
+    """Return the index of a foot; "left" also stands for "left_foot" or "left_hand".
 
     Raises:
-        UsageError: None is.
+        UsageError: There is no such foot.
     """
     short = [_short(foot) for foot in feet]
     for names in (feet, short):
@@ -105,7 +105,7 @@ def _short(foot: str) -> str:
 
 
 def write_footprints(prints: list[Footprint], feet: tuple[str, ...]) -> str:
-    """Return the text of a file with these footprints, which have one frame."""
+    """Return the text of a footprint file; all footprints must have the same frame."""
     lines = [f'frame = "{prints[0].frame}"']
     for one in prints:
         x, y, yaw = one.place
@@ -117,7 +117,7 @@ def write_footprints(prints: list[Footprint], feet: tuple[str, ...]) -> str:
 
 
 def onto(frame: Array, place: Array) -> Array:
-    """Return the place (3,) that `place` is, seen from where `frame` (3,) is seen from."""
+    """Return `place` (3,), given relative to `frame` (3,), in the frame that `frame` is in."""
     x, y, yaw = frame
     c, s = cos(yaw), sin(yaw)
     turned = [x + c * place[0] - s * place[1], y + s * place[0] + c * place[1], yaw + place[2]]
@@ -125,14 +125,14 @@ def onto(frame: Array, place: Array) -> Array:
 
 
 def seen_from(frame: Array, place: Array) -> Array:
-    """Return `place` (3,) as it is seen from `frame` (3,); yaw within half a turn."""
+    """Return `place` (3,) relative to `frame` (3,); its yaw is in -pi .. pi."""
     c, s = cos(frame[2]), sin(frame[2])
     dx, dy, turn = place - frame
     return np.array([c * dx + s * dy, -s * dx + c * dy, atan2(sin(turn), cos(turn))])
 
 
 def between(one: Array, other: Array) -> Array:
-    """Return the place (3,) halfway between two."""
+    """Return the place (3,) halfway between two places (3,)."""
     away = seen_from(one, other)
     middle = onto(one, np.array([0.0, 0.0, 0.5 * away[2]]))
     middle[:2] = 0.5 * (one[:2] + other[:2])

@@ -1,4 +1,4 @@
-"""Ground where no sole may come down: holes, edges, or whatever somebody has to keep off."""
+"""Regions of the ground where no sole may come down, such as holes and edges."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -15,23 +15,23 @@ from windup.hal.errors import UsageError
 from windup.hal.joints import Array
 
 FINE = 0.05
-"""A sole's outline is turned anew once its heading has changed by so much, rad."""
+"""Change of a sole's heading after which its outline is rotated again, rad."""
 PARTS = (0.65, 0.75, 0.85, 0.95, 1.0, 1.1)
-"""Parts of the way at which a foot may come down that was sent all of it; OP3's fall short."""
+"""Fractions of the commanded step at which a foot may really land; OP3's steps fall short."""
 
 
 class KeepOutRegions:
-    """Regions of the ground that soles keep off, for `step_decision.place`.
+    """Forbidden regions of the ground, for `step_decision.place`.
 
     Kenwright 2012, section IV-A.4: a foot must not come down in an undesired location, such as a
     hole.
 
     Args:
-        regions: Polygons, seen from the middle between both feet at the start, x forward, m.
-        clear: How far soles keep off, m: a foot never comes down quite where it should.
+        regions: Polygons relative to the middle between both feet at the start, x forward, m.
+        clear: Minimum distance of the soles from a region, m: landings are never exact.
 
     Attributes:
-        here: The regions as the world sees them, once it is known where the robot started.
+        here: The regions in the world frame; set by `begin`.
     """
 
     here: list[BaseGeometry]
@@ -44,14 +44,14 @@ class KeepOutRegions:
         return bool(self._regions)
 
     def begin(self, feet: Sequence[Pose], soles: Sequence[Array]) -> None:
-        """Take where two feet stand at the start.
+        """Place the regions in the world, from the two feet at the start.
 
         Args:
             feet: Poses of the soles' centres in the world.
             soles: Points (p, 3) of each sole in the world, m.
 
         Raises:
-            UsageError: One stands in a region.
+            UsageError: A foot stands in a region.
         """
         yaws = [yaw_of(foot.rotation) for foot in feet]
         places = [np.array([*foot.position[:2], yaw]) for foot, yaw in zip(feet, yaws, strict=True)]
@@ -70,9 +70,9 @@ class KeepOutRegions:
         return any(region.intersects(hull) for region in self.here)
 
     def holes(self, foot: int, yaw: float, start: Array) -> list[BaseGeometry]:
-        """Return where a foot must not be sent from `start` (2,), turned by `yaw` rad.
+        """Return the forbidden targets of a foot that steps from `start` (2,), heading `yaw` rad.
 
-        Its sole would touch a region with its centre there, or if it came down short of it.
+        With its centre there, or landing short of there, its sole would touch a region.
         """
         if not self._regions:
             return []
@@ -88,7 +88,7 @@ class KeepOutRegions:
         return not any(hole.contains(point) for hole in self.holes(foot, yaw, start))
 
     def _grown(self, foot: int, yaw: float) -> list[BaseGeometry]:
-        """Return where the centre of a sole would have it touch a region, or nearly."""
+        """Return the positions of a sole's centre at which it touches a region or its margin."""
         outline = self._outline(foot, yaw)
         return [grown(region, outline, self._clear) for region in self.here]
 
@@ -97,15 +97,16 @@ class KeepOutRegions:
 
 
 def placed(region: BaseGeometry, origin: Array) -> BaseGeometry:
-    """Return a region seen from `origin` (3,) x m, y m, yaw rad, as the world sees it."""
+    """Return a region, given relative to `origin` (3,) x m, y m, yaw rad, in the world frame."""
     turned = rotate(region, origin[2], origin=(0.0, 0.0), use_radians=True)
     return translate(turned, origin[0], origin[1])
 
 
 def grown(region: BaseGeometry, outline: Array, clear: float = 0.0) -> BaseGeometry:
-    """Return where the centre of a sole of an `outline` (p, 2) m touches `region`, or nearly.
+    """Return the positions of a sole's centre at which its `outline` (p, 2) m touches `region`.
 
-    Their Minkowski sum: the region itself, and every edge of it drawn over the sole.
+    This is the Minkowski sum of the region, widened by `clear` m, and the mirrored outline: the
+    region itself, and each of its edges swept over the sole.
     """
     wide = region.buffer(clear, join_style="mitre") if clear else region
     parts = [wide]
@@ -119,6 +120,6 @@ def grown(region: BaseGeometry, outline: Array, clear: float = 0.0) -> BaseGeome
 
 
 def shadow(hole: BaseGeometry, start: Array) -> BaseGeometry:
-    """Return where a foot from `start` (2,) must not be sent, for it may land in `hole` instead."""
+    """Return the targets from which a foot that starts at `start` (2,) may land in `hole`."""
     origin = (float(start[0]), float(start[1]))
     return union_all([scale(hole, 1.0 / part, 1.0 / part, origin=origin) for part in PARTS])

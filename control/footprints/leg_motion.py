@@ -1,7 +1,7 @@
-"""Two legs on position servos that follow a plan of the weight and of the foot in the air.
+"""Tracking of a planned CoM and swing foot by two legs with position servos.
 
-What is on the ground is measured anew at every tick, so that errors do not pile up. The goals
-carry what the servos need to hold the weight, and run ahead of the swinging leg.
+The feet on the ground are measured at every tick, so that errors do not accumulate. The commands
+contain feedforward torques against gravity and feedforward velocities.
 """
 
 from abc import ABC, abstractmethod
@@ -22,65 +22,65 @@ from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
 MOST_SHIFT, MOST_TILT = 0.02, 0.1
-"""Most that is made up for, m and rad."""
+"""Maximum integral corrections of the CoM, m, and of the tilt, rad."""
 PRESS = 0.002
-"""How far into the ground a foot is put, so that it touches with certainty, m."""
+"""Depth below the ground to which a landing foot is commanded, so that it touches, m."""
 FAST, SMOOTH = 4.8, 0.02
-"""Most speed of a goal that is told beforehand, rad/s, and the time it is smoothed in, s."""
+"""Maximum feedforward velocity, rad/s, and time constant of its low-pass filter, s."""
 ITERATIONS = 3
-"""Of the inverse kinematics in a tick; each one begins where the last tick ended."""
+"""Iterations of the inverse kinematics per tick, started at the solution of the last tick."""
 
 
 class Gains(Protocol):
-    """How hard errors are made up for; a file's record has it."""
+    """Feedback gains, as `footprints.toml` or `stride.toml` gives them."""
 
     @property
     def hold(self) -> float:
-        """Proportional gain on the CoM error."""
+        """Proportional gain on the CoM position error."""
         ...
 
     @property
     def brake(self) -> float:
-        """Derivative gain on the CoM, s."""
+        """Derivative gain on the CoM velocity error, s."""
         ...
 
     @property
     def level(self) -> float:
-        """Part of the tilt of the base that the goals lean against it."""
+        """Proportional gain on the tilt of the base."""
         ...
 
     @property
     def steady(self) -> float:
-        """Time by which the rate of that tilt does so, s."""
+        """Derivative gain on the tilt rate of the base, s."""
         ...
 
     @property
     def follow(self) -> float:
-        """Rate at which what lasts of either is made up for, 1/s."""
+        """Integral gain on the CoM error and on the tilt, 1/s."""
         ...
 
     @property
     def slow(self) -> float:
-        """Time constant of the torques that hold the weight, s."""
+        """Time constant of the low-pass filter on the gravity torques, s."""
         ...
 
 
 TAKE_OFF = 0.2
-"""Part of the swing in which the leg goes over from bearing to flying."""
+"""Fraction of the swing in which the leg changes from stance to swing control."""
 
 
 @dataclass
 class Aim:
-    """What is planned for now.
+    """Desired state of this tick.
 
     Attributes:
-        com: (2,) where the centre of mass should be, m.
-        speed: (2,) of it, m/s.
-        height: Of the base above the ground, m.
+        com: (2,) desired position of the centre of mass, m.
+        speed: (2,) desired velocity of the centre of mass, m/s.
+        height: Height of the base above the ground, m.
         yaw: Heading of the base, rad.
         right_load: Share of the weight on the second foot, the right one.
-        flying: The foot that is in the air, or has just come down.
-        standing: 0: that leg moves as one in the air; 1: as one on the ground.
+        flying: Index of the foot that is in the air or has just come down, or None.
+        standing: Blend of that leg between swing control (0) and stance control (1).
     """
 
     com: Array
@@ -93,18 +93,18 @@ class Aim:
 
 
 class LegMotion(ABC):
-    """Follows a plan with both legs.
+    """Controller that tracks a plan with both legs; subclasses supply the plan.
 
     Args:
         joints: The robot's joints.
         body: Kinematics of the robot.
         base: Name of the body with the free joint.
-        limbs: Inverse kinematics of its two legs, in the order of its soles.
-        stance: (n,) rad, the pose to start from; joints of no leg keep it.
-        gains: How hard errors are made up for.
+        limbs: Inverse kinematics of the two legs, in the order of the soles.
+        stance: (n,) rad, the pose to start from; joints outside the legs keep it.
+        gains: Feedback gains.
 
     Attributes:
-        places: (2, 3) where the feet are now.
+        places: (2, 3) measured places of the feet, x m, y m, yaw rad.
     """
 
     places: Array
@@ -123,18 +123,18 @@ class LegMotion(ABC):
 
     @abstractmethod
     def plan(self, now: float, dt: float) -> Aim:
-        """Return what to do now; the robot has been measured."""
+        """Return the aim of this tick; `update` has been called before."""
 
     @abstractmethod
     def sole(self, foot: int) -> Pose:
-        """Return where the sole of a foot on the ground should be."""
+        """Return the desired pose of the sole of a foot on the ground."""
 
     @abstractmethod
     def flying(self, foot: int) -> Pose:
-        """Return where the sole of a foot in the air should be."""
+        """Return the desired pose of the sole of a foot in the air."""
 
     def reset(self, observation: Observation) -> None:
-        """Begin where the feet are."""
+        """Start from the measured state; all integrators and filters are cleared."""
         self.update(observation)
         self._hold = JointCommand.hold(self.joints, self.stance)
         self._last = [observation.joints.position.copy() for _ in self.limbs]
@@ -144,7 +144,7 @@ class LegMotion(ABC):
         self._shift, self._tilt = np.zeros(2), np.zeros(3)
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the command of now."""
+        """Return the command of this tick."""
         self.update(observation)
         aim = self.plan(observation.time, dt)
         base = self._base(aim, dt)
@@ -181,7 +181,7 @@ class LegMotion(ABC):
         self.ground = float(self.heights.min())
 
     def _base(self, aim: Aim, dt: float) -> Pose:
-        """Return where the base should be for that, with what is lasting made up for."""
+        """Return the desired pose of the base for `aim`, with PID feedback of CoM and tilt."""
         gains = self.gains
         error, slow = aim.com - self.mass[:2], self.speed - aim.speed
         self._shift = np.clip(self._shift + gains.follow * dt * error, -MOST_SHIFT, MOST_SHIFT)
@@ -194,7 +194,7 @@ class LegMotion(ABC):
         return Pose(np.array([*place, self.ground + aim.height]), _small(tilt) @ wanted)
 
     def _run_ahead(self, goals: Array, dt: float) -> Array:
-        """Return how fast (n,) the goals move, rad/s: servos that know it lag less."""
+        """Return the filtered velocity (n,) of the goals, rad/s: feedforward against servo lag."""
         if self._before is not None:
             speed = (goals - self._before) / dt
             self._lead += min(dt / SMOOTH, 1.0) * (np.clip(speed, -FAST, FAST) - self._lead)
@@ -202,7 +202,7 @@ class LegMotion(ABC):
         return self._lead
 
     def _fly(self, goals: Array, foot: int, standing: float) -> None:
-        """Set the leg in the air, from where the base is; on the ground from where it should be."""
+        """Set the swing leg, solved from the measured base; blend with its stance solution."""
         limb = self.limbs[foot]
         stood = goals[limb.joints].copy()
         self._solve(goals, foot, self.flying(foot).seen_from(self.pose))
@@ -216,7 +216,7 @@ class LegMotion(ABC):
 
 
 def _small(turned: Array) -> Array:
-    """Return the rotation (3, 3) of a small turn (3,) rad."""
+    """Return the rotation matrix (3, 3) of a small rotation vector (3,) rad."""
     x, y, z = turned
     matrix = np.array([[1.0, -z, y], [z, 1.0, -x], [-y, x, 1.0]])
     q, r = np.linalg.qr(matrix)

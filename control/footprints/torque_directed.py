@@ -1,7 +1,7 @@
 """Walks footprints with torques from whole-body control, one step after the other.
 
-Wu & Zordan 2010, sections 4 and 5: somebody says where the foot comes down. The weight goes over
-the foot that stays before the other one is lifted, so that every step begins and ends at rest.
+Wu & Zordan 2010, sections 4 and 5, with given footprints. The weight shifts over the stance foot
+before the other one is lifted, so that every step begins and ends at rest.
 """
 
 from collections.abc import Sequence
@@ -22,27 +22,27 @@ from windup.hal.observation import Observation
 
 Phase = Literal["rest", "shift", "swing", "land"]
 PEAK = 5.77
-"""Largest acceleration on a way of 1 that takes 1, of `smooth_progress`."""
+"""Peak acceleration of `smooth_progress`, for a path of length 1 in time 1."""
 LATE = 2.0
-"""After so many times its duration a swing is over, whether the foot touches or not."""
+"""Time-out of a swing, in multiples of its duration; it then ends even without contact."""
 
 
 class TorqueDirected(TorqueMotion):
-    """Takes the steps of a list of footprints, and comes to rest between the feet.
+    """Controller that walks a list of footprints and ends with the weight between the feet.
 
     Args:
         joints: The robot's joints.
-        body: Its whole-body control.
+        body: The robot's whole-body control.
         stance: (n,) rad, the pose to start from.
-        prints: What to do.
-        how: Times.
-        contacts: The feet's sensors, which tell that one has come down; heights above the ground
-            are too rough for that where the state is estimated.
+        prints: Footprints to walk, in order.
+        how: Times and tolerances.
+        contacts: The feet's contact sensors, which detect touchdown; an estimated state gives
+            heights above the ground that are too inaccurate for that.
 
     Attributes:
         finished: All steps are done and the weight is between the feet.
-        landed: How many feet have come down.
-        stood: How many of these have borne the weight since, as they were told.
+        landed: Number of steps whose foot has come down.
+        stood: Number of steps after which the following weight shift has ended.
     """
 
     def __init__(
@@ -59,14 +59,14 @@ class TorqueDirected(TorqueMotion):
         self.finished, self.landed, self.stood = False, 0, 0
 
     def reset(self, observation: Observation) -> None:
-        """Begin where the feet are."""
+        """Start from the measured places of the feet."""
         super().reset(observation)
         self._origin = between(*self.places)
         self.finished, self.landed, self.stood = False, 0, 0
         self._enter("rest", observation.time)
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the torques of now; see `TorqueMotion.step`."""
+        """Return the command of this tick; see `TorqueMotion.step`."""
         self._down = self._contacts.feet_down(observation.contacts)
         return super().step(observation, dt)
 
@@ -88,7 +88,7 @@ class TorqueDirected(TorqueMotion):
             self._rested(now)
 
     def _rested(self, now: float) -> None:
-        """Go on, with the weight where it should be."""
+        """Enter the next phase after a completed weight shift, or finish."""
         self.stood = self.landed
         if self.landed == len(self.prints):
             self.finished = True
@@ -98,14 +98,14 @@ class TorqueDirected(TorqueMotion):
             self._step(self.prints[self.landed], now)
 
     def _step(self, one: Footprint, now: float) -> None:
-        """Lift a foot to its footprint."""
+        """Start the swing of a foot to its footprint."""
         seen = self._origin if one.frame == "start" else self.places[1 - one.foot]
         x, y, yaw = onto(seen, one.place)
         self._lift(one.foot, np.array([x, y]), yaw, one.duration or self.how.swing, now)
         self._enter("swing", now)
 
     def _fly(self, now: float) -> None:
-        """Put the foot down when it is there."""
+        """End the swing on touchdown after its duration, or on its time-out."""
         swing = self._flying
         part = (now - swing.began) / swing.duration
         if part >= LATE or (part >= 1.0 and self._down[swing.foot]):
@@ -114,20 +114,20 @@ class TorqueDirected(TorqueMotion):
             self._enter("land", now)
 
     def _calm(self) -> bool:
-        """The weight is where it should be, and rests."""
+        """Return True if the CoM is at its goal and at rest, within the tolerances."""
         momenta = self.dynamics.momenta
         away = np.hypot(*(momenta.com[:2] - self._goal()))
         return bool(away < self.how.near and np.hypot(*momenta.velocity[:2]) < self.how.quiet)
 
     def _goal(self) -> Array:
-        """Return where (2,) m the weight should go: over the foot that stays, or between both."""
+        """Return the goal (2,) m of the CoM: over the stance foot, or between both feet."""
         if self._phase == "rest":
             return 0.5 * (self._middle(0) + self._middle(1))
         at = self.landed - (self._phase == "land")
         return self._middle(1 - self.prints[at].foot)
 
     def _com_rate(self, now: float) -> Array:
-        """Add the acceleration of the curve, which is smooth here (Eq. 10)."""
+        """Return the CoM acceleration (Eq. 10) with the curve's own, which is smooth here."""
         before, aim, after = (self._com_aim(now + k * PERIOD) for k in (-1, 0, 1))
         rate = super()._com_rate(now)
         rate[:2] += (after - 2.0 * aim + before) / PERIOD**2

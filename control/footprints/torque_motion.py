@@ -1,8 +1,8 @@
-"""A body that stands, and swings one end at a time, with torques from whole-body control.
+"""Base class of controllers that stand and swing one end at a time, with whole-body torques.
 
-Wu & Zordan 2010: two curves (section 5) say where the centre of mass and the swing foot should be,
-and the whole-body optimisation makes accelerations of that, at its own rate; inverse dynamics makes
-torques of these at every tick. Who decides which end goes where says so in `_decide`.
+Wu & Zordan 2010: two curves (section 5) give the desired centre of mass and swing foot; the
+whole-body optimisation computes accelerations from them every `PERIOD`, and inverse dynamics
+computes torques from these at every tick. Subclasses decide in `_decide` which end swings where.
 """
 
 from abc import ABC, abstractmethod
@@ -20,33 +20,33 @@ from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
 PERIOD = 0.005
-"""Of the optimisation, s."""
+"""Period of the optimisation, s."""
 COM_GAIN, COM_DAMPING = 40.0, 12.0
 """k_L, 1/s2, and d_L, 1/s, of Eq. 10."""
 POSE_GAIN, POSE_DAMPING = 100.0, 20.0
-"""k_T and d_T of Eq. 9."""
+"""k_T, 1/s2, and d_T, 1/s, of Eq. 9; also used for the attitude of the trunk."""
 SWING_GAIN, SWING_DAMPING = 900.0, 60.0
-"""The same of the swing foot, and of the attitude of the trunk a third of it."""
+"""Stiffness, 1/s2, and damping, 1/s, of the swing foot."""
 SPIN_DAMPING = 5.0
 """d_z of Eq. 11, 1/s."""
 STILL_DAMPING = 20.0
-"""Damping of a standing foot, 1/s."""
+"""Damping of a stance foot, 1/s."""
 FOLLOW_DAMPING = 2.0
-"""Damping of every joint about the speed that was planned, N m s/rad."""
+"""Damping of every joint about its planned velocity, N m s/rad."""
 
 
 @dataclass
 class Swing:
-    """A step under way.
+    """The swing of one end (a foot or a hand).
 
     Attributes:
-        foot: Which end.
-        began: When, s.
-        duration: How long, s.
-        start: Pose of its sole when it began, (3,) m.
-        yaw: Headings of it, from and to, rad.
-        target: (2,) m.
-        com: (2,) where the centre of mass was, m.
+        foot: Index of the end.
+        began: Start time, s.
+        duration: Planned duration, s.
+        start: (3,) position of the sole at the start, m.
+        yaw: Headings of the sole at the start and at the target, rad.
+        target: (2,) target of the sole, m.
+        com: (2,) centre of mass at the start, m.
     """
 
     foot: int
@@ -59,13 +59,13 @@ class Swing:
 
 
 class TorqueMotion(ABC):
-    """What every controller of a robot with torque joints does, however it decides.
+    """Controller of a robot with torque joints; subclasses decide on the steps.
 
     Args:
         joints: The robot's joints.
-        body: Its whole-body control.
+        body: The robot's whole-body control.
         stance: (n,) rad, the pose to stand in.
-        height: How high an end is lifted, m.
+        height: Height to which an end is lifted, m.
     """
 
     def __init__(self, joints: Joints, body: WholeBody, stance: Array, height: float) -> None:
@@ -74,7 +74,7 @@ class TorqueMotion(ABC):
         self._swing: Swing | None = None
 
     def reset(self, observation: Observation) -> None:
-        """Begin to stand; the robot is in its stance."""
+        """Start standing; the robot must be in its stance."""
         self.dynamics.update(observation)
         self._swing = None
         self._height = float(self.dynamics.momenta.com[2])
@@ -82,11 +82,11 @@ class TorqueMotion(ABC):
         self._plan: Plan | None = None
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the torques of now.
+        """Return the command of this tick: torques, and damping about the planned velocities.
 
         Raises:
             StateMissingError: The observation has no base.
-            WindupError: The optimisation found no answer.
+            WindupError: The optimisation found no solution.
         """
         now = observation.time
         self.dynamics.update(observation)
@@ -101,20 +101,20 @@ class TorqueMotion(ABC):
             velocity=self._speed + (now - self._planned) * self._plan.acceleration[6:],
             torque=self._body.torque(self._plan),
             stiffness=0.0,
-            # A light foot runs away between two plans where it meets ground that was not expected.
+            # Without this, a light foot that meets unexpected ground speeds away between two plans.
             damping=FOLLOW_DAMPING,
         )
 
     @abstractmethod
     def _decide(self, now: float) -> None:
-        """Go over to what comes next where it is time: lift an end, aim it anew, put it down."""
+        """Enter the next phase if it is due: lift an end, change its target, or land it."""
 
     @abstractmethod
     def _com_aim(self, now: float) -> Array:
-        """Return where (2,) m the centre of mass should be."""
+        """Return the desired position (2,) of the centre of mass, m."""
 
     def _lift(self, foot: int, target: Array, yaw: float, duration: float, now: float) -> None:
-        """Begin to swing an end to a target (2,) m and a heading, rad."""
+        """Start the swing of an end to a target (2,) m and a heading `yaw`, rad."""
         pose = self.dynamics.ends[foot]
         yaws = (yaw_of(pose.rotation), yaw)
         com = self.dynamics.momenta.com[:2].copy()
@@ -127,17 +127,17 @@ class TorqueMotion(ABC):
 
     @property
     def places(self) -> Array:
-        """The places (2, 3), x m, y m, yaw rad, where the feet are now."""
+        """Measured places (2, 3) of the feet: x m, y m, yaw rad."""
         ends = self.dynamics.ends
         frames = np.array([end.rotation.ravel() for end in ends])
         return ground_places(np.array([end.position for end in ends]), frames)
 
     def _middle(self, foot: int) -> Array:
-        """Return (2,) m, the middle of a sole on the ground."""
+        """Return the centre (2,) of a sole on the ground, m."""
         return np.asarray(self.dynamics.ground(foot)[:, :2].mean(axis=0))
 
     def _objectives(self, now: float) -> Objectives:
-        """Return what the body should do now."""
+        """Return the objectives of the optimisation at `now`."""
         dynamics, swing = self.dynamics, self._swing
         stance = [foot for foot in (0, 1) if swing is None or foot != swing.foot]
         velocity = dynamics.velocity
@@ -176,20 +176,20 @@ class TorqueMotion(ABC):
         return np.concatenate((linear, SWING_GAIN * turned - SWING_DAMPING * twist[3:]))
 
     def _swing_aim(self, swing: Swing, now: float) -> tuple[Array, float]:
-        """Return where (3,) m the sole should be, and its heading, rad."""
+        """Return the desired position (3,) of the swinging sole, m, and its heading, rad."""
         part = (now - swing.began) / swing.duration
         way = gaussian_progress(part)
         at = swing.start.copy()
         at[:2] += way * (swing.target - swing.start[:2])
         at[2] = (1.0 - way) * swing.start[2] + lift(part, self._lifted)
-        at[2] -= max(part - 1.0, 0.0) * self._lifted  # and on, until it meets the ground
+        at[2] -= max(part - 1.0, 0.0) * self._lifted  # then further down until contact
         left = wrapped(swing.yaw[1] - swing.yaw[0])
         return at, swing.yaw[0] + way * left
 
     def _trunk_rate(self) -> Array:
-        """Return the angular acceleration (3,) that turns the base upright, as the feet stand."""
+        """Return the angular acceleration (3,) of the base toward upright and the feet's yaw."""
         yaws = [yaw_of(end.rotation) for end in self.dynamics.ends]
         half = 0.5 * wrapped(yaws[1] - yaws[0])
         base = self.dynamics.base.rotation
-        error = base.T @ turn_between(base, turn(yaws[0] + half))  # seen from the base
+        error = base.T @ turn_between(base, turn(yaws[0] + half))  # in the base frame
         return POSE_GAIN * error - POSE_DAMPING * self.dynamics.velocity[3:6]

@@ -1,4 +1,4 @@
-"""Joint torques that hold a robot's weight while its feet bear given shares of it."""
+"""Joint torques that balance gravity while the feet bear given shares of the weight."""
 
 from collections.abc import Sequence
 
@@ -11,15 +11,15 @@ from windup.hal.joints import Array
 
 
 def holding_torque(body: Body, base: str, shares: Sequence[float]) -> Array:
-    """Return (n,) N m that hold the body still as it was last measured.
+    """Return the torques (n,) N m that hold the body still in its last measured state.
 
-    From the principle of virtual work: ``tau = m g (J_com - sum of w_k J_k)``, the vertical rows
-    of the Jacobians of the centre of mass and of the soles' centres.
+    From the principle of virtual work: ``tau = m g (J_com - sum of w_k J_k)``, with the vertical
+    rows of the Jacobians of the centre of mass and of the soles' centres.
 
     Args:
-        body: Measured just now.
+        body: The robot's kinematics, measured in this tick.
         base: Name of the body with the free joint.
-        shares: w_k, what part of the weight each sole bears; they sum to 1.
+        shares: w_k, share of the weight that each sole bears; they sum to 1.
     """
     model, data = body.model, body.data
     whole = np.zeros((3, model.nv))

@@ -1,1 +1,1 @@
-"""Bodies, soles, support and momenta of a robot in a pose, and the inverse kinematics."""
+"""Forward and inverse kinematics: whole body, soles, support regions and momenta."""

@@ -1,4 +1,4 @@
-"""Whole-body quantities of an observed robot, from its MuJoCo model."""
+"""Whole-body quantities of an observed robot, computed with its MuJoCo model."""
 
 from collections.abc import Sequence
 
@@ -14,16 +14,17 @@ from windup.hal.observation import Observation
 
 
 class Body:
-    """Centre of mass, feet and torso of a robot with a free base.
+    """Computes centre of mass, feet and torso of a robot with a free base.
 
     Args:
         model: The robot alone: a free joint, then n hinges in MJCF order.
         base: Name of the body with the free joint.
         torso: Name of the body whose z axis is the up vector.
-        soles: Names of the sites at the soles' centres, one a foot.
+        soles: Names of the sites at the soles' centres, one per foot.
 
     Attributes:
         soles: Indices of these sites.
+        mass: Mass of the robot, kg.
     """
 
     def __init__(self, model: mujoco.MjModel, base: str, torso: str, soles: Sequence[str]) -> None:
@@ -68,12 +69,12 @@ class Body:
         )
 
     def momenta(self) -> Momenta:
-        """Return the momenta of the whole body as it was last measured."""
+        """Return the momenta of the whole body in the last measured state."""
         return Momenta.of(self.data, self._base, self.mass)
 
 
 def heading(orientation: Array) -> Array:
-    """Return the direction (...,) rad that a base faces, from quaternions (..., 4) wxyz.
+    """Return the headings (...,) of a base, rad, from quaternions (..., 4) wxyz.
 
     The forward direction is orthogonal to the ground-plane projection of the line that joins the
     hips, which is the base's y axis (Laszlo 1996, section 3.5).

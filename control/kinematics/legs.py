@@ -1,4 +1,4 @@
-"""Where the flat soles of a robot are, for many poses at once."""
+"""Forward kinematics of a robot's flat soles, for many poses at once."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,21 +15,21 @@ Indices = npt.NDArray[np.intp]
 
 @dataclass(frozen=True)
 class Legs:
-    """The k legs of a robot, chains of joints; those shorter than the longest end in fixed ones.
+    """The k legs of a robot as chains of joints; shorter chains are padded with fixed joints.
 
-    A joint turns its body by ``fixed + sin(q) across + (1 - cos(q)) along``, which is the body's
-    own turn followed by Rodrigues' formula.
+    The rotation of a joint's body in its parent frame is ``fixed + sin(q) across + (1 - cos(q))
+    along``, the body's fixed rotation followed by Rodrigues' formula.
 
     Attributes:
         joints: Indices of all joints that move a sole.
-        joint: (k, longest) index of each one's joint.
-        place: (k, longest, 3) where its body is in the frame before it, m.
+        joint: (k, longest) joint indices along each chain.
+        place: (k, longest, 3) position of the joint's body in its parent frame, m.
         fixed: (k, longest, 3, 3) see above.
         across: (k, longest, 3, 3) see above.
         along: (k, longest, 3, 3) see above.
-        anchor: (k, longest, 3) a point of its axis in the frame of its body, m.
-        normal: (k, 3) the sole's upward normal in the frame of the foot.
-        middle: (k, 3) the sole's middle there, m.
+        anchor: (k, longest, 3) a point of the joint's axis in the frame of its body, m.
+        normal: (k, 3) upward normal of the sole in the frame of the foot.
+        middle: (k, 3) centre of the sole in the frame of the foot, m.
     """
 
     joints: tuple[int, ...]
@@ -43,7 +43,11 @@ class Legs:
     middle: Array
 
     def soles(self, position: Array) -> tuple[Array, Array]:
-        """Return (m, k, 3) normals and (m, k, 3) middles, m, in the base for poses (m, n) rad."""
+        """Return normals (m, k, 3) and centres (m, k, 3) m, in the base frame.
+
+        Args:
+            position: (m, n) joint positions of m poses, rad.
+        """
         angle = position[:, self.joint, None, None]
         turn = self.fixed + np.sin(angle) * self.across + (1.0 - np.cos(angle)) * self.along
         still = self.place + (self.fixed @ self.anchor[..., None])[..., 0]
@@ -59,14 +63,14 @@ class Legs:
 def legs_of(
     model: mujoco.MjModel, base: str, feet: Sequence[str], joints: Joints, stance: Array
 ) -> Legs | None:
-    """Return where the soles are, or None where there is none, or one is not flat.
+    """Return the legs of a robot, or None if it has no feet, or a foot without a flat sole.
 
     Args:
         model: The robot alone: a free joint, then n hinges in MJCF order.
         base: Name of the body with the free joint.
         feet: Names of the feet's bodies.
         joints: The joints.
-        stance: (n,) rad; the face of a foot that is lowest there is its sole.
+        stance: (n,) rad; the sole of a foot is the lower face of its lowest box in this pose.
     """
     data = mujoco.MjData(model)
     data.qpos[:7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
@@ -99,7 +103,7 @@ Step = tuple[int, Array, Array, Array, Array]
 
 
 def _chain(model: mujoco.MjModel, base: int, body: int, joints: Joints) -> list[Step]:
-    """Return the joints from the base to a foot: index, place, turn, axis' matrix, anchor."""
+    """Return the joints from the base to a foot: index, place, rotation, axis matrix, anchor."""
     way = []
     while body != base:
         way.append(body)
@@ -119,7 +123,7 @@ def _chain(model: mujoco.MjModel, base: int, body: int, joints: Joints) -> list[
 
 
 def _sole(model: mujoco.MjModel, data: mujoco.MjData, body: int) -> tuple[Array, Array] | None:
-    """Return normal and middle (3,) of a sole in the frame of its foot; None without a box."""
+    """Return normal and centre (3,) of a sole in the frame of its foot; None without a box."""
     boxes = np.flatnonzero(
         (model.geom_bodyid == body)
         & (model.geom_type == mujoco.mjtGeom.mjGEOM_BOX)

@@ -1,4 +1,4 @@
-"""Inverse kinematics of one limb: joint angles that put its end where it should be."""
+"""Inverse kinematics of one limb: joint angles for a target pose of its end."""
 
 from dataclasses import dataclass
 
@@ -12,33 +12,33 @@ from windup.hal.joints import Array
 
 STEPS = 3
 DAMPING = 1e-3
-"""Of the least squares: next to a stretched knee steps stay small, m/rad."""
+"""Damping of the least squares, m/rad: keeps the steps small near a stretched knee."""
 LARGEST = 0.3
-"""Change of an angle in one step, rad."""
+"""Maximum change of an angle in one iteration, rad."""
 CLOSE = 1e-4
-"""Error with which one is content, m or rad."""
+"""Error at which the iteration ends, m or rad."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Place and attitude of a body or a sole.
+    """Position and attitude of a body or a sole.
 
     Attributes:
         position: (3,) m.
-        rotation: (3, 3), columns are its axes.
+        rotation: (3, 3) rotation matrix; its columns are the axes of the body.
     """
 
     position: Array
     rotation: Array
 
     def seen_from(self, other: "Pose") -> "Pose":
-        """Return this pose in the frame of another one."""
+        """Return this pose relative to `other`."""
         turned = other.rotation.T
         return Pose(turned @ (self.position - other.position), turned @ self.rotation)
 
 
 class LimbIk:
-    """The joints from the base to one end, solved by damped least squares within their limits.
+    """Inverse kinematics of the chain from the base to one end, by damped least squares.
 
     Args:
         model: The robot alone: a free joint, then n hinges in MJCF order.
@@ -61,18 +61,18 @@ class LimbIk:
         self._one = np.eye(len(self.joints))
 
     def forward(self, position: Array) -> Pose:
-        """Return the pose of the end in the base's frame at joint positions (n,) rad."""
+        """Return the pose of the end in the base frame at joint positions (n,) rad."""
         self._data.qpos[7:] = position
         mujoco.mj_kinematics(self._model, self._data)
         return self._pose()
 
     def solve(self, target: Pose, start: Array, steps: int = STEPS) -> Array:
-        """Return (k,) rad that come closest to a `target` in the base's frame.
+        """Return joint angles (k,) rad, within the limits, whose end pose is nearest to `target`.
 
         Args:
-            target: Where the end should be.
-            start: (n,) joint positions to begin at, rad; the other limbs do not matter.
-            steps: Most steps of the iteration.
+            target: Desired pose of the end in the base frame.
+            start: (n,) initial joint positions, rad; those of other limbs have no effect.
+            steps: Maximum number of iterations.
         """
         data = self._data
         data.qpos[7:] = start
@@ -87,11 +87,11 @@ class LimbIk:
             mujoco.mj_comPos(self._model, data)
             mujoco.mj_jacSite(self._model, data, self._jacobian[:3], self._jacobian[3:], self._site)
             matrix = self._jacobian[:, 6 + self.joints]
-            # Damped by what is missing (Sugihara 2011): out of reach it comes to rest.
+            # Damping grows with the error (Sugihara 2011): converges for targets out of reach.
             square = matrix.T @ matrix + (DAMPING**2 + 0.5 * (error @ error)) * self._one
             mujoco.mju_cholFactor(square, 0.0)
             mujoco.mju_cholSolve(change, square, matrix.T @ error)
-            # NumPy's clip takes five times as long for so few.
+            # NumPy's clip takes five times as long for so few elements.
             angles += np.minimum(np.maximum(change, -LARGEST), LARGEST)
             angles = np.minimum(np.maximum(angles, self._lower), self._upper)
         return angles
@@ -101,7 +101,7 @@ class LimbIk:
         return Pose(data.site_xpos[self._site].copy(), data.site_xmat[self._site].reshape(3, 3))
 
     def _error(self, target: Pose) -> Array:
-        """Return (6,): what is missing in place, m, and attitude, rad."""
+        """Return the error (6,) of position, m, and attitude, rad."""
         now = self._pose()
         error = np.empty(6)
         error[:3] = target.position - now.position

@@ -1,4 +1,4 @@
-"""Momenta of the whole body, and the points on the ground that they ask for.
+"""Momenta of the whole body, and points on the ground (CoP, capture point) derived from them.
 
 Equations are those of Wu & Zordan 2010, "Goal-Directed Stepping with Momentum Control". World
 frame, z up; points are (2,) m on the ground.
@@ -14,18 +14,18 @@ from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
 
 LEAST_LOAD = 0.3
-"""Part of the weight that is taken for the ground's force at least, in free fall as well."""
+"""Minimum vertical ground force assumed, as a share of the weight, even in free fall."""
 
 
 @dataclass(frozen=True, slots=True)
 class Momenta:
-    """What the whole body does at one instant.
+    """Mass, centre of mass and momenta of the whole body at one instant.
 
     Attributes:
-        mass: kg.
-        com: (3,) centre of mass, m above the ground.
-        velocity: (3,) of it, m/s.
-        angular: (3,) angular momentum about it, kg m2/s.
+        mass: Mass, kg.
+        com: (3,) centre of mass, m; z is above the ground.
+        velocity: (3,) velocity of the centre of mass, m/s.
+        angular: (3,) angular momentum about the centre of mass, kg m2/s.
     """
 
     mass: float
@@ -35,7 +35,7 @@ class Momenta:
 
     @classmethod
     def of(cls, data: mujoco.MjData, base: int, mass: float) -> "Momenta":
-        """Return those of the tree of body `base`, of `mass` kg, after `mj_subtreeVel`."""
+        """Return the momenta of the subtree of body `base`, of `mass` kg, after `mj_subtreeVel`."""
         com, velocity = data.subtree_com[base].copy(), data.subtree_linvel[base].copy()
         return cls(mass, com, velocity, data.subtree_angmom[base].copy())
 
@@ -46,12 +46,12 @@ class Momenta:
 
     @property
     def omega(self) -> float:
-        """Rate of the inverted pendulum of this height, sqrt(g / c_z), 1/s."""
+        """Natural frequency of the inverted pendulum of this height, sqrt(g / c_z), 1/s."""
         return sqrt(GRAVITY / max(float(self.com[2]), 1e-3))
 
 
 def centre_of_pressure(body: Momenta, linear_rate: Array, angular_rate: Array) -> Array:
-    """Return where the ground pushes, from the rates of both momenta (Eq. 1, 2).
+    """Return the centre of pressure (2,) m for given rates of both momenta (Eq. 1, 2).
 
     Args:
         body: The momenta.
@@ -63,24 +63,24 @@ def centre_of_pressure(body: Momenta, linear_rate: Array, angular_rate: Array) -
 
 
 def desired_cp(body: Momenta, linear_damping: float, angular_damping: float) -> Array:
-    """Return the centre of pressure that would damp both momenta (Eq. 3 to 6).
+    """Return the centre of pressure (2,) m that damps both momenta (Eq. 3 to 6).
 
     Args:
         body: The momenta.
-        linear_damping: d_l, 1/s; `Momenta.omega` makes it the capture point (section 4.3).
-        angular_damping: d_h, 1/s; 0 is the inverted pendulum.
+        linear_damping: d_l, 1/s; `Momenta.omega` gives the capture point (section 4.3).
+        angular_damping: d_h, 1/s; 0 gives the inverted pendulum.
     """
     linear_rate = -linear_damping * body.linear
     return centre_of_pressure(body, linear_rate, -angular_damping * body.angular)
 
 
 def capture_point(body: Momenta) -> Array:
-    """Return the point over which the inverted pendulum comes to rest (Eq. 7)."""
+    """Return the capture point (2,) m, over which an inverted pendulum comes to rest (Eq. 7)."""
     return body.com[:2] + body.velocity[:2] / body.omega
 
 
 def _load(body: Momenta, rate: float) -> float:
-    """Return f_z, the vertical force of the ground, N; a body in the air has some all the same."""
+    """Return f_z, the vertical ground force, N, at least `LEAST_LOAD` of the weight."""
     weight = body.mass * GRAVITY
     return max(rate + weight, LEAST_LOAD * weight)
 

@@ -1,4 +1,4 @@
-"""Rotation matrices (3, 3): made from headings and quaternions, and what lies between two."""
+"""Rotation matrices (3, 3), headings, and differences between them."""
 
 from math import atan2, cos, hypot, sin
 
@@ -9,31 +9,31 @@ from windup.hal.joints import Array
 
 
 def yaw_of(rotation: Array) -> float:
-    """Return the heading of a rotation matrix, rad."""
+    """Return the yaw of a rotation matrix, from its x axis, rad."""
     return atan2(rotation[1, 0], rotation[0, 0])
 
 
 def facing(rotation: Array) -> float:
-    """Return where a base with that rotation matrix faces, rad.
+    """Return the heading of a base, from the y axis of its rotation matrix, rad.
 
-    See `windup.control.kinematics.body.heading`.
+    It is the heading of `windup.control.kinematics.body.heading`.
     """
     return atan2(-rotation[0, 1], rotation[1, 1])
 
 
 def turn(yaw: float) -> Array:
-    """Return the rotation matrix (3, 3) of a turn about the vertical, rad."""
+    """Return the rotation matrix (3, 3) of a rotation about the vertical by `yaw` rad."""
     c, s = cos(yaw), sin(yaw)
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 def heading_between(one: float, other: float, part: float) -> float:
-    """Return the heading after a `part` of the shorter way from `one` to `other`, rad."""
+    """Return the heading at the fraction `part` of the shorter arc from `one` to `other`, rad."""
     return one + part * way_round(one, other)
 
 
 def turn_about_y(pitch: float) -> Array:
-    """Return the rotation matrix (3, 3) of a turn about the y axis, rad; positive leans forward."""
+    """Return the matrix (3, 3) of a rotation about y by `pitch` rad; positive leans forward."""
     c, s = cos(pitch), sin(pitch)
     return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
 
@@ -46,7 +46,7 @@ def quaternion_matrix(orientation: Array) -> Array:
 
 
 def turn_between(one: Array, other: Array) -> Array:
-    """Return the turn (3,) rad, in the frame that both are seen from, from `one` to `other`."""
+    """Return the rotation vector (3,) rad from `one` to `other`, in their common parent frame."""
     (a, b, c), (d, e, f), (g, h, i) = (other @ one.T).tolist()
     x, y, z = 0.5 * (h - f), 0.5 * (c - g), 0.5 * (d - b)
     size = hypot(x, y, z)
@@ -55,14 +55,14 @@ def turn_between(one: Array, other: Array) -> Array:
 
 
 def way_round(one: float, other: float) -> float:
-    """Return the shorter way from one direction to another, rad."""
+    """Return the signed shorter angle from one direction to another, rad."""
     return atan2(sin(other - one), cos(other - one))
 
 
 def lying(normal: Array, yaw: float) -> Array:
-    """Return the rotation (3, 3) of what lies on ground of a unit `normal` (3,), heading `yaw` rad.
+    """Return the rotation (3, 3) of a body that lies flat on ground of a unit `normal` (3,).
 
-    Seen from above it has that heading.
+    Its x axis, projected on the horizontal plane, has the heading `yaw`, rad.
     """
     c, s = cos(yaw), sin(yaw)
     along = np.array([c, s, -(c * normal[0] + s * normal[1]) / normal[2]])

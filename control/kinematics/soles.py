@@ -1,4 +1,4 @@
-"""Where the soles can touch the ground: their corners, and how these move against the base."""
+"""Possible contact points of the soles, and their motion relative to the base."""
 
 from collections.abc import Sequence
 from itertools import product
@@ -19,10 +19,10 @@ GEOM = mujoco.mjtGeom
 
 
 class Soles:
-    """The p points of the feet that can bear load, in the base's own frame.
+    """The p points of the feet that can bear load, in the base frame.
 
-    A box has its eight corners, a sphere its centre, a capsule its two ends; the latter two touch
-    the ground a radius below these.
+    A box contributes its eight corners, a sphere its centre and a capsule its two end centres;
+    spheres and capsules touch the ground one radius below these.
 
     Args:
         model: The robot alone: a free joint, then n hinges in MJCF order.
@@ -32,10 +32,10 @@ class Soles:
     Attributes:
         foot: (p,) index of each point's foot.
         sensor: (p,) index of each point's contact sensor, -1 where the foot has none.
-        members: (feet, p) 1 where a point belongs to a foot.
-        position: (p, 3) m from the base; the points where the ground is.
-        rotation: (feet, 3) rad/s of the feet against the base, seen from it.
-        heights: (p,) m above the base's origin, along the world's vertical.
+        members: (feet, p) 1 if a point belongs to a foot, else 0.
+        position: (p, 3) contact points in the base frame, m.
+        rotation: (feet, 3) angular velocities of the feet relative to the base, base frame, rad/s.
+        heights: (p,) heights of the points above the base's origin, along the vertical, m.
     """
 
     def __init__(
@@ -63,7 +63,13 @@ class Soles:
         self.heights = np.zeros(len(foot))
 
     def update(self, position: Array, velocity: Array, up: Array) -> None:
-        """Take joint positions (n,) rad and velocities (n,) rad/s, and the vertical (3,)."""
+        """Update all attributes for the present joint state.
+
+        Args:
+            position: (n,) joint positions, rad.
+            velocity: (n,) joint velocities, rad/s.
+            up: (3,) unit vertical in the base frame.
+        """
         data = self._data
         data.qpos[7:] = position
         data.qvel[6:] = velocity
@@ -78,7 +84,7 @@ class Soles:
         self._linear = twist[:, 3:]
 
     def seen(self, data: mujoco.MjData) -> Array:
-        """Return where (p, 3) the points are in the world of `data`, of the same model, m."""
+        """Return the points (p, 3) in the world frame of `data`, which is of the same model, m."""
         return self._points(data, UP)
 
     def _points(self, data: mujoco.MjData, up: Array) -> Array:
@@ -87,10 +93,13 @@ class Soles:
         return turned + data.xpos[self._of_point] - self._radius * up
 
     def flow(self, weights: Array) -> tuple[Array, Array]:
-        """Return the sums of each foot's positions and velocities under `weights` (p,).
+        """Return each foot's weighted sums of point positions and velocities.
+
+        Args:
+            weights: (p,) weight of each point.
 
         Returns:
-            (feet, 3) m and (feet, 3) m/s against the base, seen from it.
+            (feet, 3) m and (feet, 3) m/s relative to the base, in the base frame.
         """
         place = (self.members * weights) @ self.position
         share = (self.members @ weights)[:, None]
@@ -98,7 +107,7 @@ class Soles:
         return place, share * self._linear + cross(self.rotation, arm)
 
     def _nearest(self, contacts: ContactSensors) -> Indices:
-        """Return (p,) index of the nearest sensor of the same foot, -1 without one."""
+        """Return for each point (p,) the index of its foot's nearest sensor, -1 without one."""
         model, data = self._model, mujoco.MjData(self._model)
         mujoco.mj_kinematics(model, data)
         nearest = np.full(len(self.foot), -1, dtype=np.intp)
@@ -116,13 +125,13 @@ class Soles:
 
 
 def spin(rate: Array) -> Array:
-    """Return the matrix (3, 3) that turns x into rate x x, for one `rate` (3,)."""
+    """Return the cross-product matrix (3, 3) S of `rate` (3,), with S v = rate x v."""
     x, y, z = rate.tolist()
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def cross(a: Array, b: Array) -> Array:
-    """Return a x b in the shape (..., 3) of b; NumPy's own takes ten times as long for so few."""
+    """Return a x b in the shape (..., 3) of b; `np.cross` takes ten times as long for few rows."""
     c = np.empty(b.shape)
     ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
     bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
@@ -133,7 +142,7 @@ def cross(a: Array, b: Array) -> Array:
 
 
 def _points(model: mujoco.MjModel, body: int) -> list[tuple[Array, float]]:
-    """Return points (3,) in the frame of `body`, m, and their radii, of the geoms that collide."""
+    """Return points (3,) and radii of the colliding geoms of `body`, in its frame, m."""
     found: list[tuple[Array, float]] = []
     first = int(model.body_geomadr[body])
     for geom in range(first, first + int(model.body_geomnum[body])):

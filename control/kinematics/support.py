@@ -1,4 +1,4 @@
-"""The ground that a robot stands on: a polygon of contact points, or Kenwright's capsule."""
+"""Support regions on the ground: a polygon of contact points, or Kenwright's capsule."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,10 +14,10 @@ from windup.hal.joints import Array
 
 @dataclass(frozen=True)
 class SupportRegion:
-    """A convex region of the ground that the centre of pressure can be in.
+    """A convex region of the ground in which the centre of pressure can be.
 
     Attributes:
-        shape: It, in the world's x and y, m; empty where nothing supports.
+        shape: The region in the world's x and y, m; empty if there is no contact.
     """
 
     shape: BaseGeometry
@@ -29,7 +29,7 @@ class SupportRegion:
 
     @classmethod
     def capsule(cls, feet: Array, radius: float) -> "SupportRegion":
-        """Return circles of `radius` m around feet (k, 2), and what is between two of them.
+        """Return the convex hull of circles of `radius` m around feet (k, 2).
 
         Kenwright 2012, section IV-A.2: a circle for one foot, a capsule for two.
         """
@@ -37,14 +37,14 @@ class SupportRegion:
 
     @classmethod
     def rounded(cls, soles: Sequence[Array]) -> "SupportRegion":
-        """Return the capsule of circles as large as soles, given by points (p, 3) m of each."""
+        """Return the capsule whose circles have the soles' mean area; points (p, 3) m per sole."""
         hulls = [MultiPoint(points[:, :2]).convex_hull for points in soles]
         radius = sqrt(sum(hull.area for hull in hulls) / len(hulls) / pi)
         middles = np.array([[hull.centroid.x, hull.centroid.y] for hull in hulls])
         return cls.capsule(middles, radius)
 
     def margin(self, point: Array) -> float:
-        """Return how far inside `point` (2,) is, m; negative outside, -inf without support."""
+        """Return the distance of `point` (2,) inside the edge, m; < 0 outside, -inf if empty."""
         if self.shape.is_empty:
             return -np.inf
         place = Point(point[0], point[1])
@@ -57,6 +57,6 @@ class SupportRegion:
 
 
 def nearest_point(shape: BaseGeometry, point: Array) -> Array:
-    """Return the point (2,) of `shape` that is nearest to `point` (2,), itself where it is in."""
+    """Return the point (2,) of `shape` nearest to `point` (2,); inside, that is `point` itself."""
     near, _ = nearest_points(shape, Point(point[0], point[1]))
     return np.array([near.x, near.y])

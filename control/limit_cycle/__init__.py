@@ -1,1 +1,1 @@
-"""Limit-cycle balance: step models, the planner that solves for the next step, and the balancer."""
+"""Limit-cycle balance: step models, the planner of the next step, and the balancer."""

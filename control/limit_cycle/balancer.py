@@ -1,8 +1,8 @@
-"""Discrete limit-cycle balance: once a step, choose the scalings that end it well.
+"""Discrete limit-cycle balance: once per step, choose scalings that reach the step's targets.
 
 Laszlo 1996, Fig. 3.20: at the start of each step the model of that step is sampled with rollouts,
-inverted for the targets, and its scalings are applied to the pose graph of the whole step. Without
-a planner the same controller is the open loop.
+inverted for the targets, and the resulting scalings are applied to the pose graph for the whole
+step. Without a planner the same controller walks open loop.
 """
 
 from collections import deque
@@ -29,16 +29,16 @@ from windup.hal.errors import StateMissingError
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
-IN_FLIGHT = 32  # commands remembered; more than any delay that a robot walks with
+IN_FLIGHT = 32  # number of commands kept; more ticks than the latency of any robot
 
 
 @dataclass(frozen=True)
 class Moment:
-    """A moment of a step.
+    """Position in the pose graph during a step.
 
     Attributes:
         state: Index of the graph's state.
-        elapsed: Time since it was entered, s.
+        elapsed: Time since the state was entered, s.
         stance: Index of the stance foot.
     """
 
@@ -49,7 +49,7 @@ class Moment:
 
 @dataclass
 class Balancer:
-    """Walks a gait; with a planner it balances, without one it is open loop.
+    """Controller that walks a gait, balanced by a planner, or open loop without one.
 
     Attributes:
         gait: Graph, perturbations and tables.
@@ -58,16 +58,16 @@ class Balancer:
         body: Its kinematics.
         regulation: The r regulation variables.
         perturbations: Names of the r perturbations that control them.
-        planner: Chooses their scalings, or None for open loop.
-        steering: Speed, side, course and style.
+        planner: Computes their scalings, or None for open loop.
+        steering: Speed, sideways speed, course and style.
         targets: Targets by name of the regulation variable.
-        fixed_targets: Targets that win over the steering's, by name.
+        fixed_targets: Targets that override those of the steering, by name.
         torso_servo: The torso servo, or None.
-        shaken: Says when a step has to be planned again, or None.
-        footfalls: Feels how the ground slopes, or None.
-        replans: How often that was.
-        records: Finished steps.
-        late: Steps whose answer came too late to act in time, or never.
+        shaken: Detector of disturbances, after which a step is replanned, or None.
+        footfalls: Estimator of the ground plane, or None.
+        replans: Number of replans within a step.
+        records: Records of the finished steps.
+        late: Number of answers that came too late to act in time, or never.
     """
 
     gait: Gait
@@ -95,12 +95,12 @@ class Balancer:
 
     @property
     def begun(self) -> int:
-        """Number of steps that were planned: the finished ones, and the one it is at."""
+        """Number of steps that have begun: the finished ones and the present one."""
         return len(self.records) + (self._start is not None)
 
     @property
     def moment(self) -> Moment | None:
-        """Where in the graph it is; None before its first step."""
+        """Present position in the graph; None before the first step."""
         if self._start is None:
             return None
         at = self._tracker.now
@@ -108,11 +108,11 @@ class Balancer:
 
     @property
     def heading(self) -> float:
-        """Heading at the start of this step, rad."""
+        """Heading at the start of the present step, rad; 0 before the first one."""
         return 0.0 if self._start is None else self._start.heading
 
     def reset(self, observation: Observation) -> None:
-        """Begin at the graph's first state.
+        """Start a new walk at the graph's first state.
 
         Raises:
             StateMissingError: The observation has no base state.
@@ -122,7 +122,7 @@ class Balancer:
         self.resume(observation)
 
     def resume(self, observation: Observation) -> None:
-        """Begin at the graph's first state again, in the same walk: its steps go on counting.
+        """Restart at the graph's first state in the same walk; its step records are kept.
 
         Raises:
             StateMissingError: The observation has no base state.
@@ -151,7 +151,7 @@ class Balancer:
             self.planner.reset()
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the command of this tick; at the start of a step, plan it first."""
+        """Return the command of this tick; at the start of a step, request its plan first."""
         if self._start is None:
             self._begin_step(observation, self.body.measure(observation), dt)
         elif self._tracker.advance(observation.contacts[None])[0]:
@@ -171,7 +171,7 @@ class Balancer:
         return self._hold.at(goals)
 
     def _begin_step(self, observation: Observation, here: Outcomes, dt: float) -> None:
-        """Remember where the step begins and ask for its scalings."""
+        """Store the start of the step and request its scalings."""
         start = StepStart(observation.time, int(self._tracker.stance()[0]), here)
         self._start = start
         self._first = int(self._tracker.state[0])
@@ -190,7 +190,7 @@ class Balancer:
     def _look_again(
         self, observation: Observation, start: StepStart, shaken: DisturbanceDetector, dt: float
     ) -> None:
-        """Plan the rest of the step anew, if something has happened since it began."""
+        """Replan the rest of the step at the entry into a state, if a disturbance is detected."""
         state = int(self._tracker.state[0])
         if not shaken.entered(state):
             return
@@ -204,9 +204,9 @@ class Balancer:
             self._ask(observation, start, self._tracker.scale[0], dt)
 
     def _ask(self, observation: Observation, start: StepStart, before: Array, dt: float) -> None:
-        """Ask for the scalings of the step, or of what is left of it.
+        """Request the scalings of the step, or of its rest.
 
-        Those `before` (p,) stay in force until the answer acts.
+        The scalings `before` (p,) stay in effect until the answer is applied.
         """
         assert self.planner is not None
         ground = None if self.footfalls is None else self.footfalls.plane()
@@ -219,10 +219,10 @@ class Balancer:
         self.planner.ask(request)
 
     def _before(self) -> Array:
-        """Return the scalings (p,) until the answer comes: this step's, with the old K.
+        """Return the scalings (p,) until the answer: those of the steering plus the old K.
 
-        The old K is the last one of the same part of the graph: what a lean to the left needs, a
-        lean to the right does not, nor a step what the hop before it on the same foot does.
+        The old K is the last one of a step that began with the same state of the graph: steps on
+        the other foot, or a hop before a step on the same foot, need other values.
         """
         scale = self._scale.copy()
         if self._first in self._kept:
@@ -230,7 +230,7 @@ class Balancer:
         return scale
 
     def _take_answer(self, time: float) -> None:
-        """Put the planner's scalings into force, if they have come."""
+        """Apply the planner's scalings, if they are available."""
         assert self.planner is not None
         answer = self.planner.answer(time)
         if answer is None:
@@ -243,7 +243,7 @@ class Balancer:
         self._tracker.rescale(scale[None])
 
     def _end_step(self, time: float, end: Outcomes, start: StepStart) -> None:
-        """Write down how the step went, and tell the steering."""
+        """Record the finished step, and pass the record to the steering."""
         duration = time - start.time
         self._turned += start.turned(end)
         forward, left = start.velocity(end, duration)
@@ -262,7 +262,7 @@ class Balancer:
         self.steering.end_step(record)
 
     def _wanted(self, start: StepStart) -> Array:
-        """Return the targets (r,) of the step that begins."""
+        """Return the targets (r,) of the step that begins at `start`."""
         left = self.contacts.is_left(1 - start.stance)
         wanted = self.steering.targets(self.targets, swing_is_left=left) | self.fixed_targets
         return np.array([wanted.get(variable.name, 0.0) for variable in self.regulation])

@@ -1,6 +1,7 @@
-"""Step models that were learnt in earlier walks and stand in a file beside the gait.
+"""Step models that were learnt in earlier walks, stored in a file beside the gait.
 
-With them every step is planned from one rollout, the first one too: a small computer needs no more.
+With them every step is planned from one rollout, including the first, so that a small computer is
+fast enough.
 """
 
 from dataclasses import dataclass, field
@@ -18,13 +19,13 @@ from windup.hal.small_file import read_small
 
 
 class LearntModel(Record, frozen=True):
-    """The model of a step from around one start.
+    """The model of a step for starts near one point.
 
     Attributes:
         phase: Index of the state that the step begins with.
-        start: (f,) features of its start.
-        jacobian: (r, r) change of each variable for each scaling.
-        steps: Steps that both are the mean of.
+        start: (f,) features of the start.
+        jacobian: (r, r) derivative of each regulation variable by each scaling.
+        steps: Number of steps over which `start` and `jacobian` are averaged.
     """
 
     phase: Count
@@ -34,12 +35,12 @@ class LearntModel(Record, frozen=True):
 
 
 class ModelFile(Record, frozen=True):
-    """A file of models, and what they are models of.
+    """A file of step models with their variables.
 
     Attributes:
         gait: The `gait_hash` of their gait.
-        commands: By which walks they were learnt, as typed.
-        rate_hz: Rate of the loop in these walks, Hz.
+        commands: Command lines of the walks they were learnt from.
+        rate_hz: Rate of the control loop in these walks, Hz.
         regulation: Names of the r regulation variables.
         perturbations: Names of the r perturbations.
         models: The models.
@@ -68,12 +69,12 @@ def _json(value: object) -> str:
 
 @dataclass
 class LearntModels:
-    """A memory of models by the start of the step: it learns them, or only looks them up.
+    """A memory of models by the start of the step, for learning or for look-up.
 
     Attributes:
-        complete: Nothing is sampled any more; the nearest model serves every step.
-        reach: Starts that are no farther apart share one model, the mean of theirs.
-        commands: By which walks the models of its files were learnt.
+        complete: No more models are sampled; every step uses the nearest stored model.
+        reach: Maximum distance of two starts whose models are averaged into one.
+        commands: Command lines of the walks that the models in its files were learnt from.
     """
 
     complete: bool = False
@@ -82,21 +83,21 @@ class LearntModels:
     _known: dict[int, list[tuple[Array, Array, int]]] = field(default_factory=dict, init=False)
 
     def reset(self) -> None:
-        """Keep everything: what was learnt in one walk serves the next."""
+        """Keep all models: they are also valid in the next walk."""
 
     def recall(self, side: int, start: Array) -> Array | None:
-        """Return the Jacobian learnt nearest to `start`; None while there are more to learn."""
+        """Return the Jacobian with the nearest start; None if there is none, or not `complete`."""
         entries = self._known.get(side, [])
         if not self.complete or not entries:
             return None
         return entries[self._nearest(entries, start)][1]
 
     def store(self, side: int, start: Array, jacobian: Array) -> None:
-        """Let a model that has just been sampled count."""
+        """Add a model that has just been sampled."""
         self.add(side, start, jacobian, 1)
 
     def add(self, side: int, start: Array, jacobian: Array, steps: int) -> None:
-        """Let the mean of some steps count."""
+        """Add a model that is the mean of `steps` steps."""
         entries = self._known.setdefault(side, [])
         if entries:
             at = self._nearest(entries, start)
@@ -109,11 +110,11 @@ class LearntModels:
         entries.append((start, jacobian, steps))
 
     def read(self, path: Path, regulation: list[str], perturbations: list[str], gait: str) -> None:
-        """Add the models in a file.
+        """Add the models of a file.
 
         Raises:
-            ConfigError: It is no such file, or its models are of other variables, or of another
-                gait, or of this one before it was changed.
+            ConfigError: The file cannot be read or decoded, or its models are for other variables
+                or perturbations, for another gait, or for another version of this gait.
         """
         try:
             text = read_small(path)
@@ -141,7 +142,7 @@ class LearntModels:
     def file(
         self, regulation: list[str], perturbations: list[str], gait: str, rate_hz: float
     ) -> ModelFile:
-        """Return all models as a file; see there for the arguments."""
+        """Return all models as a file; see `ModelFile` for the arguments."""
         models = [
             LearntModel(
                 phase=phase,
@@ -167,10 +168,10 @@ class LearntModels:
 
 
 def _check_shape(path: Path, number: int, model: LearntModel, file: ModelFile) -> None:
-    """Raise unless a model is as large as its file says, and its start as those of the others.
+    """Check the size of a model's Jacobian, and of its start features.
 
     Raises:
-        ConfigError: It is not.
+        ConfigError: A size does not match the file's variables, or its first model.
     """
     rows, columns = len(file.regulation), len(file.perturbations)
     if [len(row) for row in model.jacobian] != [columns] * rows:

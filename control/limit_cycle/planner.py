@@ -1,7 +1,8 @@
-"""Planning a step: from where it begins to the scalings that end it well.
+"""Planning of a step: from its start state to scalings that reach its targets.
 
-The planner holds everything that a step model needs, so that it can run in the loop's own tick
-(unpaced), or in another process (paced, where its answer acts `latency` s into the step).
+The planner contains everything that a step model needs, so that it can run within a tick of the
+loop (unpaced), or in another process (paced, where its answer is applied `latency` s into the
+step).
 """
 
 from dataclasses import dataclass
@@ -26,17 +27,17 @@ from windup.hal.joints import Array, Joints, Mask
 
 @dataclass(frozen=True)
 class StepRequest:
-    """A step to be planned.
+    """A request to plan a step, or the rest of one.
 
     Attributes:
-        start: State, commands in flight and tick.
-        at: The tracker, a batch of one.
+        start: Robot state, commands in flight and tick.
+        at: State of the pose tracker, a batch of one.
         stance: Index of the stance foot.
-        phase: Index of the state that the step began with; each has a memory of its own.
-        scale: (p,) scalings of all perturbations before balance.
-        before: (p,) scalings in force until the answer acts.
-        target: (r,) wanted regulation variables.
-        origin: Where the step began, if that is not where `start` is.
+        phase: Index of the state that the step began with; each has its own step model.
+        scale: (p,) scalings of all perturbations, before balance is added.
+        before: (p,) scalings in effect until the answer is applied.
+        target: (r,) targets of the regulation variables.
+        origin: Start of the step, if it began before `start`.
     """
 
     start: RolloutStart
@@ -49,42 +50,42 @@ class StepRequest:
     origin: StepStart | None = None
 
     def ticks(self, latency: float) -> int:
-        """Return the tick of the step, from 0, at which an answer may act after `latency` s."""
+        """Return the tick, counted from 0, at which an answer is applied after `latency` s."""
         return ceil(latency / self.start.dt - 1e-6)
 
     def due(self, latency: float) -> float:
-        """Return the time of that tick, less half a tick for a clock on the wall, s."""
+        """Return the time of that tick, minus half a tick against wall-clock jitter, s."""
         return self.start.observation.time + (self.ticks(latency) - 0.5) * self.start.dt
 
 
 class Planner(Protocol):
-    """Answers requests, at once or later."""
+    """Computes the answers to requests, immediately or later."""
 
     @property
     def latency(self) -> float:
-        """From the start of a step to its scalings acting, s."""
+        """Time from the start of a step until its scalings are applied, s."""
         ...
 
     def reset(self) -> None:
-        """Forget all steps."""
+        """Start over for a new walk; a pending request is discarded."""
         ...
 
     def ask(self, request: StepRequest) -> None:
-        """Ask for the scalings of a step; an older question is forgotten."""
+        """Request the scalings of a step; an earlier request is discarded."""
         ...
 
     def answer(self, time: float) -> Array | None:
-        """Return the scalings (r,) asked for, once they may act at `time` s; None until then.
+        """Return the requested scalings (r,) once they are due at `time`, s; None until then.
 
         Raises:
-            PlannerError: There will be no answer.
+            PlannerError: The planner has failed.
         """
         ...
 
 
 @dataclass
 class StepPlanner:
-    """Plans steps with rollouts, in the caller's own time.
+    """Plans steps with rollouts, synchronously in `ask`.
 
     Attributes:
         gait: The gait.
@@ -94,10 +95,10 @@ class StepPlanner:
         regulation: The r regulation variables.
         perturbations: Names of the r perturbations that control them.
         model: The step model.
-        predictor: Plays the rollouts.
+        predictor: Runs the rollouts.
         torso_servo: The torso servo, or None.
-        horizon: Longest step that a rollout may take, s.
-        latency: From the start of a step to its scalings acting, s.
+        horizon: Maximum duration of a step in a rollout, s.
+        latency: Time from the start of a step until its scalings are applied, s.
     """
 
     gait: Gait
@@ -119,17 +120,17 @@ class StepPlanner:
         self._due = 0.0
 
     def reset(self) -> None:
-        """Forget all steps."""
+        """Reset the step model, and discard the last answer."""
         self.model.reset()
         self._answer = None
 
     def ask(self, request: StepRequest) -> None:
-        """Plan the step now."""
+        """Plan the step immediately."""
         self._answer = self.plan(request)
         self._due = request.due(self.latency)
 
     def answer(self, time: float) -> Array | None:
-        """Return what `ask` has found, once."""
+        """Return the result of `ask` once it is due; later calls return None."""
         if time < self._due:
             return None
         answer, self._answer = self._answer, None
@@ -152,7 +153,7 @@ class StepPlanner:
         return self.model.control(sample, request.target, request.phase, here, at)
 
     def policy(self, request: StepRequest, scale: Array) -> StepPolicy:
-        """Return what plays the requested step with scalings (m, p)."""
+        """Return the batch policy that plays the requested step with scalings (m, p)."""
         size = len(scale)
         ticks = request.ticks(self.latency)
         first = np.repeat(request.before[None], size, axis=0) if ticks else scale

@@ -1,4 +1,4 @@
-"""The gait as a batch policy: what the predictor plays to see how a step would end."""
+"""The gait as a batch policy, which the predictor plays in its rollouts of a step."""
 
 import numpy as np
 
@@ -14,8 +14,8 @@ class StepPolicy:
 
     Args:
         tracker: m trackers at the start of the step.
-        limits: Of the targets.
-        sent: (n,) the last target before that, rad, or None.
+        limits: Limits of the targets.
+        sent: (n,) last target before the start, rad, or None.
     """
 
     def __init__(self, tracker: PoseTracker, limits: GoalLimits, sent: Array | None = None) -> None:
@@ -27,11 +27,11 @@ class StepPolicy:
         self._later: tuple[float, Array] | None = None
 
     def rescale_at(self, time: float, scale: Array) -> None:
-        """Let the scalings (m, p) take over `time` s after the start."""
+        """Schedule the scalings (m, p) to be applied `time` s after the start."""
         self._later = (time, scale) if time > 0.0 else None
 
     def step(self, state: PolicyInput, dt: float) -> Array:
-        """Return targets (m, n) rad; rollouts whose step has ended are `done`."""
+        """Return targets (m, n) rad; `done` is set for rollouts whose step has ended."""
         if self._ticks:
             self.done |= self.tracker.advance(state.contacts)
         if self._later is not None and self._time >= self._later[0] - 1e-9:
@@ -45,7 +45,7 @@ class StepPolicy:
 
 
 def policy_input(observation: Observation) -> PolicyInput:
-    """Return the state of one robot as a batch of one; the base has to be there."""
+    """Return the state of one robot as a batch of one; the observation must have a base."""
     base = observation.base
     assert base is not None, "checked at reset"
     return PolicyInput(

@@ -1,7 +1,7 @@
-"""Re-using step models: what section 6.1.1 of the thesis wished for.
+"""Reuse of step models, as section 6.1.1 of the thesis proposes as future work.
 
-Around a limit cycle the model of a step hardly changes. A memory hands out a Jacobian that was
-sampled before, so that a step needs one nominal rollout instead of one more for each perturbation.
+Near a limit cycle the model of a step hardly changes. A memory returns a Jacobian that was sampled
+before, so that a step needs only the nominal rollout, and none for each perturbation.
 """
 
 from dataclasses import dataclass, field
@@ -15,15 +15,15 @@ Reuse = Literal["full", "frozen", "library"]
 
 
 class Memory(Protocol):
-    """Keeps Jacobians."""
+    """Store of Jacobians."""
 
     @property
     def complete(self) -> bool:
-        """True when no model is sampled any more: each step has one here, and one rollout."""
+        """True if no more models are sampled: each step uses a stored one, and one rollout."""
         ...
 
     def reset(self) -> None:
-        """Forget everything that belongs to the last walk."""
+        """Discard what is only valid for the last walk."""
         ...
 
     def recall(self, side: int, start: Array) -> Array | None:
@@ -31,16 +31,16 @@ class Memory(Protocol):
         ...
 
     def store(self, side: int, start: Array, jacobian: Array) -> None:
-        """Keep a Jacobian that has just been sampled."""
+        """Store a Jacobian that has just been sampled."""
         ...
 
 
 @dataclass
 class Frozen:
-    """Remembers the last model of each side.
+    """Keeps the last model of each side.
 
     Attributes:
-        settle: Steps of each side that are sampled before any model is used again.
+        settle: Number of models of each side that are sampled before one is reused.
     """
 
     complete: ClassVar[bool] = False
@@ -49,27 +49,27 @@ class Frozen:
     _made: dict[int, int] = field(default_factory=dict, init=False)
 
     def reset(self) -> None:
-        """Forget everything."""
+        """Discard all models."""
         self._known.clear()
         self._made.clear()
 
     def recall(self, side: int, start: Array) -> Array | None:
-        """Return the last Jacobian of this side."""
+        """Return the last Jacobian of this side, or None before `settle` were sampled."""
         return self._known.get(side) if self._made.get(side, 0) >= self.settle else None
 
     def store(self, side: int, start: Array, jacobian: Array) -> None:
-        """Keep the Jacobian of this side."""
+        """Replace the Jacobian of this side."""
         self._known[side] = jacobian
         self._made[side] = self._made.get(side, 0) + 1
 
 
 @dataclass
 class Library:
-    """Remembers models with the states they were made in, and looks up the nearest.
+    """Keeps models with the start features of their steps, and looks up the nearest one.
 
     Attributes:
-        reach: A model from farther away does not count.
-        size: Models kept for each side; the oldest goes first.
+        reach: Maximum distance between the start features for a model to be reused.
+        size: Number of models kept for each side; the oldest is dropped first.
     """
 
     complete: ClassVar[bool] = False
@@ -78,10 +78,10 @@ class Library:
     _known: dict[int, list[tuple[Array, Array]]] = field(default_factory=dict, init=False)
 
     def reset(self) -> None:
-        """Keep everything: what was learnt in one walk serves the next."""
+        """Keep all models: they are also valid in the next walk."""
 
     def recall(self, side: int, start: Array) -> Array | None:
-        """Return the Jacobian that was made nearest to `start`."""
+        """Return the Jacobian whose start is nearest to `start`, or None beyond `reach`."""
         entries = self._known.get(side, [])
         if not entries:
             return None
@@ -90,7 +90,7 @@ class Library:
         return entries[nearest][1] if away[nearest] <= self.reach else None
 
     def store(self, side: int, start: Array, jacobian: Array) -> None:
-        """Keep a Jacobian with its start, in place of one that it supersedes."""
+        """Store a Jacobian with its start; it replaces those with almost the same start."""
         entries = self._known.setdefault(side, [])
         entries[:] = [e for e in entries if np.linalg.norm(e[0] - start) > 0.3 * self.reach]
         entries.append((start, jacobian))
@@ -98,5 +98,5 @@ class Library:
 
 
 def memory_of(reuse: Reuse) -> Memory | None:
-    """Return a fresh memory; None remembers nothing and samples every step in full."""
+    """Return a new memory; None for "full", where every step's model is sampled."""
     return {"full": None, "frozen": Frozen(), "library": Library()}[reuse]

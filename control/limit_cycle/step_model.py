@@ -1,13 +1,13 @@
-"""The discrete step model: from samples of one step to the scalings that end it well.
+"""The discrete step model: from samples of one step to scalings that reach its targets.
 
 Laszlo 1996, sections 3.2 and 3.7. A step maps scalings K to regulation variables, Q = h(K). The
 model is linear, dQ = J K (Eq. 3.9), J is found by finite differences over rollouts, and its inverse
-gives the scalings that reach a target (Eq. 3.11; its sign of dQ is a slip: the wanted change is
-target minus nominal).
+gives the scalings that reach a target (Eq. 3.11; its sign of dQ is a misprint: the desired change
+is target minus nominal).
 
-Four ways to sample. "sp" takes each dimension alone (a diagonal J, superposition); "fl" and "lf"
-solve one dimension after the other, each with the scalings found before (section 3.7.2); "full"
-takes the whole J, one-sided, and solves damped least squares.
+There are four sampling methods. "sp" takes each dimension alone (a diagonal J, superposition);
+"fl" and "lf" solve one dimension after the other, with the scalings found before (section 3.7.2);
+"full" samples the whole J, one-sided unless `centred`, and solves damped least squares.
 """
 
 from collections.abc import Callable
@@ -19,10 +19,10 @@ from windup.control.limit_cycle.step_memory import Memory
 from windup.control.pose_graph.gait_file import Sampling
 from windup.hal.joints import Array, Mask
 
-# Plays steps with scalings (m, r): regulation variables (m, r) and which of the m fell.
+# Plays m steps with scalings (m, r); returns regulation variables (m, r) and which steps fell.
 Sample = Callable[[Array], tuple[Array, Mask]]
 
-# Where a part of a graph begins: its first state, and features of the robot in it.
+# Start of a part of a graph: its first state, and the features of the robot there.
 Place = tuple[int, Array]
 
 SINGULAR = 1e-6
@@ -34,19 +34,19 @@ class StepModel:
     """Finds scalings for r regulation variables with r perturbations.
 
     Attributes:
-        sampling: How J is sampled.
+        sampling: Sampling method of J.
         samples: (r,) distance of the samples from the origin, in units of the scalings.
-        limits: (r,) largest scaling.
-        weights: (r,) importance of each variable, one over the error that matters.
+        limits: (r,) maximum magnitude of each scaling.
+        weights: (r,) weight of each variable, the reciprocal of a significant error.
         centred: Sample on both sides of the origin, not on it ("full": two-sided differences).
         from_last: Sample around `keep` times the same side's last K instead of around zero.
         keep: See `from_last`.
         regularisation: Damping of the least squares.
-        rounds: How often scalings found from afar ("full") are improved by another model.
-        miss: Weighted error that is afar, and that is worth another model.
-        memory: Where "full" finds models to use again, or None.
-        drift: Weighted error from which a remembered model is sampled anew.
-        counters: What was retried, dropped or kept, by name.
+        rounds: Maximum number of Newton iterations that improve the scalings ("full").
+        miss: Weighted error of the nominal rollout above which they are improved.
+        memory: Memory of models for reuse ("full"), or None.
+        drift: Weighted error above which a stored model is not reused but sampled again.
+        counters: Numbers of retried, dropped, kept, .. results, by the names in `COUNTERS`.
     """
 
     sampling: Sampling
@@ -67,7 +67,7 @@ class StepModel:
     _jacobian: dict[int, Array] = field(default_factory=dict, init=False)
 
     def reset(self) -> None:
-        """Forget all steps."""
+        """Discard the results of the last walk."""
         self._last.clear()
         self._jacobian.clear()
         if self.memory is not None:
@@ -81,15 +81,15 @@ class StepModel:
         start: Array | None = None,
         at: int | None = None,
     ) -> Array:
-        """Return the scalings K (r,) that should end this step at `target` (r,).
+        """Return the scalings K (r,) for which the model predicts `target` (r,).
 
         Args:
             sample: Plays steps.
-            target: Wanted regulation variables.
-            side: Side, or part of the graph, that the step is of; each remembers its own K.
-            start: Features (f,) of the state that the sampled part begins in, for a library.
-            at: Part of the graph that begins there, if that is not `side`: the rest of a step has
-                models of its own.
+            target: Targets of the regulation variables.
+            side: Side, or part of the graph, of the step; the last K is kept for each.
+            start: Features (f,) of the start of the sampled part, for look-up in a memory.
+            at: Part of the graph that begins at `start`, if not `side`: the rest of a step has its
+                own models.
         """
         last = self._last.get(side, np.zeros(len(self.samples)))
         origin = self.keep * last if self.from_last else np.zeros_like(last)
@@ -122,7 +122,7 @@ class StepModel:
     def _lines(
         self, sample: Sample, target: Array, base: Array, group: list[int], last: Array
     ) -> Array:
-        """Return the scalings of the dimensions in `group`, each from a line of two samples."""
+        """Return the scalings of the dimensions in `group`, each from a line by two samples."""
         low = [-self.samples[j] if self.centred else 0.0 for j in group]
         high = [self.samples[j] for j in group]
         tried = np.repeat(base[None], 2 * len(group), axis=0)
@@ -145,10 +145,10 @@ class StepModel:
     def _retry(
         self, sample: Sample, base: Array, j: int, k: Array, q: Array, fell: Mask
     ) -> tuple[Array, Array, bool]:
-        """Replace a fallen sample by one where the other still stands.
+        """Replace a sample that fell by another one; return both, and whether they are usable.
 
-        Centred samples are retried half as far out on the standing side; a one-sided sample on the
-        other side of the origin.
+        Centred samples are retried at half the distance on the side that did not fall; a one-sided
+        sample on the other side of the origin.
         """
         if fell.all() or (not self.centred and fell[0]):
             self.counters["dropped"] += 1
@@ -174,9 +174,9 @@ class StepModel:
     def _reused(
         self, sample: Sample, target: Array, side: int, origin: Array, place: Place
     ) -> Array | None:
-        """Return K from a remembered model and one rollout; None where that will not do.
+        """Return K from a stored model and one rollout; None if there is no valid model.
 
-        The model has drifted when the last K again would miss the target by too much.
+        A stored model is not valid if it predicts an error above `drift` for the last K.
         """
         if self.memory is None or (jacobian := self.memory.recall(*place)) is None:
             return None
@@ -217,7 +217,7 @@ class StepModel:
         return origin + self._solve(jacobian, target - values[0])
 
     def _refined(self, sample: Sample, target: Array, found: Array, last: Array) -> Array:
-        """Return what is best of `found`, the `last` scalings, and Newton's steps from these."""
+        """Return the best of `found`, the `last` scalings, and Newton iterations from these."""
 
         def judged(tried: Array) -> tuple[Array, Array, float]:
             values, fell = sample(tried)
@@ -244,7 +244,7 @@ class StepModel:
     def _differences(
         self, sample: Sample, origin: Array, tried: Array, values: Array, fell: Mask, side: int
     ) -> Array:
-        """Return J (r, r); columns whose samples fall come from the last good model."""
+        """Return J (r, r); columns whose samples fell are taken from the last good model."""
         r = len(origin)
         good = self._jacobian.get(side)
         jacobian = np.zeros((r, r))
@@ -272,7 +272,7 @@ class StepModel:
         return jacobian
 
     def _solve(self, jacobian: Array, error: Array) -> Array:
-        """Return dK of the damped, weighted least squares, in the scalings' units."""
+        """Return dK (r,) of the damped, weighted least squares, in units of the scalings."""
         scaled = self.weights[:, None] * jacobian * self.samples
         normal = scaled.T @ scaled + self.regularisation * np.eye(len(error))
         wanted = scaled.T @ (self.weights * error)

@@ -1,1 +1,1 @@
-"""Standing, playing pose graphs, getting up, and the first motion after switching on."""
+"""Standing, playing pose graphs, getting up, and the first motion after torque enable."""

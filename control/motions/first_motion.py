@@ -1,8 +1,8 @@
-"""The first motion of a robot that has just been armed: slow, weak, and watched joint by joint.
+"""The first motion after torque enable: slow, with low stiffness, and checked joint by joint.
 
-A wrong wire, a jammed joint or a motor that turns the other way shows itself at the first motion.
-So the way from where the robot is to where its behaviour begins is made at a limited speed, with a
-stiffness that grows on the way, and ends at once when a joint does not follow.
+Wrong wiring, a jammed joint or a motor that turns the other way shows at the first motion. So the
+robot moves from its present pose to the first pose of its controller at a limited speed, with a
+stiffness that ramps up, and the motion is aborted as soon as a joint does not follow.
 """
 
 from dataclasses import replace
@@ -19,34 +19,34 @@ from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
 STIFFENING = 0.6
-"""What it takes at least to become stiff, s."""
+"""Minimum duration of the stiffness ramp, s."""
 SETTLING = 0.3
-"""How long a joint may take at the end to come to rest, s."""
+"""Time at the end for the joints to come to rest, s."""
 WATCH = 1.0
-"""How long joints are watched that hold still afterwards, s: friction may keep a motor from running
-away until then."""
+"""Time after that in which joints that hold still are checked, s: friction may delay a runaway
+motor until then."""
 CLOSE = 0.05
-"""A way that is shorter at every joint shows nothing of it, rad."""
+"""Minimum motion of a joint that proves anything about it, rad."""
 
 
 class FirstMotion:
-    """Whether an armed robot still has its first motion before it, and how stiff it is by now.
+    """Progress of an armed robot's first motion, and its present stiffness.
 
-    It is over once a joint has been moved and all have followed. Until then every controller
-    begins with a way to its first pose.
+    The first motion is complete once a joint has moved and all joints have followed. Until then
+    every controller is preceded by a motion to its first pose.
 
     Args:
         joints: The robot's joints.
-        stiffness: (n,) share of each joint's stiffness that it begins with.
-        speed: Largest speed of a goal, rad/s.
-        lag: How far a joint may be behind its goal, rad.
-        planted: Judges whether the soles lie as the joints say, where they are flat.
+        stiffness: (n,) initial share of each joint's stiffness.
+        speed: Maximum speed of a goal, rad/s.
+        lag: Maximum position error of a joint, rad.
+        planted: Check of the soles against the floor, or None if the soles are not flat.
 
     Attributes:
-        due: The first motion is still to come.
-        made: It has been made since torque came on, or there was no way to go.
-        share: (n,) of each joint's stiffness now.
-        goal: (n,) rad that the joints were told last; None before they were told any.
+        due: The first motion is not complete yet.
+        made: A motion has been made since torque enable, or none was necessary.
+        share: (n,) present share of each joint's stiffness.
+        goal: (n,) last commanded goal positions, rad; None before the first command.
     """
 
     goal: Array | None
@@ -64,30 +64,30 @@ class FirstMotion:
         self.begin()
 
     def begin(self) -> None:
-        """Torque comes on: begin anew."""
+        """Start over, at torque enable."""
         self.due, self.made, self.goal = True, False, None
         self.share = self._begins_with
 
     def before(self, controller: Controller, upright: bool) -> "Approach":
-        """Return `controller` with the first motion before it, as long as that is due.
+        """Return `controller` preceded by the first motion, as long as that is due.
 
         Args:
             controller: The controller.
-            upright: The robot is on its feet then, or in somebody's hands.
+            upright: The robot then stands on its feet, or is held in somebody's hands.
         """
         return Approach(controller, self, self.planted if upright else None)
 
 
 class Approach:
-    """A controller, after the way to where it begins.
+    """A controller preceded by a motion to its first pose.
 
     Args:
-        controller: Whose turn it is then. It is reset once more at the end of the way.
-        motion: The robot's first motion.
-        planted: Judges whether the soles lie as the joints say.
+        controller: The controller that follows. It is reset again at the end of the motion.
+        motion: Progress of the robot's first motion.
+        planted: Check of the soles against the floor, or None.
 
     Attributes:
-        active: Still on the way.
+        active: The motion to the first pose is not finished.
     """
 
     def __init__(
@@ -98,20 +98,19 @@ class Approach:
         self.active = self._needed()
 
     def reset(self, observation: Observation) -> None:
-        """Begin at the present pose.
+        """Start at the present pose.
 
         Raises:
-            StateMissingError: From the controller.
+            StateMissingError: The controller needs what the observation lacks.
         """
         self._begin(observation, self.motion.goal if self.motion.made else None)
         self.active = self._needed()
         self._following: Following | None = None
 
     def _begin(self, observation: Observation, goal: Array | None) -> None:
-        """Reset the controller; one that starts from a pose starts from the goal there was.
+        """Reset the controller; a `Begins` controller starts from `goal`, if that is given.
 
-        Joints hang behind their goals under load: from where they are, the goals would drop what
-        they bear.
+        Loaded joints lag behind their goals: with goals at the measured positions they would sag.
         """
         if goal is not None and isinstance(self.controller, Begins):
             joints = replace(observation.joints, position=goal)
@@ -119,15 +118,15 @@ class Approach:
         self.controller.reset(observation)
 
     def _needed(self) -> bool:
-        """Return whether there is a way to go first.
+        """Return whether a motion to the first pose is necessary.
 
-        The first command of a controller that does not say where it begins may be the middle of a
-        step: a robot that is stiff already, if it has not moved, leaves that to the controller.
+        Without `Begins`, the first command of a controller may be the middle of a step: a robot
+        that has full stiffness already then goes without this motion.
         """
         return self.motion.due and (not self.motion.made or isinstance(self.controller, Begins))
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the command on the way, or the controller's.
+        """Return the command of the motion to the first pose, afterwards the controller's.
 
         Raises:
             FirstMotionError: A joint does not follow.
@@ -148,7 +147,7 @@ class Approach:
         return self._on_the_way(observation, dt)
 
     def _left_alone(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the controller's command; as long as it holds still, its joints have to."""
+        """Return the controller's command; check the joints as long as it holds still."""
         command = self.controller.step(observation, dt)
         if self._following is not None:
             moves = np.abs(command.position - self._goal).max() > CLOSE
@@ -159,13 +158,13 @@ class Approach:
         return command
 
     def _is_there(self, command: JointCommand, observation: Observation) -> bool:
-        """Plan nothing where there is no way, and the joints are stiff."""
+        """Return whether the robot is at the first pose already, with full stiffness."""
         pose = first_pose_of(self.controller, command)
         away = np.abs(pose - observation.joints.position).max()
         return bool(away < CLOSE and (self.motion.share == 1.0).all())
 
     def _plan(self, command: JointCommand, observation: Observation) -> None:
-        """Plan the way to the controller's first pose: from the last goal, or the present pose."""
+        """Plan the motion to the controller's first pose, from the last goal or present pose."""
         joints, before = self.joints, self.motion.goal
         start = observation.joints.position
         if before is not None and self.motion.made:
@@ -198,7 +197,7 @@ class Approach:
         return JointCommand.of(self.joints, position=goal, stiffness=stiffness)
 
     def _hand_over(self, observation: Observation, goal: Array, dt: float) -> JointCommand:
-        """Let the controller begin; one that starts from a pose starts from the goal."""
+        """Finish the motion: reset the controller and return its first command."""
         self.active, self._goal = False, goal
         self.motion.made = True
         if np.abs(self._way).max() >= CLOSE:

@@ -1,12 +1,12 @@
-"""Does each joint follow its goal, in direction and rate?
+"""Check that each joint follows its goal, in direction and rate.
 
-One number decides: how far a joint will be behind its goal in a moment. Loads, friction and play
-hold a joint back by some degrees, also one that bears the robot; a joint that is farther behind is
-jammed, is not the one that was meant, or has a motor that turns the other way: that one runs away,
-which is why its speed counts too. What the joint did meanwhile says what it is.
+The criterion is the predicted position error of a joint. Load, friction and backlash cause errors
+of some degrees, even in a joint that bears the robot. A larger error means that the joint is
+jammed, that another joint was commanded, or that the motor turns the other way. Such a motor runs
+away, so the rate of the error counts too. The joint's motion until then tells these cases apart.
 
-A servo whose `sign` or `id` is wrong in robot.toml follows all the same: it is read as it is
-commanded. What its own encoder cannot tell, the trunk and the other limbs may.
+A servo whose `sign` or `id` is wrong in robot.toml passes this check, because it is read as it is
+commanded. `Planted` finds such servos by the attitude of the soles.
 """
 
 from math import degrees, radians
@@ -18,33 +18,33 @@ from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
 TICKS = 2
-"""So many ticks in a row a joint has to be behind: a single reading may be wrong."""
+"""Consecutive ticks with too large an error before a joint fails: a single reading may be wrong."""
 AHEAD = 0.08
-"""How far one looks ahead, s: motors that turn the other way are caught within 15 degrees.
+"""Prediction time of the error, s: motors that turn the other way are caught within 15 degrees.
 
-What is foreseen counts for half of what is allowed at most: a load that comes upon a joint at once
-throws it back by some degrees as fast.
+The predicted increase counts for at most half of the permitted error: a sudden load throws a joint
+back by some degrees just as fast.
 """
 FRESH = 0.02
-"""Age of a reading that still counts, s."""
+"""Maximum age of a reading that is checked, s."""
 STILL = radians(3.0)
-"""A joint that moved less did not move."""
+"""A joint that moved less than this did not move, rad."""
 SHARE = 0.25
-"""A joint that has gone less of its way did not follow."""
+"""A joint that moved less than this share of its commanded motion did not follow."""
 TOLD = radians(7.0)
-"""A joint with a shorter way is not judged by the share of it that it went."""
+"""Minimum commanded motion of a joint for the `SHARE` criterion, rad."""
 ALIKE = 0.5
-"""A joint that went at least this share of another one's way may have been taken for it."""
+"""A joint that moved at least this share of another one's motion may be swapped with it."""
 
 
 class Following:
-    """Watches the n joints of a robot on their way from one pose to another.
+    """Checks the n joints of a robot while they move from one pose to another.
 
     Args:
         joints: The joints.
-        start: (n,) rad where they begin.
-        way: (n,) rad from there to where they go.
-        lag: How far a joint may be behind its goal, rad.
+        start: (n,) start pose, rad.
+        way: (n,) commanded motion from there to the end pose, rad.
+        lag: Maximum position error of a joint, rad.
     """
 
     def __init__(self, joints: Joints, start: Array, way: Array, lag: float) -> None:
@@ -53,7 +53,7 @@ class Following:
         self._before: list[tuple[float, Array]] = []
 
     def update(self, observation: Observation, goal: Array) -> None:
-        """Judge the joints beside the goals (n,) rad that they have had.
+        """Check the joints against the goals (n,) rad of this tick.
 
         Raises:
             FirstMotionError: A joint does not follow.
@@ -74,10 +74,10 @@ class Following:
             raise FirstMotionError(self._said(worst, position, goal))
 
     def conclude(self, position: Array) -> None:
-        """Judge where the joints have come to rest, positions (n,) rad.
+        """Check the final positions (n,) rad of the joints.
 
         Raises:
-            FirstMotionError: A joint has gone next to nothing of its way.
+            FirstMotionError: A joint has made less than `SHARE` of its commanded motion.
         """
         gone = (position - self._start) * np.sign(self._way)
         way = np.abs(self._way)
@@ -87,7 +87,7 @@ class Following:
             raise FirstMotionError(self._said(worst, position, self._start + self._way))
 
     def _said(self, joint: int, position: Array, goal: Array) -> str:
-        """Return what is wrong with a joint, and what to look at."""
+        """Return the message for a joint that failed: the symptom and what to check."""
         name, moved = self._names[joint], position - self._start
         told = goal[joint] - self._start[joint]
         along = moved[joint] * np.sign(told) if told else -abs(moved[joint])
@@ -115,7 +115,7 @@ class Following:
         )
 
     def _instead(self, joint: int, moved: Array, told: float) -> int | None:
-        """Return which joint went the way of another one without being told to."""
+        """Return the joint that moved instead of `joint`, without being commanded, or None."""
         goals = np.abs(self._way) < STILL
         alike = goals & (np.abs(moved) > ALIKE * abs(told)) & (np.abs(moved) > STILL)
         alike[joint] = False

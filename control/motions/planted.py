@@ -1,12 +1,12 @@
-"""Do the soles lie on the floor as the joints say? If not: which sign or ids would explain it?
+"""Detection of a wrong joint sign, or of swapped servo ids, by the attitude of the soles.
 
-A servo is read as it is commanded, so one whose sign is wrong in robot.toml, or whose id is another
-one's, follows its goals and is seen to. But a robot that stands has both soles flat on the floor.
-Where the joints say that they are not, and one wrong sign, or two exchanged ids, would make both
-lie flat, at rest and on the way, that is what is wrong.
+A servo whose sign is wrong in robot.toml, or whose id is swapped, is read as it is commanded, so
+its position error stays small. But a robot that stands has both soles flat on the floor. If the
+joint angles contradict that, and one wrong sign or one pair of swapped ids would make both soles
+flat at rest and during the motion, then that is the mistake.
 
-A robot in somebody's hands has its soles anywhere: hardly ever does one wrong joint put both flat
-and keep them so while it moves. Such robots are not judged, whatever is wrong with them.
+A robot that is held in somebody's hands may have its soles at any attitude. One wrong joint hardly
+ever explains that throughout a motion, so no mistake is reported for such a robot.
 """
 
 from itertools import combinations
@@ -21,36 +21,36 @@ from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
 OFF = radians(12.0)
-"""A sole that seems tilted by more does not lie on the floor."""
+"""Apparent tilt beyond which a sole does not lie on the floor, rad."""
 FLAT = radians(2.5), radians(10.0)
-"""One that is tilted by less on average does, for floors, IMUs and zeros are no better; and where
-joints have it far off the floor, by less than an eighth of that."""
+"""Bounds of the mean tilt below which a sole counts as flat, rad: floors, IMUs and joint zeros are
+no more exact than the lower one. Between them it is the largest apparent tilt over `BETTER`."""
 BETTER = 8.0
 MOVED = radians(4.0)
-"""So far a joint has to be moved before it is called wrong: chance explains one pose."""
+"""Minimum motion of a joint before it is reported, rad: a single pose may fit by chance."""
 TURNED = radians(1.0)
-"""So far the base of a robot turns that stands on wrong joints; one that hangs may not turn."""
+"""Minimum rotation of the base before a joint is reported, rad; a hanging robot may not turn."""
 APART = 0.1
-"""Soles of which one is higher by this are as far from one floor as one tilted by 1 rad, m."""
+"""Height difference of the soles that counts like a tilt of 1 rad, m."""
 ALIKE = radians(1.0)
-"""A guess that explains the soles worse than another one by more is none, rad."""
+"""Maximum tilt of a hypothesis above that of the best one to be reported too, rad."""
 EVERY = 5
-"""Ticks from one look to the next."""
+"""Ticks from one check to the next."""
 
 Indices = npt.NDArray[np.intp]
 
 
 class Planted:
-    """Judges one robot on its feet.
+    """Checks the soles of one standing robot during a motion.
 
     Args:
         joints: The joints.
-        legs: Where its soles are.
+        legs: Kinematics of the soles.
     """
 
     def __init__(self, joints: Joints, legs: Legs) -> None:
         self._names, self._legs = joints.names, legs
-        # Which joints each guess is about: none, one with a wrong sign, two with swapped ids.
+        # The joints of each hypothesis: none, one with a wrong sign, or two with swapped ids.
         singles, pairs = combinations(legs.joints, 1), combinations(legs.joints, 2)
         self._guesses: list[tuple[int, ...]] = [(), *singles, *pairs]
         n = len(joints)
@@ -67,13 +67,13 @@ class Planted:
         self.begin()
 
     def begin(self) -> None:
-        """Begin anew."""
+        """Start over, at the beginning of a motion."""
         self._start: Array | None = None
         self._ticks, self._looks, self._worst = 0, 0, 0.0
         self._sum: Array = np.zeros(len(self._guesses))
 
     def update(self, observation: Observation) -> str | None:
-        """Return what must be wrong in robot.toml, for people, or None; call it every tick."""
+        """Return a message about the mistake in robot.toml, or None; call it at every tick."""
         self._ticks += 1
         base = observation.base
         if self._ticks % EVERY != 1 or base is None:
@@ -97,14 +97,14 @@ class Planted:
         return self._said(alike[np.argsort(mean[alike])][:2]) if alike.size else None
 
     def _off(self, position: Array, up: Array) -> Array:
-        """Return for each guess how far the soles are from lying on one floor, rad."""
+        """Return for each hypothesis the deviation of the soles from one flat floor, rad."""
         poses = position[self._take] * self._sign
         normals, middles = self._legs.soles(poses)
         tilt = np.arccos(np.clip((normals @ up).min(axis=1), -1.0, 1.0))
         return np.asarray(np.maximum(tilt, np.ptp(middles @ up, axis=1) / APART))
 
     def _said(self, rows: Indices) -> str:
-        """Return in words what the guesses at `rows` say, the likelier one first."""
+        """Return the message for the hypotheses at `rows`, the most likely first."""
         said = []
         for row in rows:
             names = [self._names[joint] for joint in self._guesses[row]]

@@ -1,4 +1,4 @@
-"""Playing a pose graph, or holding one pose: no balance, no steps."""
+"""Controllers that play a pose graph or hold one pose, without balance or steps."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from windup.hal.observation import Observation
 
 
 class PoseHolder:
-    """Moves to one pose along a smooth step, and holds it.
+    """Controller that moves to one pose along a smooth step, and holds it.
 
     Args:
         joints: The robot's joints.
@@ -26,22 +26,22 @@ class PoseHolder:
 
     @property
     def first_pose(self) -> Array:
-        """See `Begins`."""
+        """First pose (n,), rad; see `Begins`."""
         return self.pose
 
     def reset(self, observation: Observation) -> None:
-        """Start at the present pose."""
+        """Start the motion at the present pose."""
         self._from, self._began = observation.joints.position, observation.time
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return a pose on the way, or the pose itself."""
+        """Return the command of this tick: an intermediate pose, or the pose itself."""
         s = min((observation.time - self._began) / self.ramp, 1.0) if self.ramp > 0.0 else 1.0
         way = smooth_step(s) * (self.pose - self._from)
         return JointCommand.hold(self.joints, self._from + way)
 
 
 class GraphPlayer:
-    """Plays a pose graph from its first state.
+    """Controller that plays a pose graph from its first state.
 
     Args:
         gait: The graph; its perturbations stay at zero.
@@ -49,8 +49,8 @@ class GraphPlayer:
         contacts: The robot's contact sensors.
 
     Attributes:
-        failed: None; what waits for nothing cannot miss it.
-        retries: 0, likewise.
+        failed: Always None, because no state has a condition that could fail.
+        retries: Always 0, for the same reason.
     """
 
     failed: str | None = None
@@ -61,13 +61,13 @@ class GraphPlayer:
         self._tracker = PoseTracker(gait, contacts, np.zeros((1, len(gait.perturbations))))
 
     def reset(self, observation: Observation) -> None:
-        """Begin at the first state."""
+        """Start at the first state."""
         self._tracker.restart()
         self._hold = JointCommand.hold(self.joints, observation.joints.position)
         self._begun = False
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the pose of the present state."""
+        """Return the command for the pose of the present state."""
         if self._begun:
             self._tracker.advance(observation.contacts[None])
         self._begun = True
@@ -77,5 +77,5 @@ class GraphPlayer:
 
     @property
     def finished(self) -> bool:
-        """True when an aperiodic graph has held its last state for its time."""
+        """True if an aperiodic graph has held its last state for the hold time."""
         return bool(self._tracker.finished()[0])

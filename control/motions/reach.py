@@ -1,4 +1,4 @@
-"""Conditions on the sensors: is a pose reached, is the base upright enough, are the feet down?"""
+"""Conditions of a state on the sensors: pose reached, base upright, feet on the ground."""
 
 from collections.abc import Iterator
 from math import asin, atan2, degrees
@@ -14,7 +14,7 @@ from windup.hal.observation import Observation
 
 
 def lean(observation: Observation) -> tuple[float, float]:
-    """Return how far the base leans forward (-180 .. 180) and to the right (-90 .. 90), degrees.
+    """Return the lean of the base forward (-180 .. 180) and to the right (-90 .. 90), degrees.
 
     Raises:
         StateMissingError: The observation has no attitude.
@@ -36,10 +36,10 @@ def lean(observation: Observation) -> tuple[float, float]:
 
 
 class Condition:
-    """A `reach` of a gait file, for one robot.
+    """The condition of a `reach` table in a gait file, for one robot.
 
     Args:
-        reach: What must be true.
+        reach: The table.
         joints: The robot's joints.
         contacts: The robot's contact sensors.
     """
@@ -48,11 +48,11 @@ class Condition:
         self.reach, self.joints, self.contacts = reach, joints, contacts
 
     def unmet(self, observation: Observation, goal: Array) -> str | None:
-        """Return what is not true yet, for people, or None where everything is.
+        """Return a message about the first unmet part of the condition, or None if all are met.
 
         Args:
-            observation: Of now.
-            goal: (n,) rad, where the joints should be.
+            observation: The present observation.
+            goal: (n,) goal positions of the joints, rad.
         """
         return next(self._complaints(observation, goal), None)
 

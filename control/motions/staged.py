@@ -1,7 +1,7 @@
-"""Controlled aperiodic motion: a pose graph whose states wait for the sensors before they go on.
+"""Controlled aperiodic motion: a pose graph whose states end on conditions on the sensors.
 
-The thesis plays an aperiodic graph open loop (section 2.3). Here a state may say what must be true
-before the next one begins; what is not true in time is tried again, and given up in the end.
+The thesis plays an aperiodic graph open loop (section 2.3). Here a state may have a condition that
+must be met before the next state begins. On a time-out the state is retried, up to `tries` times.
 """
 
 import numpy as np
@@ -19,7 +19,7 @@ EPSILON = 1e-9
 
 
 class StagedPlayer:
-    """Plays a graph with `move` and `reach` from its first state; goals never jump.
+    """Controller that plays a graph with `move` and `reach`; its goals never jump.
 
     Args:
         gait: The graph; its perturbations stay at zero.
@@ -27,9 +27,9 @@ class StagedPlayer:
         contacts: The robot's contact sensors.
 
     Attributes:
-        finished: The last state has been held for its time, and reached.
-        failed: Why the graph was given up, one line, or None; the goals then stay.
-        retries: How often a state was not reached in time and tried again.
+        finished: The last state has been held for its time, and its condition is met.
+        failed: Reason why the graph was aborted, one line, or None; the goals then stay.
+        retries: Number of retries after a state was not reached in time.
     """
 
     failed: str | None = None
@@ -46,19 +46,19 @@ class StagedPlayer:
 
     @property
     def ends_down(self) -> bool:
-        """Whether the robot is on the floor at the end, as it should be."""
+        """True if the robot is meant to lie or sit on the floor at the end."""
         return self.gait.file.down
 
     @property
     def first_pose(self) -> Array:
-        """See `Begins`."""
+        """First pose (n,), rad; see `Begins`."""
         return self.gait.graph.pose[0]
 
     def reset(self, observation: Observation) -> None:
-        """Begin at the first state, from the present pose.
+        """Start at the first state, from the present pose.
 
         Raises:
-            StateMissingError: The graph asks for what the observation lacks.
+            StateMissingError: The graph needs what the observation lacks.
         """
         self.finished, self.failed, self.retries = False, None, 0
         self._missed = np.zeros(len(self.gait.graph), dtype=int)
@@ -72,7 +72,7 @@ class StagedPlayer:
         self._enter(0)
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the goals on the way to the pose of the present state."""
+        """Return the command of this tick, on the way to the pose of the present state."""
         if not (self.finished or self.failed):
             self._advance(observation)
             self._elapsed += dt
@@ -92,7 +92,7 @@ class StagedPlayer:
         return goal
 
     def _advance(self, observation: Observation) -> None:
-        """Go to the next state when this one has had its time and its condition is true."""
+        """Enter the next state if the hold time is over and the condition is met."""
         graph, state = self.gait.graph, self._state
         over = self._elapsed - float(graph.hold[state]) + EPSILON
         if over < 0.0:
@@ -108,7 +108,7 @@ class StagedPlayer:
             self._miss(unmet, condition.reach.again)
 
     def _miss(self, unmet: str, again: str | None) -> None:
-        """Try again, or give up when that was done often enough."""
+        """Retry the state, or abort the graph after the last try."""
         state, name = self._state, self.gait.graph.names[self._state]
         self._missed[state] += 1
         if self._missed[state] < self.gait.file.tries:

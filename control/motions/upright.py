@@ -1,8 +1,8 @@
-"""Balance in a graph that is played: goals that lean against the lean of the base.
+"""Balance feedback for a graph that is played: the lean of the base shifts the joints' goals.
 
-To the goal q of each named joint comes ``clip(k lean + d rate, -limit, limit)``, for the lean of
-the base forward and its rate about the same axis, and likewise for its lean to the right. A soft
-ankle gains the stiffness that it lacks to hold the robot up.
+``clip(k lean + d rate, -limit, limit)`` is added to the goal q of each named joint, summed over
+the forward lean of the base with its rate, and the lean to the right with its rate. This adds the
+stiffness that a compliant ankle lacks to keep the robot upright.
 """
 
 import numpy as np
@@ -15,10 +15,10 @@ from windup.hal.observation import Observation
 
 
 class UprightFeedback:
-    """The `upright` table of a gait file, for one robot.
+    """The feedback of the `upright` table of a gait file, for one robot.
 
     Args:
-        table: What the file says.
+        table: The table.
         joints: The robot's joints.
         states: Names of the graph's states.
     """
@@ -35,7 +35,7 @@ class UprightFeedback:
         self._acts: Mask = np.array([name in chosen for name in states])
 
     def apply(self, goal: Array, observation: Observation, state: int) -> Array:
-        """Return the goals (n,) rad with what balance adds in state number `state`.
+        """Return the goals (n,) rad with the balance feedback of the state with index `state`.
 
         Raises:
             StateMissingError: The observation has no base.

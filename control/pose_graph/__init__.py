@@ -1,1 +1,1 @@
-"""Pose control graphs and gaits: their files, their tracking, their styles."""
+"""Pose control graphs and gaits: file format, checks, tracking, styles and blends."""

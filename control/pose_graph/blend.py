@@ -1,7 +1,8 @@
 """Interpolation between gaits: beta(a B1 + (1 - a) B2), Laszlo 1996, section 5.4.
 
 B1 + a (B2 - B1) is the graph B1 under the perturbation B2 - B1, scaled by a. So a blend is a style:
-it comes in a little each step, composes with others, and the first gait's balance holds it up.
+its amount is ramped from step to step, it adds to other styles, and the first gait's balance
+control applies to it.
 """
 
 from dataclasses import replace
@@ -12,13 +13,13 @@ import numpy as np
 from windup.control.pose_graph.gait import Gait
 from windup.control.pose_graph.gait_file import Balance, Perturbation, Style
 
-STEPS = 18.0  # from one gait to the other
+STEPS = 18.0  # steps of the ramp from one gait to the other
 
 
 def with_blend(gait: Gait, other: Gait) -> Gait:
-    """Return `gait` with a style that turns it into `other`; `blend_name` is its name.
+    """Return `gait` with an additional style, `blend_name`, that turns it into `other`.
 
-    The other's poses, hold times and targets come in; perturbations, sampling and tables stay.
+    The style changes poses, hold times and targets; perturbations, sampling and tables stay.
 
     Raises:
         ConfigError: The graphs have different states.
@@ -44,12 +45,12 @@ def with_blend(gait: Gait, other: Gait) -> Gait:
 
 
 def blend_name(other: str) -> str:
-    """Return the name of the style that turns a gait into `other`; no file has such names."""
+    """Return the name of the style that turns a gait into `other`; gait files use no such names."""
     return f"blend {other}"
 
 
 def _further(gait: Gait, other: Gait) -> dict[str, float]:
-    """Return what the targets of `other` are above those of `gait`, where both have them."""
+    """Return the targets of `other` minus those of `gait`, for names that both have."""
     mine, theirs = (one.file.balance or Balance() for one in (gait, other))
     shared = [name for name in mine.targets if name in theirs.targets]
     return {name: theirs.targets[name] - mine.targets[name] for name in shared}

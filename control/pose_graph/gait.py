@@ -25,11 +25,11 @@ class Gait:
 
     Attributes:
         name: Name of the file, without suffix.
-        file: What the file says.
+        file: The decoded gait file.
         graph: The base graph B.
         perturbations: Names of the p perturbations.
-        pose_change: (p, s, n) change of the poses for a scaling of one, rad.
-        hold_change: (p, s) change of the hold times for a scaling of one, s.
+        pose_change: (p, s, n) change of the poses for a scaling of 1, rad.
+        hold_change: (p, s) change of the hold times for a scaling of 1, s.
     """
 
     name: str
@@ -62,7 +62,7 @@ def load_gait(path: Path, joints: Joints, contacts: ContactSensors, mirror: Mirr
         path: The file.
         joints: The joints.
         contacts: The contact sensors.
-        mirror: Its left and right; called only where the file asks for them.
+        mirror: Mirrors a pose left to right; called only if the file needs it.
 
     Raises:
         ConfigError: The file does not fit its format, the robot, or the joint limits.
@@ -77,7 +77,7 @@ def load_gait(path: Path, joints: Joints, contacts: ContactSensors, mirror: Mirr
 
 @dataclass(frozen=True)
 class _Reader:
-    """Turns one gait file into arrays; every error names the file and the key."""
+    """Converts one gait file into arrays; every error names the file and the key."""
 
     path: Path
     file: GaitFile
@@ -126,7 +126,7 @@ class _Reader:
         return pose, hold
 
     def _chosen(self, item: Perturbation, graph: PoseGraph) -> Mask:
-        """Return (s,) bool: the states that a perturbation touches."""
+        """Return (s,) bool: the states that a perturbation applies to."""
         if item.states is None:
             return np.ones(len(graph), dtype=bool)
         chosen = np.zeros(len(graph), dtype=bool)
@@ -139,7 +139,7 @@ class _Reader:
         return chosen
 
     def _state_pose(self, state: State) -> Array:
-        """Return the pose (n,) rad of a state, checked against the joint limits."""
+        """Return the pose (n,) of a state, rad, checked against the joint limits."""
         where = f"state.{state.name}.pose"
         degrees = self._pose(self.file.pose, "pose") + self._pose(state.pose, where)
         pose = np.radians(degrees)
@@ -155,7 +155,7 @@ class _Reader:
         return pose
 
     def _pose(self, pose: Pose, where: str) -> Array:
-        """Return an (n,) array in degrees from a table by name or a row of `columns`."""
+        """Return (n,) degrees from a table by joint name, or from a row in `columns` order."""
         if isinstance(pose, list):
             columns = self.file.columns
             if len(pose) != len(columns):
@@ -208,7 +208,7 @@ class _Reader:
 
 
 def _names(file: GaitFile) -> tuple[str, ...]:
-    """Return the names of the perturbations, each once."""
+    """Return the names of the perturbations without repetitions."""
     return tuple(dict.fromkeys(item.name for item in file.perturbation))
 
 
@@ -221,7 +221,7 @@ def _mirrored_name(name: str) -> str:
 
 
 def _mirrored(state: State) -> State:
-    """Return the state of the other side, without its pose."""
+    """Return the mirrored state, without its pose."""
     until = state.until
     if until.contact is not None:
         until = type(until)(contact=other_side(until.contact), timeout=until.timeout)

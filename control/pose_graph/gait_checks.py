@@ -1,4 +1,4 @@
-"""What the tables of a gait file say of each other; every error names the file and the key."""
+"""Checks of references between a gait file's tables; every error names the file and the key."""
 
 from collections.abc import Iterable
 from itertools import pairwise
@@ -11,10 +11,10 @@ from windup.hal.joints import Joints
 
 
 def check_gait(path: Path, file: GaitFile, joints: Joints) -> None:
-    """Check the names that tables of a gait file have of each other.
+    """Check the names by which the tables of a gait file refer to each other and to the joints.
 
     Raises:
-        ConfigError: A table names something that is not there, or holds nothing.
+        ConfigError: A table refers to an unknown name, is empty, or contradicts another one.
     """
     names = [item.name for item in file.perturbation]
     parts = [(item.name, item.states and sorted(item.states)) for item in file.perturbation]
@@ -53,7 +53,7 @@ def check_gait(path: Path, file: GaitFile, joints: Joints) -> None:
 
 
 def _check_stages(path: Path, file: GaitFile, joints: Joints) -> None:
-    """Check what only a graph that is played can have."""
+    """Check the keys `move`, `reach` and `upright`, which only a graph that is played can have."""
     if file.balance is not None or file.mirror:
         raise _error(
             path, "state", "`move`, `reach` and `upright` are for graphs without balance and mirror"

@@ -1,7 +1,7 @@
-"""Gait files: pose graphs, perturbations and their balance as TOML that people write.
+"""Format of gait files: pose graphs, perturbations and balance, as TOML written by people.
 
-Angles are in degrees and times in seconds, as the literature prints them. The records below are
-the format; `windup.control.pose_graph.gait` turns them into arrays.
+Angles are in degrees and times in seconds, as in the literature. The records below define the
+format; `windup.control.pose_graph.gait` converts them into arrays.
 """
 
 from typing import Annotated, Literal
@@ -16,7 +16,7 @@ Pose = dict[str, float] | list[float]
 
 
 class Until(Record, frozen=True):
-    """What ends a state: a hold time, or a contact with an optional time-out."""
+    """End of a state: a hold time, s, or a contact with an optional time-out, s."""
 
     time: Seconds | None = None
     contact: str | None = None
@@ -24,12 +24,12 @@ class Until(Record, frozen=True):
 
 
 class Reach(Record, frozen=True):
-    """What must be true before a played graph goes on; all of it, at one instant.
+    """Condition for the end of a state in a graph that is played; all parts at the same instant.
 
-    `joints` is how far any joint may be from its goal, degrees; `still` how fast any may move,
-    degrees/s; `lean` the least and the most forward lean of the base and `side` its lean to either
-    side, degrees; `feet` asks for every foot on the ground. What is not true `within` s of the
-    state's own time is tried again from the state `again` (this one by default).
+    `joints` is the maximum error of any joint, degrees; `still` the maximum speed of any joint,
+    degrees/s; `lean` the minimum and maximum forward lean of the base and `side` its maximum lean
+    to either side, degrees; `feet` requires every foot on the ground. If the condition is not met
+    `within` s after the hold time, the graph is retried from the state `again` (default: this one).
     """
 
     joints: Positive | None = None
@@ -44,7 +44,8 @@ class Reach(Record, frozen=True):
 class State(Record, frozen=True):
     """One row of a pose table; angles in degrees, added to the file's `pose`.
 
-    `move` is for graphs that are played, as `reach` is: the goals take so long to the pose, s.
+    `move` and `reach` are for graphs that are played; `move` is the time in which the goals move
+    to the pose, s.
     """
 
     name: str
@@ -58,11 +59,11 @@ class State(Record, frozen=True):
 
 
 class Perturbation(Record, frozen=True):
-    """A linear parametric perturbation, for one degree (or one second) of scaling.
+    """A linear parametric perturbation: changes of poses and hold times for a scaling of 1.
 
-    `pose` is added to the states of the steps that stand on `stance`; the steps on the other
-    foot get the mirror image, or with `opposite` its negative, which is how one turns. `states`
-    narrows it down; entries of one name add up. `hold` changes hold times, in seconds.
+    `pose`, degrees, is added to the states of the steps on stance foot `stance`; the steps on the
+    other foot get its mirror image, or with `opposite` the negative of that, as for turning.
+    `states` restricts it to some states; entries of one name add up. `hold` changes hold times, s.
     """
 
     name: str
@@ -77,12 +78,12 @@ class Perturbation(Record, frozen=True):
 
 
 class Balance(Record, frozen=True):
-    """How the gait keeps its balance.
+    """Parameters of the gait's balance control.
 
-    A step is planned again in its middle when the centre of mass is `replan` m/s faster or slower
-    than it was at the same state two steps ago. Scalings found from farther away than `miss`
-    (weighted) are improved by up to `rounds` more models. The rollouts' ground is a plane through
-    what the feet have touched in the last `footfalls` steps; with 0 it is level.
+    A step is replanned when the CoM velocity at a state differs by more than `replan` m/s from
+    that at the same state two steps ago. If the weighted error of the nominal rollout exceeds
+    `miss`, the scalings are improved with up to `rounds` more models. The rollouts' ground is a
+    plane fitted to the contact points of the last `footfalls` steps; with 0 it is level.
     """
 
     regulation: list[str] = []
@@ -103,7 +104,7 @@ class Balance(Record, frozen=True):
 
 
 class SpeedRow(Record, frozen=True):
-    """What a commanded speed means: scalings of perturbations and targets, before feedback."""
+    """Scalings of perturbations and targets for one commanded speed, m/s, before feedback."""
 
     speed: float
     scale: dict[str, float] = {}
@@ -113,10 +114,10 @@ class SpeedRow(Record, frozen=True):
 class Speed(Record, frozen=True):
     """Commanded speed: rows that are interpolated, and feedback of the measured speed.
 
-    A walk begins at the speed `begin` and gains `ramp` m/s a step. Without a `default` the table
-    only counts when a speed is commanded. `correct` names the target or the perturbation that the
-    feedback moves, by `gain` times the error, m/s, each step; `also` names targets that move with
-    it, by so much for each unit (a slower robot leans forward, Eq. 5.1).
+    A walk begins at the speed `begin` and changes by `ramp` m/s per step. Without a `default` the
+    table only applies if a speed is commanded. `correct` names the target or perturbation that the
+    feedback changes, by `gain` times the speed error, m/s, at each step; `also` gives changes of
+    other targets per unit of that correction (a slower robot leans forward, Eq. 5.1).
     """
 
     rows: list[SpeedRow]
@@ -132,9 +133,9 @@ class Speed(Record, frozen=True):
 class Side(Record, frozen=True):
     """Commanded sideways speed: scalings and targets for 1 m/s to the left, before feedback.
 
-    `scale` follows the sign of the speed, `spread` does not (to keep the legs apart). `targets`
-    are lateral: they are added in steps that swing the foot on the side that one goes to, and
-    subtracted in the others. `limit` is the largest speed, m/s; it grows by `ramp` a step.
+    `scale` follows the sign of the speed, `spread` its magnitude (to keep the legs apart).
+    `targets` are lateral: they are added in steps whose swing foot is on the side of the motion,
+    and subtracted in the others. `limit` is the maximum speed, m/s; `ramp` its change per step.
     """
 
     limit: NotNegative
@@ -147,12 +148,12 @@ class Side(Record, frozen=True):
 
 
 class Turn(Record, frozen=True):
-    """Commanded turning; `limit` is the fastest, degrees/s.
+    """Commanded turning; `limit` is the maximum turn rate, degrees/s.
 
-    `feed` is the scaling for each degree that one step shall turn, `spread` scalings for one
-    degree/s either way. The rate changes by `ramp` degrees/s a step. `perturbation` turns where
-    that of the heading is only good for holding a course. On a path, tight turns are walked at
-    `speed` m/s, and none tighter than `radius` m.
+    `feed` is the scaling per degree of turn in a step, `spread` scalings per degree/s in either
+    direction. The rate changes by at most `ramp` degrees/s per step. `perturbation` is used for
+    turning if that of the heading is only suitable for holding a course. On a path, tight turns
+    are walked at `speed` m/s, and `radius` m is the minimum turning radius.
     """
 
     limit: NotNegative
@@ -165,7 +166,7 @@ class Turn(Record, frozen=True):
 
 
 class Heading(Record, frozen=True):
-    """Holding a course: a perturbation scaled by the error of the heading, degrees a degree."""
+    """Course control: a perturbation scaled by `gain` times the heading error, degrees."""
 
     perturbation: str
     gain: float
@@ -173,9 +174,9 @@ class Heading(Record, frozen=True):
 
 
 class Incline(Record, frozen=True):
-    """Tilting the soles with the ground: a perturbation scaled by how far a variable misses.
+    """Slope compensation: a perturbation scaled by the filtered error of a regulation variable.
 
-    The scaling tends to `gain` times the miss of `variable`, by the share `rate` a step.
+    The scaling approaches `gain` times the error of `variable` by the share `rate` per step.
     """
 
     perturbation: str
@@ -186,10 +187,10 @@ class Incline(Record, frozen=True):
 
 
 class Slip(Record, frozen=True):
-    """Walking with care on slippery ground.
+    """Style for slippery ground.
 
-    From when the stance foot has slid more than `least` m in one of the `states`, in two steps
-    running, the walk takes on a style.
+    Once the stance foot has slid by more than `least` m during one of the `states` in two
+    consecutive steps, the walk changes to `style`.
     """
 
     states: list[str]
@@ -198,10 +199,10 @@ class Slip(Record, frozen=True):
 
 
 class Style(Record, frozen=True):
-    """A way of walking that can be had by any amount: scalings and targets for an amount of one.
+    """A style of walking with a variable amount: scalings and targets for an amount of 1.
 
-    Styles compose by addition, and an amount between 0 and 1 blends (section 5.4). The amount
-    changes by at most 1 / `steps` a step.
+    Styles add up, and an amount between 0 and 1 blends (section 5.4). Amounts are in `least` ..
+    `most`; the larger of these magnitudes is reached in `steps` steps.
     """
 
     name: str
@@ -213,18 +214,18 @@ class Style(Record, frozen=True):
 
 
 class TorsoServo(Record, frozen=True):
-    """A joint driven so that the torso keeps `angle` degrees of forward lean (section 3.8)."""
+    """A joint that keeps the torso at a forward lean of `angle` degrees (section 3.8)."""
 
     joint: str
     angle: float = 0.0
 
 
 class Upright(Record, frozen=True):
-    """How a graph that is played keeps its balance, see `windup.control.motions.upright`.
+    """Balance feedback of a graph that is played, see `windup.control.motions.upright`.
 
-    Gains by joint: `forward` and `right` in degrees for one degree of the base's lean, the rates in
-    degrees for one degree/s. `limit` is the most that comes to a goal, degrees. `states` narrows
-    it down.
+    Gains by joint: `forward` and `right` in degrees per degree of the base's lean, the rates in
+    degrees per degree/s. `limit` is the maximum change of a goal, degrees. `states` restricts the
+    feedback to some states.
     """
 
     forward: dict[str, float] = {}
@@ -236,10 +237,11 @@ class Upright(Record, frozen=True):
 
 
 class GaitFile(Record, frozen=True):
-    """One file of `gaits/`: a pose graph and, for a walk, how it is balanced.
+    """One file of `gaits/`: a pose graph and, for a walk, its balance control.
 
-    `tries` is how often a state with a `reach` is tried before the graph is given up. A graph that
-    gets the robot up says on which side it is `lying` before; one that ends on the floor is `down`.
+    `tries` is the number of tries of a state with a `reach` before the graph is aborted. `lying`
+    is the side on which the robot lies before a graph that gets it up; `down` is true if the robot
+    is on the floor at the end.
     """
 
     title: str
@@ -267,14 +269,14 @@ class GaitFile(Record, frozen=True):
 
     @property
     def attitude(self) -> bool:
-        """True where the base's attitude decides: feedback balances, or a state asks for a lean."""
+        """True if the graph needs the base's attitude, for balance feedback or for a `reach`."""
         reaches = (state.reach for state in self.state if state.reach is not None)
         leans = any(reach.lean is not None or reach.side is not None for reach in reaches)
         return self.upright is not None or leans
 
     @property
     def staged(self) -> bool:
-        """True where a state moves to its pose or has to reach something, or feedback balances."""
+        """True if the file uses `move`, `reach` or `upright`."""
         if self.upright is not None:
             return True
         return any(state.move > 0.0 or state.reach is not None for state in self.state)

@@ -1,4 +1,4 @@
-"""The version of a gait: what is learnt for one does not hold for another."""
+"""Hash of a gait file, which ties learnt step models to the version of their gait."""
 
 import json
 import tomllib
@@ -11,11 +11,11 @@ LENGTH = 16
 
 
 def gait_hash(path: Path) -> str:
-    """Return 16 hexadecimal digits of what the gait file at `path` says; comments do not count.
+    """Return a hash, 16 hexadecimal digits, of the gait file at `path`; comments do not count.
 
     Raises:
-        OSError: It cannot be read.
-        ValueError: It is not TOML.
+        OSError: The file cannot be read.
+        ValueError: The file is not TOML.
     """
     said = tomllib.loads(read_small(path).decode("utf-8-sig"))
     return sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:LENGTH]

@@ -1,4 +1,4 @@
-"""Goals that a servo can take: within its joint's limits, and no faster than its firmware runs."""
+"""Limits of goal positions: the joint's range, and the firmware's maximum goal speed."""
 
 import numpy as np
 
@@ -6,10 +6,10 @@ from windup.hal.joints import Array, Joints
 
 
 class GoalLimits:
-    """Limits target positions.
+    """Limits goal positions, and their change per tick.
 
-    A servo whose firmware lets its goal run at some speed only would lag behind a goal that jumps;
-    rollouts know nothing of firmware. So no goal goes further in a tick than such a servo follows.
+    A servo whose firmware limits the speed of its goal would lag behind a goal that jumps, and the
+    rollouts do not model firmware. So no goal changes faster than `Joints.goal_speed`.
 
     Args:
         joints: The joints.
@@ -20,11 +20,11 @@ class GoalLimits:
         self._endless = bool(np.isinf(joints.goal_speed).all())
 
     def apply(self, goals: Array, before: Array | None, dt: float) -> Array:
-        """Return targets (..., n) rad.
+        """Return the limited goals (..., n), rad.
 
         Args:
-            goals: (..., n) wanted targets, rad.
-            before: (..., n) targets of the last tick, rad; None if there was none.
+            goals: (..., n) desired goals, rad.
+            before: (..., n) limited goals of the last tick, rad; None if there was none.
             dt: Time since then, s.
         """
         goals = np.minimum(np.maximum(goals, self._lower), self._upper)

@@ -1,6 +1,6 @@
 """Pose control graphs: desired poses, the transitions between them, and their algebra.
 
-Laszlo 1996, section 2.3. A graph gives each state a desired pose and a way out: after a hold
+Laszlo 1996, section 2.3. Each state of a graph has a desired pose and a transition: after a hold
 time, or when a foot or a single sensor touches the ground (or a time-out has passed). A *relative*
 graph has the same shape and holds differences, so that a controlled graph is
 
@@ -48,12 +48,13 @@ class PoseGraph:
     Attributes:
         names: The s state names.
         pose: (s, n) desired positions, rad.
-        hold: (s,) seconds in the state before a timed transition; infinite where a sensor decides.
-        sensors: (s, k) bool, the sensors of which any one ends the state; no sensor: timed only.
-        timeout: (s,) seconds after which a sensor state ends all the same; may be infinite.
-        successor: (s,) index of the next state; a state that follows itself is the end.
+        hold: (s,) time in the state before a timed transition, s; infinite for a sensor transition.
+        sensors: (s, k) bool, sensors of which any one ends the state; none for a timed transition.
+        timeout: (s,) time-out of a sensor transition, s; may be infinite.
+        successor: (s,) index of the next state; the last state of an aperiodic graph has its own.
         stance: (s,) index of the stance foot of the step that the state belongs to, or -1.
-        ends_step: (s,) bool, the state whose end is the end of its step.
+        ends_step: (s,) bool, True if the end of the state is the end of a step.
+        origin: Path of the gait file, for error messages.
     """
 
     names: tuple[str, ...]
@@ -83,7 +84,7 @@ class PoseGraph:
 
     @property
     def periodic(self) -> bool:
-        """True when the graph runs for ever; False when it comes to an end and stays there."""
+        """True if the graph cycles for ever; False if it ends in a last state."""
         state, seen = 0, set[int]()
         while state not in seen:
             seen.add(state)
@@ -115,11 +116,15 @@ class PoseGraph:
         return RelativeGraph(self.pose - other.pose, hold)
 
     def blend(self, other: "PoseGraph", amount: float) -> "PoseGraph":
-        """Return this graph at `amount` 0, the `other` at 1, and between (section 5.4)."""
+        """Return the interpolation of this graph (`amount` 0) and `other` (1), section 5.4."""
         return self + amount * (other - self)
 
     def _same_shape(self, other: "PoseGraph") -> None:
-        """Raise unless each state ends as its partner does, and stands on the same foot."""
+        """Raise unless the states of both have the same transitions, sensors and stance feet.
+
+        Raises:
+            ConfigError: They differ.
+        """
         same = len(self) == len(other) and all(
             np.array_equal(one, two)
             for one, two in (

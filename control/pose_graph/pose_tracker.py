@@ -1,6 +1,6 @@
-"""Pose graph state to joint targets, for one robot or for many rollouts of it at once.
+"""Tracking of a pose graph: from its state to joint targets, for one robot or many rollouts.
 
-Everything has a leading batch axis of m copies, so that the loop (m = 1) and the predictor's
+All arrays have a leading batch axis of m copies, so that the control loop (m = 1) and the
 rollouts run the same code.
 """
 
@@ -21,12 +21,12 @@ Indices = npt.NDArray[np.intp]
 
 @dataclass(frozen=True, slots=True)
 class TrackerState:
-    """Where m trackers are in their graphs.
+    """Positions of m trackers in their graphs.
 
     Attributes:
-        state: (m,) index of the state.
-        elapsed: (m,) s in that state at the coming tick.
-        steps: (m,) steps finished.
+        state: (m,) index of the present state.
+        elapsed: (m,) time in that state at the next tick, s.
+        steps: (m,) number of finished steps.
     """
 
     state: Indices
@@ -53,8 +53,8 @@ class PoseTracker:
         gait: Graph and perturbations.
         contacts: The robot's contact sensors.
         scale: (m, p) scalings K of the gait's p perturbations.
-        at: Where to begin; the graph's first state by default.
-        torso_servo: Keeps the torso upright, or None.
+        at: Initial positions in the graph; the first state by default.
+        torso_servo: The torso servo, or None.
     """
 
     def __init__(
@@ -73,12 +73,12 @@ class PoseTracker:
 
     @property
     def now(self) -> TrackerState:
-        """Where the trackers are."""
+        """Present positions of the trackers in their graphs."""
         return TrackerState(self._state, self._elapsed.copy(), self._steps)
 
     @property
     def state(self) -> Indices:
-        """(m,) index of the present states."""
+        """(m,) indices of the present states."""
         return self._state
 
     def restart(self) -> None:
@@ -88,7 +88,7 @@ class PoseTracker:
         self._look_up()
 
     def rescale(self, scale: Array) -> None:
-        """Take new scalings (m, p) into force: C = B + K dP."""
+        """Apply new scalings (m, p): C = B + K dP."""
         graph = self.gait.graph
         self.scale = scale
         self.pose = graph.pose + np.tensordot(scale, self.gait.pose_change, axes=1)
@@ -96,14 +96,14 @@ class PoseTracker:
         self._look_up()
 
     def step(self, state: PolicyInput, dt: float) -> Array:
-        """Return targets (m, n) rad for the tick that begins now, and let `dt` s pass."""
+        """Return targets (m, n) rad for the tick that begins now, and advance time by `dt` s."""
         self._elapsed += dt
         if self.torso_servo is not None:
             return self.torso_servo.apply(self._pose, state)
         return self._pose
 
     def advance(self, contacts: Array) -> Mask:
-        """Take the transitions that are due, given contacts (m, k) N.
+        """Make the transitions that are due, for contact forces (m, k) N.
 
         Returns:
             (m,) bool: trackers that have just ended a step.
@@ -124,11 +124,11 @@ class PoseTracker:
         return ended
 
     def finished(self) -> Mask:
-        """Return (m,) bool: trackers that have held a last state for its time."""
+        """Return (m,) bool: trackers whose hold time in a last state has passed."""
         return self._expired() & (self.gait.graph.successor[self._state] == self._state)
 
     def stance(self) -> Indices:
-        """Return (m,) index of the stance foot of the present step, -1 where there is none."""
+        """Return (m,) index of the stance foot of the present step, -1 if there is none."""
         return self.gait.graph.stance[self._state]
 
     def _expired(self) -> Mask:
@@ -136,7 +136,7 @@ class PoseTracker:
         return self._elapsed >= self._deadline
 
     def _look_up(self) -> None:
-        """Look up what the present states say, so that a tick need not."""
+        """Cache pose, deadline and sensors of the present states, to save time per tick."""
         graph, at = self.gait.graph, self._state
         self._pose = self.pose[self._rows, at]
         self._deadline = np.minimum(self.hold[self._rows, at], graph.timeout[at]) - EPSILON

@@ -1,4 +1,4 @@
-"""Styles: ways of walking that are added to a gait by any amount, a little more each step."""
+"""Styles: variations that are added to a gait by an amount, which is ramped from step to step."""
 
 from dataclasses import dataclass, field
 from math import inf
@@ -15,13 +15,13 @@ STEPS = 8.0
 
 @dataclass(frozen=True)
 class StyleInterval:
-    """An amount of a style for some time.
+    """An amount of a style in an interval of time.
 
     Attributes:
-        name: The style.
-        amount: How much of it.
-        begin: When it comes, s from the first step.
-        end: When it goes again, s.
+        name: Name of the style.
+        amount: Amount of the style.
+        begin: Begin of the interval, s from the first step.
+        end: End of the interval, s from the first step.
     """
 
     name: str
@@ -31,7 +31,7 @@ class StyleInterval:
 
 
 def styles_of(gait: Gait) -> dict[str, Style]:
-    """Return the styles of a gait: its own, and each of its perturbations alone."""
+    """Return the styles of a gait by name: those of its file, and one for each perturbation."""
     alone = {
         item.name: Style(
             name=item.name, scale={item.name: 1.0}, least=-item.limit, most=item.limit, steps=STEPS
@@ -47,9 +47,9 @@ class Styling:
 
     Attributes:
         gait: The gait.
-        wanted: Amount of each style; change it at any time.
-        spells: Amounts that come and go, on top of these.
-        present: Amounts of the ramps toward them.
+        wanted: Desired amount of each style; may be changed at any time.
+        spells: Additional amounts in intervals of time.
+        present: Present amounts, ramped toward the desired ones.
     """
 
     gait: Gait
@@ -74,12 +74,12 @@ class Styling:
                 )
 
     def reset(self) -> None:
-        """Begin again without any style."""
+        """Start over with all amounts 0."""
         self.present.clear()
         self._began = None
 
     def begin_step(self, time: float, also: dict[str, float] | None = None) -> None:
-        """Go one step toward the amounts wanted at `time` s, and `also` these."""
+        """Ramp the amounts toward those desired at `time`, s, plus those in `also`."""
         if self._began is None:
             self._began = time
         wanted = self._wanted(time - self._began, also or {})
@@ -89,7 +89,7 @@ class Styling:
             self.present[name] = now + float(np.clip(wanted.get(name, 0.0) - now, -most, most))
 
     def _wanted(self, time: float, also: dict[str, float]) -> dict[str, float]:
-        """Return the amounts wanted at `time` s from the first step, within their ranges."""
+        """Return the desired amounts at `time`, s from the first step, clipped to their ranges."""
         wanted = dict(self.wanted)
         for name, amount in also.items():
             wanted[name] = wanted.get(name, 0.0) + amount
@@ -110,7 +110,7 @@ class Styling:
         return scale
 
     def targets(self) -> dict[str, float]:
-        """Return what to add to the targets."""
+        """Return the additions to the targets for the present amounts, by name."""
         added: dict[str, float] = {}
         for style, amount in self._present():
             for name, value in style.targets.items():

@@ -1,1 +1,1 @@
-"""The quantities that are regulated from step to step, and the record of each step."""
+"""Regulation variables of a step, step records, and detection of disturbances and ground."""

@@ -1,4 +1,4 @@
-"""Feeling how the ground lies, from where the feet have touched it."""
+"""Estimation of the ground plane from the points where the feet have touched it."""
 
 from collections import deque
 from dataclasses import dataclass, field
@@ -13,23 +13,23 @@ from windup.hal.joints import Array
 from windup.hal.observation import Observation
 
 NOISE = 0.004
-"""How far a point that touches is from the plane, m."""
+"""Standard deviation of a contact point from the plane, m."""
 PRIOR = 0.1
-"""Slope that ground usually has, so that two feet side by side prove little."""
+"""Prior standard deviation of the slope; regularises the fit for feet side by side."""
 FADE = 0.4
-"""What the points of a step weigh, beside those of the step after it."""
+"""Weight of the points of a step, relative to those of the step after it."""
 SLIGHT = 0.006
-"""A slope below this is level, and a height below it, m, is none."""
+"""A smaller slope, or height in m on level ground, is taken as 0."""
 
 
 @dataclass
 class Footfalls:
-    """Fits a plane to the last points of the feet that have pressed on the ground.
+    """Fits a plane to the last contact points of the feet with the ground.
 
     Attributes:
         body: The robot's kinematics.
         contacts: Its contact sensors, each with a site.
-        count: How many steps count.
+        count: Number of steps whose points are used.
     """
 
     body: Body
@@ -47,22 +47,22 @@ class Footfalls:
         self.reset()
 
     def reset(self) -> None:
-        """Forget everything."""
+        """Discard all points."""
         self._steps = deque([[]], maxlen=self.count)
 
     def see(self, observation: Observation) -> None:
-        """Take the points that touch; the body has just measured this observation."""
+        """Add the points in contact; the body must have measured this observation."""
         pressed = self.contacts.pressed(observation.contacts)
         points = self.body.data.site_xpos[self._sites][pressed]
         points[:, 2] -= self._above[pressed]
         self._steps[-1] += list(points)
 
     def end_step(self) -> None:
-        """Let what was felt so far fade."""
+        """Begin a new step; the points of earlier ones lose weight."""
         self._steps.append([])
 
     def plane(self) -> Plane:
-        """Return the ground: its height at the origin, m, and how it rises along x and y."""
+        """Return the ground plane: height at the origin, m, and slopes along x and y."""
         points = np.array([point for step in self._steps for point in step]).reshape(-1, 3)
         if not len(points):
             return (0.0, 0.0, 0.0)

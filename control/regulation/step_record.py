@@ -1,4 +1,4 @@
-"""How a step went, and where the next one begins."""
+"""Record of a finished step, and the start state of a step."""
 
 from dataclasses import dataclass
 
@@ -19,15 +19,15 @@ class StepRecord:
     """One finished step.
 
     Attributes:
-        time: When it ended, s.
-        duration: s.
+        time: Time at its end, s.
+        duration: Duration, s.
         position: (3,) base position at its end, m.
         heading: Heading at its end, unwrapped from the start of the walk, rad.
-        speed: Mean speed along its middle heading, m/s.
-        side: Mean speed to the left of it, m/s.
+        speed: Mean speed along the mean of its start and end headings, m/s.
+        side: Mean speed to the left of that heading, m/s.
         regulation: (r,) regulation variables at its end.
-        target: (r,) what they should have been.
-        scale: (p,) scalings of the perturbations.
+        target: (r,) targets of the regulation variables.
+        scale: (p,) scalings of the perturbations at its end.
     """
 
     time: float
@@ -43,12 +43,12 @@ class StepRecord:
 
 @dataclass(frozen=True)
 class StepStart:
-    """Where a step begins, and what its end is measured against.
+    """Start state of a step, the reference for the measurements at its end.
 
     Attributes:
-        time: s.
+        time: Time at the start, s.
         stance: Index of the stance foot.
-        body: The whole body at that instant, a batch of one.
+        body: Whole-body state at the start, a batch of one.
     """
 
     time: float
@@ -73,7 +73,7 @@ class StepStart:
     def evaluate(
         self, outcomes: Outcomes, variables: list[RegulationVariable], contacts: ContactSensors
     ) -> Array:
-        """Return the regulation variables (m, r) of steps that begin here and end so."""
+        """Return the regulation variables (m, r) of m steps from this start to `outcomes`."""
         swing = 1 - self.stance
         end = StepEnd(
             outcomes,
@@ -86,10 +86,10 @@ class StepStart:
         return np.stack(columns, axis=-1) if columns else np.zeros((len(outcomes.fell), 0))
 
     def features(self) -> Array:
-        """Return where and how fast the centre of mass is over the stance foot, and the lean.
+        """Return features (7,): CoM relative to the stance foot, CoM velocity, and torso lean.
 
-        (7,) in the frame of the heading; velocities over omega = sqrt(g / height), so that all but
-        the lean are m. The lateral ones are positive toward the swing foot.
+        In the frame of the heading, lateral components positive toward the swing foot. Velocities
+        are divided by omega = sqrt(g / height), so that all features but the lean are in m.
         """
         body = self.body
         offset = body.com[0] - body.feet[0, self.stance]
@@ -106,7 +106,7 @@ class StepStart:
         return wrapped(change)
 
     def velocity(self, end: Outcomes, duration: float) -> Array:
-        """Return the mean velocity (2,) until `end`: along the middle heading, to its left, m/s."""
+        """Return the mean velocity (2,) until `end`, along and left of the mean heading, m/s."""
         angle = self.heading + 0.5 * self.turned(end)
         c, s = np.cos(angle), np.sin(angle)
         way = end.base_position[0, :2] - self.position[:2]

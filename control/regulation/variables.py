@@ -1,4 +1,4 @@
-"""Regulation variables: one number that says how a step has ended.
+"""Regulation variables: scalar measures of the state at the end of a step.
 
 Laszlo 1996, section 3.5: Q = gamma(x), Eq. 3.5, a projection of the state sampled at the end of a
 step. Each variable has a forward and a lateral component in the frame of the hips. Lateral
@@ -22,11 +22,11 @@ AXES = ("forward", "lateral")
 
 @dataclass(frozen=True)
 class StepEnd:
-    """The ends of m steps, and what is the same for all of them.
+    """End states of m steps that share one start.
 
     Attributes:
         outcomes: States at the ends.
-        swing: Index of the foot that has swung.
+        swing: Index of the swing foot.
         start_com: (3,) centre of mass at the start of the step, m.
         start_heading: Heading at the start of the step, rad.
         swing_is_left: The swing foot is the left one.
@@ -47,34 +47,37 @@ def _unit(vector: Array) -> Array:
 
 
 def up(end: StepEnd) -> Array:
-    """Unit vector along the torso (section 3.5)."""
+    """Return the unit vectors (m, 3) along the torso (section 3.5)."""
     return end.outcomes.torso
 
 
 def pelvis_up(end: StepEnd) -> Array:
-    """Unit vector along the pelvis; works under a torso servo (section 3.8)."""
+    """Return the unit vectors (m, 3) along the pelvis; for use with a torso servo (section 3.8)."""
     return up_axis(end.outcomes.base_orientation)
 
 
 def swing_com(end: StepEnd) -> Array:
-    """Unit vector from the foot that has swung to the centre of mass (section 3.5)."""
+    """Return the unit vectors (m, 3) from the swing foot to the centre of mass (section 3.5)."""
     return _unit(end.outcomes.com - end.outcomes.feet[:, end.swing])
 
 
 def stance_com(end: StepEnd) -> Array:
-    """Unit vector from the stance foot to the centre of mass (section 3.5)."""
+    """Return the unit vectors (m, 3) from the stance foot to the centre of mass (section 3.5)."""
     return _unit(end.outcomes.com - end.outcomes.feet[:, 1 - end.swing])
 
 
 def com_displacement(end: StepEnd) -> Array:
-    """Way of the centre of mass over the step, m, along the heading at its start."""
+    """Return the displacements (m, 3) of the centre of mass over the step, m.
+
+    `RegulationVariable` takes their components along and left of the heading at its start.
+    """
     return end.outcomes.com - end.start_com
 
 
 def xcom(end: StepEnd) -> Array:
-    """Extrapolated centre of mass, com + v / omega, from the foot that has swung, m.
+    """Return XcoM, com + v / omega, relative to the swing foot, (m, 3) m.
 
-    Hof 2005, with omega = sqrt(g / height of the centre of mass above that foot).
+    Hof 2005, with omega = sqrt(g / height of the centre of mass above the swing foot).
     """
     foot = end.outcomes.feet[:, end.swing]
     height = np.maximum(end.outcomes.com[:, 2:] - foot[:, 2:], 0.1)
@@ -93,13 +96,13 @@ VARIABLES: dict[str, tuple[Vector, str]] = {
 
 @dataclass(frozen=True)
 class RegulationVariable:
-    """One component of one variable.
+    """One component of one regulation variable.
 
     Attributes:
-        name: "up.forward" and so on.
+        name: Variable and axis, such as "up.forward".
         axis: "forward" or "lateral".
-        unit: Its unit.
-        vector: The variable as a vector in the world.
+        unit: Unit of the component.
+        vector: Function that returns the variable as vectors in the world frame.
     """
 
     name: str
@@ -108,7 +111,7 @@ class RegulationVariable:
     vector: Vector
 
     def evaluate(self, end: StepEnd) -> Array:
-        """Return the component (m,) at the ends of m steps."""
+        """Return the component (m,) of the end states of m steps."""
         vector = self.vector(end)
         if self.vector is com_displacement:
             angle: Array = np.full(len(vector), end.start_heading)
@@ -122,13 +125,13 @@ class RegulationVariable:
 
 
 def regulation_variables(names: list[str]) -> list[RegulationVariable]:
-    """Return the components that `names` stand for; a bare variable is both its components.
+    """Return the components that `names` stand for; a name without axis stands for both.
 
     >>> [rv.name for rv in regulation_variables(["up", "xcom.lateral"])]
     ['up.forward', 'up.lateral', 'xcom.lateral']
 
     Raises:
-        UnknownNameError: There is no such variable; the message has the known names.
+        UnknownNameError: There is no such variable or component.
     """
     chosen = []
     known = [*VARIABLES, *(f"{name}.{axis}" for name in VARIABLES for axis in AXES)]

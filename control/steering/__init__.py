@@ -1,1 +1,1 @@
-"""Where a walk goes: speed, side, turns, courses, slopes and slipping feet."""
+"""Steering of a walk: speed, sideways speed, turns, courses, slopes and slipping feet."""

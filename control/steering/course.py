@@ -1,4 +1,4 @@
-"""Holding and changing a course: the wanted heading moves on, and each step turns after it."""
+"""Course control: the desired heading advances at the turn rate, and each step turns toward it."""
 
 from dataclasses import dataclass, field
 from math import copysign, degrees, isfinite, radians, sqrt
@@ -9,17 +9,17 @@ from windup.control.pose_graph.gait_file import Heading, Turn
 from windup.control.steering.guide import WalkCommand
 from windup.hal.geometry.angles import wrapped
 
-LEAD = radians(30.0)  # farthest that the wanted heading runs ahead of the body
+LEAD = radians(30.0)  # maximum lead of the desired heading over the measured one
 
 
 @dataclass
 class Course:
-    """Scales a turning perturbation: ahead by the rate of turning, and by the heading error.
+    """Scales a turning perturbation: feedforward of the turn rate, feedback of the heading error.
 
     Attributes:
-        law: Perturbation, gain and limit.
-        turn: What turning needs, or None where the gait only holds its course.
-        direction: Wanted heading, rad.
+        law: The `heading` table of the gait: perturbation, gain and limit.
+        turn: The `turn` table of the gait, or None if the gait only holds its course.
+        direction: Desired heading, rad.
         rate: Present turn rate, rad/s.
     """
 
@@ -32,17 +32,17 @@ class Course:
 
     @property
     def perturbation(self) -> str:
-        """Name of the perturbation to scale: another one may turn than holds the course."""
+        """Name of the perturbation to scale; turning may use another one than holding a course."""
         other = self.turn.perturbation if self.turn is not None and self._turning else None
         return other or self.law.perturbation
 
     def reset(self) -> None:
-        """Begin again, straight ahead."""
+        """Start over with desired heading 0 and turn rate 0."""
         self.direction = self.rate = self._advance = 0.0
         self._turning = False
 
     def begin_step(self, command: WalkCommand, heading: float, duration: float) -> None:
-        """Move the wanted heading on by what one step of `duration` s turns."""
+        """Advance the desired heading by the turn of one step of `duration` s."""
         wanted = self._wanted(command, duration)
         self._turning = command.turn != 0.0 or self.rate != 0.0
         ramp = inf_or_radians(self.turn)
@@ -52,13 +52,13 @@ class Course:
         self.direction = heading + float(np.clip(ahead, -LEAD, LEAD))
 
     def scale(self, heading: float) -> float:
-        """Return the scaling for a base that faces `heading` rad."""
+        """Return the scaling for a base with a measured `heading`, rad."""
         error = degrees(wrapped(self.direction - heading))
         feed = self.turn.feed * degrees(self._advance) if self.turn is not None else 0.0
         return float(np.clip(feed + self.law.gain * error, -self.law.limit, self.law.limit))
 
     def _wanted(self, command: WalkCommand, duration: float) -> float:
-        """Return the turn rate that the command asks for, rad/s."""
+        """Return the commanded turn rate within the gait's limit, rad/s."""
         if command.direction is None:
             rate = command.turn
         else:
@@ -71,9 +71,9 @@ class Course:
         return float(np.clip(rate, -fastest, fastest))
 
     def _fastest_to_stop(self, angle: float, duration: float) -> float:
-        """Return the rate from which the ramp comes to rest in `angle` rad and no later, rad/s.
+        """Return the largest turn rate that can still be ramped to 0 within `angle` rad, rad/s.
 
-        Going down from k ramps to none turns by k (k + 1) / 2 ramps, one step's worth each.
+        Ramping down from k ramps to 0 turns by k (k + 1) / 2 times the ramp times the duration.
         """
         ramp = inf_or_radians(self.turn)
         if not isfinite(ramp):
@@ -83,5 +83,5 @@ class Course:
 
 
 def inf_or_radians(turn: Turn | None) -> float:
-    """Return the largest change of the turn rate in a step, rad/s."""
+    """Return the maximum change of the turn rate per step, rad/s; infinite without a table."""
     return float("inf") if turn is None else radians(turn.ramp)

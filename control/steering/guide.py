@@ -1,4 +1,4 @@
-"""What a walker is told to do, and who tells it: once a step, from where it is."""
+"""Walk commands and their sources (guides), which are asked once per step."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -8,12 +8,12 @@ from windup.hal.joints import Array
 
 @dataclass(frozen=True)
 class Place:
-    """Where a robot is on the ground.
+    """Position, heading and speed of a robot on the ground.
 
     Attributes:
         position: (2,) m.
-        heading: rad.
-        speed: Forward speed that it is walking at, m/s.
+        heading: Heading, rad.
+        speed: Present forward speed, m/s.
     """
 
     position: Array
@@ -23,14 +23,14 @@ class Place:
 
 @dataclass(frozen=True)
 class WalkCommand:
-    """How to walk; left is positive.
+    """Command to a walking robot; left is positive.
 
     Attributes:
-        speed: m/s, or None for what was said before.
+        speed: Forward speed, m/s, or None to keep the last commanded one.
         side: Sideways speed, m/s.
-        turn: Turn rate, rad/s; with a `direction` it is the fastest.
-        direction: Heading to turn to, rad, or None to turn for ever.
-        stop: Walk no farther: come to rest.
+        turn: Turn rate, rad/s; with a `direction` it is the maximum turn rate.
+        direction: Heading to turn to, rad, or None to turn without end.
+        stop: Come to rest.
     """
 
     speed: float | None = None
@@ -41,23 +41,23 @@ class WalkCommand:
 
 
 class Guide(Protocol):
-    """Tells a walker what to do."""
+    """Source of walk commands."""
 
     def command(self, place: Place) -> WalkCommand:
-        """Return what to do in the step that begins at `place`."""
+        """Return the command for the step that begins at `place`."""
         ...
 
 
 @dataclass
 class Steady:
-    """A guide that always says the same, until somebody changes its mind.
+    """A guide that returns a constant command, until `order` is assigned.
 
     Attributes:
-        order: What it says.
+        order: The command.
     """
 
     order: WalkCommand = WalkCommand()
 
     def command(self, place: Place) -> WalkCommand:
-        """Return the order."""
+        """Return `order`."""
         return self.order

@@ -1,7 +1,7 @@
-"""Feeling a slope: soles tilt with the ground when the body leans other than it was planned to.
+"""Slope compensation: the soles are tilted by the mean error of a regulation variable.
 
-The rollouts believe in level ground. Uphill the ground tips the body back and downhill forward,
-step after step, by more than balance takes away; what is left says which way the ground slopes.
+The rollouts assume level ground. An uphill slope tips the body back at every step, a downhill one
+forward, by more than balance corrects; the remaining error shows which way the ground slopes.
 """
 
 from dataclasses import dataclass, field
@@ -14,11 +14,11 @@ from windup.control.regulation.step_record import StepRecord
 
 @dataclass
 class InclineControl:
-    """Scales a perturbation by the mean miss of one regulation variable.
+    """Scales a perturbation by the low-pass filtered error of one regulation variable.
 
     Attributes:
-        law: Perturbation, gain and limit.
-        column: Index of the variable in the records.
+        law: The `incline` table of the gait: perturbation, gain, rate and limit.
+        column: Index of the variable in the step records.
         present: Present scaling.
     """
 
@@ -27,11 +27,11 @@ class InclineControl:
     present: float = field(default=0.0, init=False)
 
     def reset(self) -> None:
-        """Begin on level ground."""
+        """Start over, with level ground assumed."""
         self.present = 0.0
 
     def measured(self, record: StepRecord) -> None:
-        """Learn from the step that has just ended."""
+        """Update the scaling from the step that has just ended."""
         law = self.law
         missed = float(record.target[self.column] - record.regulation[self.column])
         self.present += law.rate * (law.gain * missed - self.present)

@@ -1,8 +1,8 @@
 """Following points and paths: where to turn, how fast to walk, and when to stop.
 
 Laszlo 1996, section 5.3.1: turn in proportion to the angle between the facing direction and the
-target point, within a limit. A path is followed by walking after a point that runs ahead on it; the
-thesis' sequence of points is the same with the look-ahead at the corners.
+target point, within a limit. A path is followed by walking to a target point that moves ahead on
+it; the thesis' sequence of points is the same with the target points at the corners.
 """
 
 from dataclasses import dataclass, field
@@ -15,19 +15,19 @@ from windup.hal.errors import UsageError
 from windup.hal.geometry.angles import wrapped
 from windup.hal.joints import Array
 
-BRAKE = 0.4  # speed for each metre that a goal is away, 1/s
-CREEP = 0.03  # slowest approach, m/s
+BRAKE = 0.4  # speed per distance to the goal, 1/s
+CREEP = 0.03  # minimum speed of approach, m/s
 
 
 @dataclass(frozen=True)
 class Agility:
-    """What a gait can do on a path.
+    """Limits of a gait on a path.
 
     Attributes:
-        speed: Wanted speed, m/s, or None for the gait's own.
-        turn: Fastest turn, rad/s.
-        radius: Tightest turn at speed, m; 0 for a robot that turns on the spot.
-        slow: Slowest speed that it may go down to in a turn, m/s; None to keep its speed.
+        speed: Desired speed, m/s, or None for the gait's default.
+        turn: Maximum turn rate, rad/s.
+        radius: Minimum turning radius at speed, m; 0 for a robot that turns on the spot.
+        slow: Minimum speed in a turn, m/s; None to keep `speed` in turns.
     """
 
     speed: float | None
@@ -36,7 +36,7 @@ class Agility:
     slow: float | None = None
 
     def speed_for(self, angle: float) -> float | None:
-        """Return the speed for a target at `angle` rad: slower, the more there is to turn."""
+        """Return the speed toward a target at `angle` rad from straight ahead, m/s, or None."""
         fast, slow = self.speed, self.slow
         if fast is None or slow is None:
             return fast
@@ -45,14 +45,14 @@ class Agility:
 
 @dataclass
 class PathFollower:
-    """Walks along a polyline and stops at its end.
+    """Guide that walks along a polyline and stops at its end.
 
     Attributes:
         points: (p, 2) corners, m.
-        agility: What the gait can do.
-        look_ahead: How far ahead on the path the target runs, m.
-        closed: The last point leads back to the first, and the end is there.
-        along: Way already made along the path, m.
+        agility: Limits of the gait.
+        look_ahead: Distance of the target point ahead on the path, m.
+        closed: The path returns from the last point to the first, and ends there.
+        along: Distance covered along the path, m.
         done: The end has been reached.
     """
 
@@ -74,7 +74,7 @@ class PathFollower:
         return float(self._at[-1])
 
     def point(self, along: float) -> Array:
-        """Return the point (2,) at a way along the path; past an open end, straight on."""
+        """Return the point (2,) at a distance along the path; an open end is extended straight."""
         corners = self._corners()
         if self.closed:
             along %= self.length
@@ -85,7 +85,7 @@ class PathFollower:
         return np.array([np.interp(along, self._at, corners[:, axis]) for axis in (0, 1)])
 
     def command(self, place: Place) -> WalkCommand:
-        """Return where to go from `place`."""
+        """Return the command for the step that begins at `place`."""
         self._advance(place)
         if self.done:
             return WalkCommand(stop=True, turn=self.agility.turn, direction=place.heading)
@@ -98,12 +98,12 @@ class PathFollower:
         )
 
     def passed(self, way: Array) -> Array:
-        """Return how near (p,) a way (t, 2) has come to each corner, m."""
+        """Return the minimum distance (p,) of a walked track (t, 2) from each corner, m."""
         distances = np.linalg.norm(way[:, None] - self.points[None], axis=2)
         return np.asarray(distances.min(axis=0))
 
     def _advance(self, place: Place) -> None:
-        """Move on along the path to the point nearest to the robot, never back."""
+        """Advance `along` to the point of the path nearest to the robot, never back."""
         window = self.along + np.linspace(0.0, 1.5 * self.look_ahead, 61)
         if not self.closed:
             window = np.minimum(window, self.length)
@@ -117,12 +117,12 @@ class PathFollower:
 
 @dataclass
 class PointFollower:
-    """Walks to a point and stops there.
+    """Guide that walks to a point and stops there.
 
     Attributes:
         point: (2,) m.
-        agility: What the gait can do.
-        near: Distance at which it has arrived, m.
+        agility: Limits of the gait.
+        near: Maximum distance at which the point counts as reached, m.
         done: The point has been reached.
     """
 
@@ -132,7 +132,7 @@ class PointFollower:
     done: bool = field(default=False, init=False)
 
     def command(self, place: Place) -> WalkCommand:
-        """Return where to go from `place`."""
+        """Return the command for the step that begins at `place`."""
         ahead = self.point - place.position
         self.done |= float(np.hypot(*ahead)) <= self.near
         if self.done:
@@ -144,18 +144,18 @@ class PointFollower:
         return WalkCommand(speed=speed, turn=self.agility.turn, direction=direction)
 
     def passed(self, way: Array) -> Array:
-        """Return how near (1,) a way (t, 2) has come to the point, m."""
+        """Return the minimum distance (1,) of a walked track (t, 2) from the point, m."""
         return np.array([np.linalg.norm(way - self.point, axis=1).min()])
 
 
 def checked(points: Array, agility: Agility, *, closed: bool) -> Array:
     """Return the points of a path without repetitions, if a gait can follow it.
 
-    A corner between two legs of lengths a and b that turns by an angle needs the room
-    ``radius tan(angle / 2)`` on both; half of a leg belongs to either corner.
+    A corner that turns by an angle needs a length of ``radius tan(angle / 2)`` on each of its two
+    legs; each corner may use half of a leg.
 
     Raises:
-        UsageError: There is no path, or a corner is too tight.
+        UsageError: The path has fewer than two different points, or a corner is too tight.
     """
     points = np.asarray(points, dtype=float).reshape(-1, 2)
     new = np.concatenate([[True], np.linalg.norm(np.diff(points, axis=0), axis=1) > 1e-6])
@@ -178,11 +178,11 @@ def checked(points: Array, agility: Agility, *, closed: bool) -> Array:
 
 
 def circle(radius: float, points: int = 72) -> Array:
-    """Return a circle to the left (p, 2) that begins at the origin, straight ahead."""
+    """Return points (p, 2) of a left-hand circle that begins at the origin, straight ahead."""
     angle = 2.0 * pi * np.arange(points) / points
     return radius * np.stack([np.sin(angle), 1.0 - np.cos(angle)], axis=1)
 
 
 def square(side: float) -> Array:
-    """Return a square to the left (4, 2) that begins at the origin, straight ahead."""
+    """Return corners (4, 2) of a left-hand square that begins at the origin, straight ahead."""
     return side * np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])

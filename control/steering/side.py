@@ -1,4 +1,4 @@
-"""Commanded sideways speed: different targets for the two feet, corrected by what is measured."""
+"""Commanded sideways speed: different targets for the two feet, with feedback of the speed."""
 
 from collections import deque
 from dataclasses import dataclass, field
@@ -12,13 +12,13 @@ from windup.hal.joints import Array
 
 @dataclass
 class SideControl:
-    """Turns a sideways speed into scalings and targets.
+    """Computes scalings and targets for a sideways speed.
 
     Attributes:
         gait: The gait.
         wanted: Commanded speed to the left, m/s.
-        present: Speed of the ramp toward it, m/s.
-        correction: What feedback adds to it, m/s.
+        present: Ramped speed toward `wanted`, m/s.
+        correction: Feedback correction added to `present`, m/s.
     """
 
     gait: Gait
@@ -34,12 +34,12 @@ class SideControl:
             raise UsageError(f"side {self.wanted:g} m/s: gait {self.gait.name!r} {can}")
 
     def reset(self) -> None:
-        """Begin again at rest."""
+        """Start over at speed 0."""
         self.present = self.correction = 0.0
         self._last.clear()
 
     def begin_step(self, wanted: float) -> None:
-        """Go one step toward `wanted` m/s."""
+        """Ramp the speed toward `wanted`, m/s, by one step's change."""
         law = self.gait.file.side
         if law is not None:
             self.wanted = float(np.clip(wanted, -law.limit, law.limit))
@@ -57,13 +57,13 @@ class SideControl:
         return scale
 
     def targets(self, *, swing_is_left: bool) -> dict[str, float]:
-        """Return what to add to the targets of a step."""
+        """Return the additions to the targets of a step, by name."""
         law = self.gait.file.side
         speed = (self.present + self.correction) * (1.0 if swing_is_left else -1.0)
         return {} if law is None else {name: v * speed for name, v in law.targets.items()}
 
     def measured(self, speed: float) -> None:
-        """Take the sideways speed of the step that has just ended, m/s; two steps are a stride."""
+        """Correct by the sideways speed of the last step, m/s, averaged over a stride (2 steps)."""
         law = self.gait.file.side
         self._last.append(speed)
         if law is not None and len(self._last) == 2:

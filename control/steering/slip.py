@@ -1,7 +1,7 @@
-"""Feeling slippery ground: the sole that bears the body slides away under it.
+"""Detection of slippery ground, by the horizontal motion of the stance foot.
 
-The rollouts believe in the friction of their model. A sole also rolls, and at some speeds lands
-sliding with one foot of the two; so only a slide in two steps running counts.
+The rollouts assume the friction of their model. A sole also rolls, and at some speeds one of the
+two feet slides at touchdown; so only slides in two consecutive steps count.
 """
 
 from collections import deque
@@ -12,17 +12,17 @@ import numpy as np
 from windup.control.pose_graph.gait_file import Slip
 from windup.hal.joints import Array
 
-RUNNING = 2  # steps
+RUNNING = 2  # number of consecutive steps with a slide
 
 
 @dataclass
 class SlipControl:
-    """Calls for a style from the moment that the stance foot is felt to slide.
+    """Requests a style once the stance foot has been detected to slide.
 
     Attributes:
-        law: States, style and the least slide that counts.
+        law: The `slip` table of the gait: states, style and minimum slide.
         states: Indices of the states in which the stance foot bears the body.
-        felt: True since it has slid.
+        felt: True once a slide has been detected.
     """
 
     law: Slip
@@ -32,12 +32,12 @@ class SlipControl:
     _ways: deque[float] = field(default_factory=lambda: deque(maxlen=RUNNING), init=False)
 
     def reset(self) -> None:
-        """Begin on ground that holds."""
+        """Start over, with no slide detected."""
         self.felt, self._began = False, None
         self._ways.clear()
 
     def entered(self, state: int, foot: Array) -> None:
-        """Measure the state that has ended; `foot` (3,) m is where the stance foot is now."""
+        """Enter `state` and check the slide in the last one; `foot` (3,) m is the stance foot."""
         if self._began is not None:
             self._ways.append(float(np.linalg.norm((foot - self._began)[:2])))
             slid = len(self._ways) == RUNNING and min(self._ways) > self.law.least
@@ -45,5 +45,5 @@ class SlipControl:
         self._began = foot.copy() if state in self.states else None
 
     def styles(self) -> dict[str, float]:
-        """Return the amounts of styles that it calls for."""
+        """Return the requested styles with their amounts."""
         return {self.law.style: 1.0} if self.felt else {}

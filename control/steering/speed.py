@@ -1,4 +1,4 @@
-"""Commanded speed: what a gait's speed table says, with feedback of the measured speed."""
+"""Commanded speed: scalings and targets of a gait's speed table, with feedback of the speed."""
 
 from dataclasses import dataclass, field
 
@@ -11,13 +11,13 @@ from windup.hal.joints import Array
 
 @dataclass
 class SpeedControl:
-    """Looks a speed up in the gait's table and corrects one target by the speed measured.
+    """Interpolates the gait's speed table and corrects one target by the measured speed.
 
     Attributes:
-        gait: The gait; it may have no table, then everything is empty.
+        gait: The gait; without a speed table all results are zero or empty.
         speed: Commanded speed, m/s, or None for the gait's default.
         correction: Present correction of the gait's `speed.correct` target.
-        present: Speed of the ramp toward the commanded one, m/s.
+        present: Ramped speed toward the commanded one, m/s.
     """
 
     gait: Gait
@@ -51,25 +51,25 @@ class SpeedControl:
         return (table.rows[0].speed, table.rows[-1].speed) if table is not None else (0.0, 0.0)
 
     def command(self, speed: float | None) -> None:
-        """Aim for another speed within the gait's range, m/s; None changes nothing."""
+        """Set the commanded speed, clipped to the gait's range, m/s; None changes nothing."""
         if speed is not None:
             self.speed = float(np.clip(speed, *self.range))
 
     def reset(self) -> None:
-        """Begin again at rest."""
+        """Start over at the table's initial speed, without correction."""
         table = self.gait.file.speed
         self.correction = 0.0
         self.present = 0.0 if table is None else table.begin
 
     def begin_step(self) -> None:
-        """Go one step up (or down) the ramp."""
+        """Ramp the present speed toward the commanded one by one step's change."""
         table = self.gait.file.speed
         if table is not None and self.speed is not None:
             change = np.clip(self.speed - self.present, -table.ramp, table.ramp)
             self.present += float(change)
 
     def scale(self) -> Array:
-        """Return the (p,) scalings that the table asks for."""
+        """Return the (p,) scalings of the table for the present speed, corrected."""
         scale = np.zeros(len(self.gait.perturbations))
         for name in self._names("scale"):
             scale[self.gait.index(name)] = self._at("scale", name)
@@ -79,7 +79,7 @@ class SpeedControl:
         return scale
 
     def targets(self) -> dict[str, float]:
-        """Return the targets that the table asks for, corrected."""
+        """Return the targets of the table for the present speed, corrected, by name."""
         targets = {name: self._at("targets", name) for name in self._names("targets")}
         table = self.gait.file.speed
         if table is not None and table.correct in targets:
@@ -87,13 +87,13 @@ class SpeedControl:
         return targets
 
     def shifts(self) -> dict[str, float]:
-        """Return what the feedback adds to other targets."""
+        """Return the additions of the feedback to other targets (`speed.also`), by name."""
         table = self.gait.file.speed
         also = {} if table is None else table.also
         return {name: value * self.correction for name, value in also.items()}
 
     def measured(self, speed: float) -> None:
-        """Take the speed of the step that has just ended, m/s."""
+        """Update the correction by the speed of the step that has just ended, m/s."""
         table = self.gait.file.speed
         if table is not None and self.speed is not None:
             change = table.gain * (self.present - speed)

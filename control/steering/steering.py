@@ -1,4 +1,4 @@
-"""Steering: what a guide asks for, as scalings and targets of the step that begins."""
+"""Steering: converts a guide's command into scalings and targets of the step that begins."""
 
 from dataclasses import dataclass, field
 
@@ -15,8 +15,8 @@ from windup.control.steering.slip import SlipControl
 from windup.control.steering.speed import SpeedControl
 from windup.hal.joints import Array
 
-QUIET = 3  # steps on the spot before the feet may stay where they are
-STEP_SECONDS = 0.3  # until one has been measured
+QUIET = 3  # steps on the spot before the walk counts as at rest
+STEP_SECONDS = 0.3  # assumed duration of a step until one has been measured
 
 
 @dataclass
@@ -25,14 +25,14 @@ class Steering:
 
     Attributes:
         gait: The gait.
-        guide: Says what to do, once a step.
-        speed: Forward speed.
-        side: Sideways speed.
+        guide: Source of the command, asked once per step.
+        speed: Control of the forward speed.
+        side: Control of the sideways speed.
         style: Styles.
-        course: Heading, or None where the gait cannot turn.
-        incline: Slope of the ground, or None where the gait does not feel it.
-        slip: Slippery ground, or None where the gait does not feel it.
-        command: What the guide has said last.
+        course: Control of the heading, or None if the gait cannot turn.
+        incline: Slope compensation, or None if the gait has none.
+        slip: Slip detection, or None if the gait has none.
+        command: Last command of the guide.
     """
 
     gait: Gait
@@ -49,17 +49,17 @@ class Steering:
 
     @property
     def can_rest(self) -> bool:
-        """True when the gait can step on the spot, and so come to rest."""
+        """True if the gait can step on the spot, and so come to rest."""
         table = self.gait.file.speed
         return table is not None and table.rows[0].speed <= 0.0 <= table.rows[-1].speed
 
     @property
     def resting(self) -> bool:
-        """True when it was told to stop and has stepped on the spot since."""
+        """True after more than `QUIET` steps on the spot under a stop command."""
         return self._quiet > QUIET
 
     def reset(self) -> None:
-        """Begin again at rest."""
+        """Start over at rest."""
         self._quiet = 0
         self.speed.reset()
         self.side.reset()
@@ -72,7 +72,7 @@ class Steering:
             self.slip.reset()
 
     def begin_step(self, start: StepStart) -> None:
-        """Ask the guide, and go one step toward what it says."""
+        """Get the guide's command, and ramp toward it by one step's change."""
         command = self.guide.command(Place(start.position[:2], start.heading, self.speed.present))
         self.command = command
         self.speed.command(0.0 if command.stop else command.speed)
@@ -85,7 +85,7 @@ class Steering:
         self._quiet = self._quiet + 1 if still else 0
 
     def scale(self, start: StepStart) -> Array:
-        """Return the (p,) scalings of the step before balance."""
+        """Return the (p,) scalings of the step, before balance is added."""
         scale = self.speed.scale() + self.side.scale() + self.style.scale()
         if self.incline is not None:
             scale[self.gait.index(self.incline.law.perturbation)] += self.incline.present
@@ -97,7 +97,7 @@ class Steering:
         return scale
 
     def targets(self, base: dict[str, float], *, swing_is_left: bool) -> dict[str, float]:
-        """Return the targets of the step by name: `base`, the speed's, and what is added."""
+        """Return the targets of the step by name: `base`, the speed table's, and additions."""
         targets = {**base, **self.speed.targets()}
         for added in (
             self.speed.shifts(),
@@ -109,7 +109,7 @@ class Steering:
         return targets
 
     def end_step(self, record: StepRecord) -> None:
-        """Learn from the step that has just ended."""
+        """Update the feedback from the step that has just ended."""
         self._duration = record.duration
         self.speed.measured(record.speed)
         self.side.measured(record.side)

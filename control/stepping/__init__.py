@@ -1,1 +1,1 @@
-"""Steps that save a robot from a push, and who decides on them."""
+"""Steps against pushes: decision, placement, comfort steps, and takeover from a walk."""

@@ -1,4 +1,4 @@
-"""Noticing at any moment of a step that a push has thrown a walk off its way."""
+"""Detection of a push during a walk, at any tick, by the deviation of the capture point."""
 
 from dataclasses import dataclass, field
 
@@ -7,39 +7,39 @@ import numpy as np
 from windup.hal.joints import Array
 
 LEARN = 3
-"""Steps alike that have to be seen before one can be judged."""
+"""Number of equal steps that are needed before a deviation is reported."""
 SHARE, DRIFT = 0.3, 0.004
-"""How far what is usual follows what is seen: this share of it, and m at most."""
+"""Update of the reference per step: share of the deviation, and its maximum, m."""
 
 
 @dataclass
 class CapturePointDeviation:
-    """Compares a point with where it was at the same moment of the last steps alike.
+    """Compares a point with its reference at the same moment of the last equal steps.
 
-    A moment is a state of the pose graph and the tick in it. What is usual follows slowly, so that
-    a change of speed is no throw, and one push hardly makes the next look usual.
+    A moment is a state of the pose graph and the tick in it. The reference follows the point
+    slowly, so that a change of speed is not a push, and a push hardly changes the reference.
     """
 
     _usual: dict[int, list[Array]] = field(default_factory=dict, init=False)
     _seen: dict[int, int] = field(default_factory=dict, init=False)
 
     def reset(self) -> None:
-        """Forget what is usual."""
+        """Discard all references."""
         self._usual.clear()
         self._seen.clear()
 
     def detect(self, state: int, tick: int, point: Array) -> Array:
-        """Return how far (2,) m a point is from where it usually is; zero where nobody knows.
+        """Return the deviation (2,) m of a point from its reference; 0 as long as that is unknown.
 
         Args:
             state: Index of the state.
-            tick: Ticks since it was entered, from 0 without a gap.
-            point: (2,) m, in a frame that steps alike have in common.
+            tick: Ticks since the state was entered, counted from 0 without a gap.
+            point: (2,) m, in a frame relative to the step, such as the stance foot's.
         """
         usual = self._usual.setdefault(state, [])
         if tick == 0:
             self._seen[state] = self._seen.get(state, 0) + 1
-        if tick >= len(usual):  # it lasts longer than ever
+        if tick >= len(usual):  # the state has never lasted so long
             usual.append(point.copy())
             return np.zeros(2)
         away = point - usual[tick]

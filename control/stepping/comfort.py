@@ -1,4 +1,4 @@
-"""A comfort step: a robot that stands still puts one foot back where its stance has it."""
+"""A comfort step: a robot that stands still puts one foot back to its place in the stance."""
 
 from math import cos, pi
 from typing import Literal
@@ -13,44 +13,44 @@ from windup.control.stepping.stepping_file import Stepping
 from windup.hal.joints import Array
 
 SHIFT = 0.5
-"""Time to bring the centre of mass over one foot, and back, s."""
+"""Time to shift the centre of mass over one foot, and time to shift it back, s."""
 WAIT = 0.3
-"""How much longer than planned it may be on its way, s."""
+"""Additional time after `SHIFT` before the step is given up, s."""
 SWING = 0.4
-"""Time for the foot in the air, s."""
+"""Duration of the swing, s."""
 INSIDE = 0.02
-"""How far inside a sole the centre of mass has to be for that foot to bear the robot alone, m."""
+"""Minimum distance of CoM and capture point inside a sole for standing on that foot alone, m."""
 STILL = 0.05
-"""The centre of mass of a robot that stands still is slower than this, m/s."""
+"""Maximum speed of the centre of mass of a robot that stands still, m/s."""
 ASKEW = 0.15
-"""The feet of a relaxed stance are turned less than this from each other, rad."""
+"""Maximum yaw between the feet of a relaxed stance, rad."""
 
 Phase = Literal["shift", "swing", "back"]
 
 
 class ComfortStep:
-    """Shifts the weight to one foot, brings the other to its place beside it, and comes back.
+    """Shifts the weight to one foot, puts the other back beside it, and shifts the weight back.
 
-    Kenwright 2012, section IV: after a disturbance people return to a relaxed stance by steps
-    that no fall forces on them, in position and direction.
+    Kenwright 2012, section IV: after a disturbance people return to a relaxed stance, in position
+    and direction, by steps that are not necessary to prevent a fall.
 
     Args:
-        footing: The feet, of a robot that stands still.
-        now: s.
-        stepping: How this robot steps.
+        footing: The feet of a robot that stands still.
+        now: Present time, s.
+        stepping: Stepping parameters of the robot.
 
     Attributes:
-        foot: The foot that steps: the one that is behind or too far out.
-        target: (3,) its place beside the other one, m.
-        needed: Does it stand farther from there, or turned farther from the other, than it may?
-        given_up: The centre of mass did not come over the other foot.
+        foot: Index of the foot that steps: the one that has to move further forward.
+        target: (3,) its nominal place beside the other one, m.
+        needed: It is too far from that place, or turned too far relative to the other foot.
+        given_up: The CoM did not come over the stance foot in time.
     """
 
     def __init__(self, footing: Footing, now: float, stepping: Stepping) -> None:
         self._footing, self._began, self._stepping = footing, now, stepping
         self._planted = planted = footing.planted()
         aside = [self._home(foot) - footing.places[foot] for foot in (0, 1)]
-        # Both miss by about as much; the one that has to go forward leaves the other in front.
+        # Both errors are about equal; the foot that steps forward leaves the other in front.
         forward = turn(planted.front)[:2, 0]
         self.foot = int(np.argmax([way @ forward for way in aside]))
         self.target = np.append(self._home(self.foot), 0.0)
@@ -64,11 +64,11 @@ class ComfortStep:
         self._before, self._after = footing.yaw, float(planted.yaws[1 - self.foot])
 
     def done(self, now: float) -> bool:
-        """Return whether the step is over, or given up."""
+        """Return whether the step is over or given up, with the weight shifted back."""
         return self._phase == "back" and now - self._began >= SHIFT
 
     def pose(self, goals: Array, now: float) -> None:
-        """Set the legs' joints in `goals` (n,) rad."""
+        """Set the goals of the legs' joints in `goals` (n,), rad."""
         self._go_on(now)
         if self._phase == "swing":
             self._swing(goals, now - self._began)
@@ -82,7 +82,7 @@ class ComfortStep:
             footing.keep(goals, foot, self._planted, base)
 
     def _go_on(self, now: float) -> None:
-        """Lift the foot as soon as the other one can bear the robot; put it down in time."""
+        """Enter the next phase if it is due: swing once the other foot can bear the robot."""
         gone, footing, foot = now - self._began, self._footing, self.foot
         if self._phase == "shift":
             other, momenta = footing.support((1 - foot,)), footing.momenta
@@ -92,13 +92,13 @@ class ComfortStep:
                 self.given_up = True
                 self._begin("back", now)
         elif self._phase == "swing" and gone > SWING:
-            # From where it is: it may not have come all the way over the other foot.
+            # Start from the measured base: it may not have come all the way over the other foot.
             self._place = footing.base.position[:2].copy()
             self._planted = self._planted.step(foot, self.target, self._after)
             self._begin("back", now)
 
     def _swing(self, goals: Array, gone: float) -> None:
-        """Bring the foot to its place while the base comes over the other one."""
+        """Set the goals of the swing: the foot moves to its target, the base over the other."""
         part = _eased(gone / SWING)
         place = self._from + part * (self._over - self._from)
         base = self._footing.upright(place, heading_between(self._before, self._after, part))
@@ -112,12 +112,12 @@ class ComfortStep:
         self._phase, self._began, self._from = phase, now, self._place
 
     def _home(self, foot: int) -> Array:
-        """Return where (2,) m a foot is in the stance, beside the other one as that stands."""
+        """Return the nominal place (2,) m of a foot, relative to where the other one stands."""
         homes, other = self._footing.homes, 1 - foot
         way = turn(self._planted.yaws[other])[:2, :2] @ (homes[foot] - homes[other])[:2]
         return self._footing.places[other] + way
 
 
 def _eased(part: float) -> float:
-    """Return how much of a way is done, with no speed at its ends."""
+    """Return the fraction of a path that is done at the time fraction `part`, eased in and out."""
     return 0.5 * (1.0 - cos(pi * min(part, 1.0)))

@@ -1,4 +1,4 @@
-"""The feet of an observed robot: where they stand, and joint angles that put them elsewhere."""
+"""The feet of an observed robot: their measured places, and joint angles for target places."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,18 +25,18 @@ from windup.hal.joints import Array
 from windup.hal.observation import Observation
 
 DOWN = 0.004
-"""A foot is down when its lowest point is not higher than this above the lowest of all, m."""
+"""Maximum height of a grounded foot's lowest point above the lowest point of all feet, m."""
 ITERATIONS = 2
-"""Of the inverse kinematics in a tick; each one begins where the last tick ended."""
+"""Iterations of the inverse kinematics per tick, started at the solution of the last tick."""
 
 
 @dataclass(frozen=True)
 class Planted:
-    """Where two feet have been put, and stay.
+    """Places at which two feet are to stay.
 
     Attributes:
-        places: (2, 3) of the soles' centres, on the ground, m.
-        yaws: (2,) rad.
+        places: (2, 3) positions of the soles' centres, on the ground, m.
+        yaws: (2,) headings of the soles, rad.
     """
 
     places: Array
@@ -44,24 +44,24 @@ class Planted:
 
     @property
     def front(self) -> float:
-        """Heading between the feet, rad."""
+        """Mean heading of the feet, rad."""
         return heading_between(self.yaws[0], self.yaws[1], 0.5)
 
     def step(self, foot: int, place: Array, yaw: float) -> "Planted":
-        """Return these with one foot at another place (2,) or (3,), m, and heading, rad."""
+        """Return a copy with one foot at another place (2,) or (3,), m, and heading, rad."""
         places, yaws = self.places.copy(), self.yaws.copy()
         places[foot, :2], yaws[foot] = place[:2], yaw
         return Planted(places, yaws)
 
 
 class Footing:
-    """Where a robot's feet are, and how to put them and the base where they should be.
+    """Measured feet and base of a robot, and inverse kinematics of its legs.
 
     Args:
         body: Kinematics of the robot.
         base: Name of the body with the free joint.
-        sites: Names of the sites at the soles' centres, one a foot.
-        soles: Where the soles can touch the ground.
+        sites: Names of the sites at the soles' centres, one per foot.
+        soles: Points of the soles that can touch the ground.
         stance: (n,) rad, joint positions of the pose to stand in, with both soles flat.
 
     Attributes:
@@ -69,10 +69,10 @@ class Footing:
         base: Pose of the base.
         yaw: Heading of the base, rad.
         feet: Poses of the soles' centres.
-        places: (k, 2) where these are on the ground, m.
-        down: Which feet are on the ground.
-        height: Of the base above the soles in the stance, m.
-        rounded: Take circles and a capsule for what the soles support, not their hull.
+        places: (k, 2) horizontal positions of the soles' centres, m.
+        down: For each foot, whether it is on the ground.
+        height: Height of the base above the soles in the stance, m.
+        rounded: Support regions are circles and capsules instead of hulls.
     """
 
     momenta: Momenta
@@ -97,7 +97,7 @@ class Footing:
         self._offset = -np.mean([home[:2] for home in self.homes], axis=0)
 
     def update(self, observation: Observation) -> None:
-        """Measure everything anew.
+        """Update all measured attributes.
 
         Raises:
             StateMissingError: The observation has no base.
@@ -122,42 +122,42 @@ class Footing:
         self.down = [height < min(heights) + DOWN for height in heights]
 
     def ground(self, foot: int) -> Array:
-        """Return the points (p, 3) m of a sole in the world."""
+        """Return the points (p, 3) of a sole in the world frame, m."""
         return self._ground[self._soles.foot == foot]
 
     def support(self, feet: Sequence[int]) -> SupportRegion:
-        """Return what these feet's soles can support, whether or not they bear load."""
+        """Return the support region of these feet's soles, whether or not they bear load."""
         if self.rounded:
             return SupportRegion.rounded([self.ground(foot) for foot in feet])
         of_these = self._soles.members[list(feet)].any(axis=0)
         return SupportRegion.hull(self._ground[of_these])
 
     def planted(self) -> Planted:
-        """Return where the feet are, to keep them there."""
+        """Return the measured places of the feet, to hold them there."""
         places = np.zeros((len(self.feet), 3))
         places[:, :2] = self.places
         return Planted(places, np.array([yaw_of(foot.rotation) for foot in self.feet]))
 
     def home(self, planted: Planted) -> Array:
-        """Return where (2,) m the base is in the stance, over feet that stand there."""
+        """Return the base's position (2,) m in the stance, for feet at these places."""
         return planted.places[:, :2].mean(axis=0) + turn(planted.front)[:2, :2] @ self._offset
 
     def upright(
         self, place: Array, heading: float, pitch: float = 0.0, height: float | None = None
     ) -> Pose:
-        """Return the stance's pose of the base over a place.
+        """Return the pose of the base as in the stance, at a given place.
 
         Args:
-            place: (2,) m.
-            heading: rad.
-            pitch: How far it leans forward from there, rad.
-            height: Above the ground, m; that of the stance by default.
+            place: (2,) horizontal position, m.
+            heading: Heading, rad.
+            pitch: Additional forward lean, rad.
+            height: Height above the ground, m; that of the stance by default.
         """
         position = np.array([place[0], place[1], self.height if height is None else height])
         return Pose(position, turn(heading) @ turn_about_y(pitch) @ self._level)
 
     def ahead(self, time: float) -> Pose:
-        """Return where the base will be in `time` s if it goes on as it does."""
+        """Return the pose of the base in `time` s, extrapolated at its present velocities."""
         state = self._state
         orientation = state.orientation.copy()
         mujoco.mju_quatIntegrate(orientation, state.angular_velocity, time)
@@ -168,18 +168,18 @@ class Footing:
         """Set the joints of a leg in `goals` (n,) so that its sole is flat at `at` (3,) m.
 
         Args:
-            goals: rad, changed in place.
-            foot: Which foot.
-            at: Where its sole's centre should be.
-            heading: Of the sole, rad.
-            base: Where the base will be by then.
+            goals: (n,) joint goals, rad, changed in place.
+            foot: Index of the foot.
+            at: (3,) target of the sole's centre, m.
+            heading: Target heading of the sole, rad.
+            base: Pose of the base for which the goals are meant.
         """
         self._solve(goals, foot, Pose(at, turn(heading)).seen_from(base))
 
     def keep(self, goals: Array, foot: int, planted: Planted, base: Pose) -> None:
-        """Set the joints of a leg in `goals` (n,) so that its sole stays where it was planted.
+        """Set the joints of a leg in `goals` (n,) so that its sole stays at its place in `planted`.
 
-        A foot that slips, or floats while the robot tips, is not followed.
+        The measured place is ignored, even if the foot slips, or lifts while the robot tips.
         """
         self.put(goals, foot, planted.places[foot], planted.yaws[foot], base)
 

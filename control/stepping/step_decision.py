@@ -1,8 +1,8 @@
 """When to step, with which foot, and where to: pure functions of momenta and feet.
 
-Wu & Zordan 2010, sections 4.1 to 4.3. Their damping values for a human (4 and 6 for when, 9 and 18
-for where) are given here as multiples of omega = sqrt(g / c_z), so that small robots, which fall
-faster, have them too.
+Wu & Zordan 2010, sections 4.1 to 4.3. Their damping values for a human (4 and 6 for `when`, 9 and
+18 for `where`) are given here as multiples of omega = sqrt(g / c_z), so that they also hold for
+small robots, which fall faster.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -21,18 +21,18 @@ from windup.hal.joints import Array
 
 Damping = tuple[float, float]
 AGAIN: Final = 0.25
-"""How much better the same foot has to catch a fall to step twice in a row, m."""
+"""Penalty on `Placement.uncaught` for a second step with the same foot in a row, m."""
 
 
 @dataclass(frozen=True)
 class StepRule:
-    """One way to decide.
+    """Damping values by which steps are triggered and placed.
 
     Attributes:
-        name: What people call it.
-        when: Damping of linear and angular momentum of the point that has to stay in the support,
-            in omega.
-        where: The same of the point that is stepped to; None for the predictive placement.
+        name: Name of the rule.
+        when: Damping of linear and angular momentum for the trigger point, which has to stay in
+            the support, in multiples of omega.
+        where: The same for the landing point; None for the predicted capture point.
     """
 
     name: str
@@ -52,7 +52,7 @@ RULES: Final[Mapping[str, StepRule]] = {
 
 
 def find_rule(name: str) -> StepRule:
-    """Return a rule by its name.
+    """Return the built-in rule `name`.
 
     Raises:
         UnknownNameError: There is no such rule.
@@ -63,18 +63,18 @@ def find_rule(name: str) -> StepRule:
 
 
 def trigger_point(rule: StepRule, body: Momenta) -> Array:
-    """Return the point (2,) m that lies in the support as long as no step is needed."""
+    """Return the trigger point (2,) m; a step is needed once it leaves the support."""
     linear, angular = rule.when
     return desired_cp(body, linear * body.omega, angular * body.omega)
 
 
 def landing_point(rule: StepRule, body: Momenta, pivot: Array, left: float) -> Array:
-    """Return where (2,) m the foot should come down.
+    """Return the desired landing point (2,) of the foot, m.
 
     Args:
         rule: The rule.
         body: The momenta.
-        pivot: (2,) where the ground pushes during the swing, m.
+        pivot: (2,) centre of pressure during the swing, m.
         left: Time until the foot lands, s.
     """
     if rule.where is None:
@@ -84,19 +84,22 @@ def landing_point(rule: StepRule, body: Momenta, pivot: Array, left: float) -> A
 
 
 def coming_point(body: Momenta, pivot: Array, left: float) -> Array:
-    """Return the capture point (2,) m in `left` s, p + (xi - p) e^(omega T), about a pivot."""
+    """Return the capture point (2,) m predicted for T = `left` s: p + (xi - p) e^(omega T).
+
+    The centre of pressure p, `pivot`, is assumed constant.
+    """
     return np.asarray(pivot + (capture_point(body) - pivot) * exp(body.omega * left))
 
 
 @dataclass(frozen=True)
 class Reach:
-    """Where a foot may be put, seen from the other: no crossing, no farther than the leg.
+    """Bounds of a foot's place relative to the other foot: no crossing, within the leg's reach.
 
     Attributes:
-        back: Farthest behind the other foot, m (negative).
-        front: Farthest before it, m.
-        near: Nearest beside it, m.
-        far: Farthest beside it, m.
+        back: Minimum forward position, m (negative).
+        front: Maximum forward position, m.
+        near: Minimum lateral distance, m.
+        far: Maximum lateral distance, m.
     """
 
     back: float
@@ -105,7 +108,7 @@ class Reach:
     far: float
 
     def region(self, stance: Array, yaw: float, side: int) -> BaseGeometry:
-        """Return where the foot on `side` (+1 left) may land beside the one at `stance` (2,)."""
+        """Return the region for the foot on `side` (+1 left) beside the one at `stance` (2,)."""
         forward = np.array([cos(yaw), sin(yaw)])
         outward = side * np.array([-sin(yaw), cos(yaw)])
         corners = [(x, y) for x in (self.back, self.front) for y in (self.near, self.far)]
@@ -115,13 +118,13 @@ class Reach:
 
 @dataclass(frozen=True)
 class Placement:
-    """A step that has been decided.
+    """A possible step.
 
     Attributes:
-        foot: Which foot.
-        target: (2,) where its sole's centre comes down, m.
-        missed: How far that is from where it should, m.
-        uncaught: How far the best place within reach is from the coming capture point, m.
+        foot: Index of the foot.
+        target: (2,) landing place of the sole's centre, m.
+        missed: Distance of `target` from the desired landing point, m.
+        uncaught: Distance of the nearest place within reach from the predicted capture point, m.
     """
 
     foot: int
@@ -133,10 +136,10 @@ class Placement:
 def place(
     foot: int, wanted: Array, region: BaseGeometry, forbidden: Sequence[BaseGeometry] = ()
 ) -> Placement | None:
-    """Return the nearest allowed place to `wanted` (2,), or None where nothing is allowed.
+    """Return the allowed place nearest to `wanted` (2,), or None if no place is allowed.
 
-    Kenwright 2012, section IV-A.4: instead of a hole the next closest point; what that does not
-    mend the next decision will.
+    Kenwright 2012, section IV-A.4: a target in a hole is replaced by the closest allowed point;
+    the next step corrects what this one cannot.
     """
     for hole in forbidden:
         region = region.difference(hole)
@@ -149,16 +152,16 @@ def place(
 def choose(
     candidates: Sequence[Placement], feet: Array, wanted: Array, landed: int | None = None
 ) -> Placement:
-    """Return whose foot can catch the fall, then what misses least, then the nearest foot.
+    """Return the placement with the least `uncaught`, then least `missed`, then nearest foot.
 
     The paper takes the nearest foot (section 4.2). After a wide step that is often the one that
-    has just landed, and about the other, far behind, the body would only fall faster.
+    has just landed; pivoting about the other, far behind, the body would only fall faster.
 
     Args:
-        candidates: One for each foot that may step.
-        feet: (k, 2) where the feet are, m.
-        wanted: (2,) where one should come down, m.
-        landed: The foot that has just come down, if one has.
+        candidates: One placement for each foot that may step.
+        feet: (k, 2) present positions of the feet, m.
+        wanted: (2,) desired landing point, m.
+        landed: The foot that has just landed, or None.
     """
     able = _least(candidates, lambda c: c.uncaught + AGAIN * (c.foot == landed), 0.01)
     good = _least(able, lambda c: c.missed, 0.005)

@@ -1,9 +1,9 @@
-"""Stands, and steps where a push asks for it: the momentum supervisor on position servos.
+"""Stands, and steps if a push requires it: the momentum supervisor on position servos.
 
-Wu & Zordan 2010, section 4, decides; the step itself is what servos that turn slowly and late can
-do: the stance leg is held stiffly and the robot tips over it, the other foot goes up as fast as it
-can, and the target is decided anew while there is time. Once it stands still, comfort steps bring
-the feet back to the stance (Kenwright 2012, section IV).
+The decision is that of Wu & Zordan 2010, section 4. The step is adapted to slow servos with
+latency: the stance leg is held stiffly and the robot tips over it, the other foot is lifted as fast
+as possible, and its target is updated early in the swing. Once the robot stands still, comfort
+steps bring the feet back to the stance (Kenwright 2012, section IV).
 """
 
 from collections.abc import Sequence
@@ -35,19 +35,24 @@ from windup.hal.observation import Observation
 
 Phase = Literal["stand", "swing", "land", "comfort"]
 MOST_SHIFT = 0.06
-"""How far the base is drawn at most, m."""
+"""Maximum displacement of the base against the capture point, m."""
 MOST_PITCH = 0.8
-"""How far the trunk turns at most, rad."""
+"""Maximum additional pitch of the trunk, rad."""
 TAKE = 0.6
-"""Time in which a robot that was walking takes on the stance's height, its arms and head, s."""
+"""Time after a takeover in which height, arms and head change to those of the stance, s."""
 
 
 @dataclass
 class Flight:
-    """A step in the air: by which rule, which foot, since when, s, from where and to where (2,) m.
+    """A step in its swing phase.
 
     Attributes:
-        centre: Where (2,) m the base was over the stance leg when it began.
+        rule: The rule of its placement.
+        foot: Index of the swing foot.
+        began: Start time, s.
+        start: (2,) place of the foot at the start, m.
+        target: (2,) target of the foot, m.
+        centre: (2,) desired position of the base at the start, m.
     """
 
     rule: StepRule
@@ -59,20 +64,20 @@ class Flight:
 
 
 class Stepper:
-    """Stands in its stance and steps to prevent a fall.
+    """Controller that stands in the stance and steps to prevent a fall.
 
     Args:
         joints: The robot's joints.
-        footing: Its feet.
+        footing: The robot's feet.
         stance: (n,) rad, the pose to stand in.
-        rule: When and where to step; None balances with the feet alone.
-        stepping: How.
-        no_step: Where no foot may come down.
+        rule: When and where to step; None balances without steps.
+        stepping: Stepping parameters of the robot.
+        no_step: Regions where no foot may come down.
 
     Attributes:
-        steps: Steps that were taken to prevent a fall.
-        comforts: Comfort steps.
-        phase: What it is at.
+        steps: Number of steps taken to prevent a fall.
+        comforts: Number of comfort steps.
+        phase: Present phase.
     """
 
     def __init__(
@@ -92,7 +97,7 @@ class Stepper:
         self.steps = self.comforts = 0
 
     def reset(self, observation: Observation) -> None:
-        """Begin to stand; the robot is in its stance."""
+        """Start standing; the robot must be in its stance."""
         self.phase = "stand"
         self.steps = self.comforts = 0
         self._hold = JointCommand.hold(self.joints, self.stance)
@@ -105,7 +110,7 @@ class Stepper:
         self.no_step.begin(self.footing.feet, [self.footing.ground(foot) for foot in (0, 1)])
 
     def take(self, observation: Observation) -> None:
-        """Begin in the middle of a walk, from wherever the robot is: a foot in the air steps."""
+        """Take over during a walk, from any state; a foot in the air becomes the swing foot."""
         self.reset(observation)
         now, footing = observation.time, self.footing
         self._landed = self._taken = now
@@ -116,7 +121,7 @@ class Stepper:
             self._begin(self.rule, now, [footing.down.index(False)])
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the goals of now.
+        """Return the command of this tick.
 
         Raises:
             StateMissingError: The observation has no base.
@@ -132,11 +137,11 @@ class Stepper:
 
     @property
     def stepping_foot(self) -> int:
-        """The foot of the step that it is at, or of the last one."""
+        """Index of the swing foot of the present or last step."""
         return self._flight.foot
 
     def _decide(self, now: float) -> None:
-        """Go over to the next phase where it is time."""
+        """Enter the next phase if it is due."""
         stepping = self.stepping
         if self.phase == "swing":
             self._fly(now)
@@ -149,18 +154,18 @@ class Stepper:
             self.phase = "stand"
         elif self.phase == "comfort" and self._comfort.done(now):
             self._planted = self.footing.planted()
-            # What the legs cannot do now they cannot do until something moves the robot.
+            # A step that was given up would fail again until something moves the robot.
             self.phase, self._moved = "stand", np.inf if self._comfort.given_up else now
         elif self.phase == "stand":
             self._settle(now)
 
     def _falls(self, rule: StepRule) -> bool:
-        """Return whether both feet as they stand cannot prevent a fall."""
+        """Return whether the trigger point has left the support of both feet."""
         support = self.footing.support((0, 1))
         return needs_step(trigger_point(rule, self.footing.momenta), support, self.stepping.slack)
 
     def _fly(self, now: float) -> None:
-        """Aim anew, or land."""
+        """Update the target of the swing foot early in the swing, or end the swing."""
         flight, stepping = self._flight, self.stepping
         part = (now - flight.began) / stepping.duration
         if part < stepping.update:
@@ -172,11 +177,11 @@ class Stepper:
             self._plant(1 - flight.foot)
 
     def _plant(self, floated: int) -> None:
-        """Keep both feet where they are; near forbidden ground one that floated goes back.
+        """Plant both feet at their measured places; with forbidden ground `floated` goes back.
 
-        Where the robot tipped over it, the foot that stood has left the ground as well. It comes
-        down nearer to the other one than it stood, which saves a comfort step half its way, but
-        nobody has looked at what is there.
+        When the robot tips over it, the stance foot `floated` leaves the ground too. It comes down
+        nearer to the other one than it stood, which shortens the comfort step, but that place is
+        not checked against forbidden ground.
         """
         before, self._planted = self._planted, self.footing.planted()
         if self.no_step:
@@ -184,7 +189,7 @@ class Stepper:
             self._planted = self._planted.step(floated, *stood)
 
     def _begin(self, rule: StepRule, now: float, feet: Sequence[int] = (0, 1)) -> None:
-        """Choose one of `feet` and lift it, if there is a place for it."""
+        """Start a step with the best of `feet`, if any of them has an allowed place."""
         placements = [self._placement(rule, foot, self.stepping.duration) for foot in feet]
         possible = [found for found in placements if found is not None]
         if not possible:
@@ -197,7 +202,7 @@ class Stepper:
         self.phase, self.steps = "swing", self.steps + 1
 
     def _placement(self, rule: StepRule, foot: int, left: float) -> Placement | None:
-        """Return where `foot` should land in `left` s, or None where it cannot."""
+        """Return the placement of `foot`, landing in `left` s, or None if no place is allowed."""
         footing, momenta = self.footing, self.footing.momenta
         pivot = footing.support((1 - foot,)).nearest(capture_point(momenta))
         wanted = landing_point(rule, momenta, pivot, left)
@@ -206,19 +211,19 @@ class Stepper:
         return place(foot, self._wanted, region, self._holes(foot))
 
     def _holes(self, foot: int) -> list[BaseGeometry]:
-        """Return where a foot must not be sent."""
+        """Return the forbidden targets of a foot."""
         flying = self.phase == "swing"
         start = self._flight.start if flying else self.footing.places[foot]
         return self.no_step.holes(foot, self.footing.yaw, start)
 
     def _settle(self, now: float) -> None:
-        """Take a comfort step when the robot has stood still for long enough off its stance."""
+        """Start a comfort step if one is needed and the robot has stood still long enough."""
         footing, stepping = self.footing, self.stepping
         if np.linalg.norm(footing.momenta.velocity[:2]) > STILL:
             self._moved = now
         if now - self._moved < stepping.patience:
             return
-        self._moved = now  # where nothing is to do, it looks again as long after
+        self._moved = now  # if no step is needed, check again after the same time
         comfort = ComfortStep(footing, now, stepping)
         foot, yaw = comfort.foot, footing.yaw
         free = self.no_step.allows(foot, yaw, footing.places[foot], comfort.target)
@@ -227,7 +232,7 @@ class Stepper:
             self.phase, self.comforts = "comfort", self.comforts + 1
 
     def _pose(self, goals: Array, now: float) -> None:
-        """Set the legs' joints in `goals` (n,) rad."""
+        """Set the goals of the legs' joints in `goals` (n,), rad."""
         footing = self.footing
         if self.phase == "comfort":
             self._comfort.pose(goals, now)
@@ -242,15 +247,15 @@ class Stepper:
             footing.keep(goals, foot, self._planted, base)
 
     def _swing(self, goals: Array, now: float) -> None:
-        """Tip over one leg, and put the other foot where it should be `lead` s from now."""
+        """Set the goals of the swing: one leg stiff, the other foot at its place in `lead` s."""
         footing, stepping, flight = self.footing, self.stepping, self._flight
         gone = now - flight.began
         way = gaussian_progress((gone + stepping.lead) / stepping.duration)
         at = np.zeros(3)
         at[:2] = flight.start + way * (flight.target - flight.start)
-        # Up at once and down at once: the servos are too slow for anything finer.
+        # The height is a step function: the servos are too slow for a smooth curve.
         at[2] = stepping.lift if gone < stepping.up * stepping.duration else 0.0
-        # By then the trunk has turned on, and the foot should face as it does.
+        # The trunk turns until then, and the foot should have its heading.
         seen = footing.ahead(stepping.lead)
         footing.put(goals, flight.foot, at, facing(seen.rotation), seen)
         pivot = footing.places[1 - flight.foot]
@@ -261,19 +266,19 @@ class Stepper:
         footing.keep(goals, 1 - flight.foot, self._planted, base)
 
     def _centre(self, now: float) -> Array:
-        """Return where (2,) m the base should be: over the feet, some time after a step."""
+        """Return the desired position (2,) m of the base; it returns over the feet after a step."""
         here = self.footing.base.position[:2]
         return here + self._back(now) * (self.footing.home(self._planted) - here)
 
     def _heading(self, now: float) -> float:
-        """Return where the base should face, rad: as the feet do, some time after a step."""
+        """Return the desired heading of the base, rad; it returns to the feet's after a step."""
         return heading_between(self.footing.yaw, self._planted.front, self._back(now))
 
     def _back(self, now: float) -> float:
-        """Return how far the base has come back over the feet after a step, 0 to 1."""
+        """Return the progress of the base's return over the feet after a step, 0 to 1."""
         return min((now - self._landed) / max(self.stepping.settle, 1e-6), 1.0)
 
     def _against(self, middle: Array) -> Array:
-        """Return how far (2,) m the base is drawn from where the capture point runs to."""
+        """Return the displacement (2,) m to subtract from the base against the capture point."""
         away = self.stepping.balance * (capture_point(self.footing.momenta) - middle)
         return np.clip(away, -MOST_SHIFT, MOST_SHIFT)

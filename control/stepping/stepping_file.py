@@ -1,4 +1,4 @@
-"""`stepping.toml` of a robot: how it steps when a push asks for it. SI units."""
+"""Format of a robot's `stepping.toml`: parameters of steps against pushes. SI units."""
 
 from typing import Annotated, Literal
 
@@ -13,7 +13,7 @@ Support = Literal["hull", "capsule"]
 
 
 class ReachTable(Record, frozen=True):
-    """Where a foot may be put, seen from the other one, m.
+    """Bounds of a foot's place relative to the other foot, m.
 
     See `windup.control.stepping.step_decision.Reach`.
     """
@@ -24,65 +24,65 @@ class ReachTable(Record, frozen=True):
     far: Metres
 
     def reach(self) -> Reach:
-        """Return what the decision works with."""
+        """Return the same as a `Reach`."""
         return Reach(self.back, self.front, self.near, self.far)
 
 
 class RuleTable(Record, frozen=True):
-    """A rule's dampings, omega; without `where` the foot goes where the capture point will be."""
+    """Dampings of a rule, in omega; without `where` the predicted capture point is the target."""
 
     when: Damping
     where: Damping | None = None
 
 
 class CatchTable(Record, frozen=True):
-    """Which pushes on a walk are for steps, by how far they throw the capture point off its way.
+    """Pushes during a walk that are answered by steps, by the deviation of the capture point.
 
     Attributes:
-        back: Backward by more than this, m.
-        slant: But to the side by no more than this part of that.
+        back: Minimum backward deviation, m.
+        slant: Maximum ratio of the lateral to the backward deviation.
     """
 
     back: Positive
     slant: Positive
 
     def meets(self, thrown: Array) -> bool:
-        """Return whether it is `thrown` (2,) m, ahead and to the left, far enough."""
+        """Return whether the deviation `thrown` (2,) m (ahead, left) is such a push."""
         ahead, left = thrown
         return bool(-ahead > self.back and abs(left) < -ahead * self.slant)
 
 
 class Stepping(Record, frozen=True):
-    """How a robot steps; `up`, `lead`, `balance` and `trunk` are for servos alone.
+    """Stepping parameters; `up`, `lead`, `balance` and `trunk` are for position servos only.
 
     Attributes:
-        stance: Name of the pose that it stands in, soles flat.
-        reach: Where a foot may be put.
-        duration: Of a step, s.
-        lift: How high the foot is lifted, m.
-        up: The part of the step after which the foot comes down again.
-        early: The part of the step after which a foot that touches has landed.
-        update: The part of the step in which the target is still decided anew.
-        dwell: Time on both feet between two steps, s.
-        settle: Time in which the base comes back over the feet, s.
-        lead: Goals are for so much later, because servos lag, s.
-        slack: How far the trigger point may be outside the support, m; negative is inside.
-        gain: How far the foot goes beyond or short of what the rule says, from the pivot.
-        balance: How far the base is moved against the capture point, in parts of the way of that
-            point from the middle of the feet; both feet press on their edges.
-        trunk: How much the trunk turns backward as the capture point runs away forward, while
-            one foot is in the air, rad/m: it keeps room for the hip that swings.
-        way: How pushes are met where nobody says it: the name of a rule.
-        rule: Other dampings of the rules, by their names; see
+        stance: Name of the pose that the robot stands in, soles flat.
+        reach: Bounds of a foot's place relative to the other foot.
+        duration: Duration of a step, s.
+        lift: Height to which the foot is lifted, m.
+        up: Fraction of the step after which the foot is lowered.
+        early: Fraction of the step from which contact counts as landing.
+        update: Fraction of the step until which the target is updated.
+        dwell: Minimum time on both feet between two steps, s.
+        settle: Time in which the base returns over the feet, s.
+        lead: Time by which the goals are ahead, against the servos' lag, s.
+        slack: Maximum distance of the trigger point outside the support, m; negative is inside.
+        gain: Scale of the rule's step, from the pivot to the landing point.
+        balance: Displacement of the base against the capture point, as a ratio of that point's
+            distance from the middle of the feet; it loads the edges of both feet.
+        trunk: Backward pitch of the trunk per forward distance of the capture point from the
+            stance foot during a swing, rad/m: it keeps room for the swinging hip.
+        way: Name of the default rule.
+        rule: Dampings that replace those of the built-in rules, by name; see
             `windup.control.stepping.step_decision.StepRule`.
-        patience: How long a robot stands still before it takes a comfort step, s.
-        comfort: How far a foot may stand from its nominal place, m.
-        rate: Of the loop, Hz; the robot's own by default.
-        support: What the soles support: the hull of their points, or Kenwright's circles and
-            capsule about their middles, as large.
-        clear: How far soles keep off ground where they must not come down, m.
-        catch: When a push on a walk is one for steps; None where steps are no help to it.
-        torque: Largest torque that whole-body control asks of a joint with ideal torque, N m.
+        patience: Minimum time of standing still before a comfort step, s.
+        comfort: Maximum distance of a foot from its nominal place without a comfort step, m.
+        rate: Rate of the control loop, Hz; the robot's own by default.
+        support: Support region of the soles: the hull of their points, or Kenwright's circles and
+            capsule about their centres, of the same area.
+        clear: Minimum distance of the soles from forbidden ground, m.
+        catch: Pushes during a walk that are answered by steps; None for no such push.
+        torque: Maximum torque of an ideal torque joint in whole-body control, N m.
     """
 
     stance: str
@@ -110,7 +110,7 @@ class Stepping(Record, frozen=True):
     torque: Positive = 1e3
 
     def find_rule(self, name: str) -> StepRule:
-        """Return a rule by its name, with the dampings of this robot where it has its own.
+        """Return the rule `name`, with this robot's dampings if `rule` has them.
 
         Raises:
             UnknownNameError: There is no such rule.

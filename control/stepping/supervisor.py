@@ -1,7 +1,7 @@
-"""Who has the robot: the walk, or the stepper while a push is more than the walk absorbs.
+"""Supervisor that switches from a walk to the stepper for a push that the walk cannot absorb.
 
-The stepper takes over in mid-step from wherever the robot is, steps, and halts. Once it stands
-still, the robot goes to the pose that the walk begins with, and walks on.
+The stepper takes over in mid-step, steps, and comes to rest. Once the robot stands still, it moves
+to the first pose of the walk, and the walk resumes.
 """
 
 from dataclasses import dataclass
@@ -23,28 +23,28 @@ from windup.hal.observation import Observation
 
 Holder = Literal["walk", "step", "return"]
 REST = 0.5
-"""How long the robot has stood still before it goes on, s."""
+"""Minimum time of standing still before the walk resumes, s."""
 CALM = 0.02
-"""A walk that is thrown less than this is on its way, m."""
+"""Deviation of the capture point below which a walk is undisturbed, m."""
 FRESH = 0.12
-"""From the last moment on its way to the hand-over at most, s; later on the walk does better."""
+"""Maximum time from the last undisturbed tick to a takeover, s; later the walk does better."""
 LONGEST = 8.0
-"""A robot that is still on its feet after this goes on, s; it only rocks."""
+"""Time-out of standing still, s; a robot on its feet after this only rocks, and walks on."""
 RETURN = 1.0
-"""Time to come to the pose that the walk begins with, s."""
+"""Time to move to the first pose of the walk, s."""
 
 
 @dataclass
 class Catch:
-    """One push that the stepper caught, or did not.
+    """Record of one takeover by the stepper, whether or not it prevented the fall.
 
     Attributes:
-        time: When the stepper took over, s.
-        thrown: (2,) how far the capture point was off its usual way then, m: ahead, to the left.
-        after: Steps that had been walked by then.
-        steps: Steps that it took.
-        stood: When the robot had come to rest, s; None as long as it has not.
-        back: When the walk went on, s; None as long as it has not.
+        time: Time of the takeover, s.
+        thrown: (2,) deviation of the capture point at the takeover, m: ahead, left.
+        after: Number of steps walked before the takeover.
+        steps: Number of steps that the stepper took.
+        stood: Time at which the robot had come to rest, s, or None.
+        back: Time at which the walk resumed, s, or None.
     """
 
     time: float
@@ -55,7 +55,7 @@ class Catch:
     back: float | None = None
 
     def record(self, walked: int) -> dict[str, Any]:
-        """Return it as numbers for a report, for a walk of `walked` steps in all."""
+        """Return the record for a report, given the number of steps `walked` in total."""
         return {
             "handed_over_at": self.time,
             "thrown_m": self.thrown.tolist(),
@@ -67,17 +67,17 @@ class Catch:
 
 
 class Supervisor:
-    """Walks, and lets the stepper catch what the walk cannot absorb.
+    """Controller that walks, with a takeover by the stepper after a strong push.
 
     Args:
         walker: The walk.
-        stepper: What catches it.
-        start: (n,) rad, the pose that the walk begins with.
-        table: Which pushes are for the stepper.
+        stepper: The stepper.
+        start: (n,) first pose of the walk, rad.
+        table: Criterion for a takeover.
 
     Attributes:
-        holder: Who has the robot.
-        catches: What the stepper was called for.
+        holder: The part in control: the walk, the stepper, or the return to the walk.
+        catches: Records of all takeovers.
     """
 
     def __init__(self, walker: Balancer, stepper: Stepper, start: Array, table: CatchTable) -> None:
@@ -88,7 +88,7 @@ class Supervisor:
         self.catches: list[Catch] = []
 
     def reset(self, observation: Observation) -> None:
-        """Begin to walk.
+        """Start walking.
 
         Raises:
             StateMissingError: The observation has no base state.
@@ -100,7 +100,7 @@ class Supervisor:
         self.walker.reset(observation)
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the command of whoever has the robot.
+        """Return the command of the part in control; switch between the parts if that is due.
 
         Raises:
             StateMissingError: The observation has no base state.
@@ -122,31 +122,31 @@ class Supervisor:
         return self.walker.step(observation, dt)
 
     def _thrown(self, observation: Observation, dt: float) -> Array:
-        """Return how far (2,) m the capture point is off its usual way: ahead, to the left."""
+        """Return the deviation (2,) m of the capture point from its reference (ahead, left)."""
         walker = self.walker
         if (moment := walker.moment) is None:
             return np.zeros(2)
         here = walker.body.measure(observation)
         away = capture_point(walker.body.momenta()) - here.feet[0, moment.stance, :2]
         heading = turn(walker.heading)[:2, :2].T
-        tick = round(moment.elapsed / dt) - 1  # the tick that the state was entered in is over
+        tick = round(moment.elapsed / dt) - 1  # `elapsed` includes the tick of the entry
         return self._throw.detect(moment.state, tick, heading @ away)
 
     def _lost(self, thrown: Array, now: float) -> bool:
-        """Return whether a push has just thrown it too far."""
+        """Return whether a recent push meets the criterion for a takeover."""
         if float(np.linalg.norm(thrown)) < CALM:
             self._calm = now
         return self.table.meets(thrown) and now - self._calm <= FRESH
 
     def _catch(self, observation: Observation, thrown: Array) -> None:
-        """Let the stepper take over."""
+        """Hand over to the stepper."""
         self.holder = "step"
         self.catches.append(Catch(observation.time, thrown, self.walker.steps))
         self._moved = observation.time
         self.stepper.take(observation)
 
     def _stands(self, now: float) -> bool:
-        """Return whether the robot has stood still for long enough."""
+        """Return whether the robot has stood still for `REST`, or `LONGEST` has passed."""
         catch, stepper = self.catches[-1], self.stepper
         catch.steps = stepper.steps
         speed = float(np.linalg.norm(stepper.footing.momenta.velocity[:2]))

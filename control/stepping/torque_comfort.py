@@ -1,7 +1,7 @@
-"""Comfort steps with torques: a foot goes back beside the other one, as a footprint is walked.
+"""Comfort steps with torques: a foot is put back beside the other one, as a single footprint.
 
-Kenwright 2012, section IV: after a disturbance people return to a relaxed stance by steps that no
-fall forces on them, in position and direction.
+Kenwright 2012, section IV: after a disturbance people return to a relaxed stance, in position and
+direction, by steps that are not necessary to prevent a fall.
 """
 
 from collections.abc import Callable
@@ -17,10 +17,10 @@ from windup.hal.joints import Array
 
 
 class ComfortWalk(TorqueDirected):
-    """Walks one footprint, unless the legs are too short to come over the foot that stays.
+    """Walks one footprint, unless the legs are too short to shift the CoM over the stance foot.
 
     Attributes:
-        given_up: They are.
+        given_up: The step was given up for that reason.
     """
 
     given_up = False
@@ -39,30 +39,31 @@ Allows = Callable[[int, float, Array, Array], bool]
 
 
 class TorqueComfort:
-    """Knows where the feet stand in the stance, and which step brings them back to it.
+    """Computes the step that brings the feet back to their places in the stance.
 
     Args:
-        walk: Makes what walks one footprint.
-        most: How far a foot may stand from its place beside the other one, m.
+        walk: Returns the controller that walks one footprint.
+        most: Maximum distance of a foot from its nominal place without a comfort step, m.
     """
 
     def __init__(self, walk: Walk, most: float) -> None:
         self.walk, self._most = walk, most
 
     def reset(self, places: Array) -> None:
-        """Take the places (2, 3), x m, y m, yaw rad, of the feet in the stance."""
+        """Set the nominal places (2, 3), x m, y m, yaw rad, of the feet in the stance."""
         self._homes = [seen_from(places[1 - foot], places[foot]) for foot in (0, 1)]
 
     def needed(self, places: Array, allows: Allows) -> Footprint | None:
-        """Return the step that is missing to the stance, if there is one.
+        """Return the footprint of the comfort step, or None if none is needed or allowed.
 
         Args:
-            places: (2, 3) where the feet are.
-            allows: Tells whether a foot, of a heading, rad, may go from here to there, (2,) m.
+            places: (2, 3) present places of the feet.
+            allows: Returns whether a step is allowed, from the foot's index, heading, rad, start
+                and target, (2,) m; see `KeepOutRegions.allows`.
         """
         targets = [onto(places[1 - foot], self._homes[foot]) for foot in (0, 1)]
         aside = [target - place for target, place in zip(targets, places, strict=True)]
-        # Both miss by about as much; the one that has to go forward leaves the other in front.
+        # Both errors are about equal; the foot that steps forward leaves the other in front.
         yaw = places[:, 2].mean()
         foot = int(np.argmax([way[:2] @ [np.cos(yaw), np.sin(yaw)] for way in aside]))
         turned = seen_from(targets[foot], places[foot])[2]

@@ -1,6 +1,6 @@
-"""Stands, and steps where a push asks for it, with torques from whole-body control.
+"""Stands, and steps if a push requires it, with torques from whole-body control.
 
-Wu & Zordan 2010, section 4: the supervisor decides when and where to step.
+Wu & Zordan 2010, section 4: the momentum supervisor decides when and where to step.
 """
 
 from dataclasses import replace
@@ -34,25 +34,25 @@ from windup.hal.observation import Observation
 
 Phase = Literal["stand", "swing", "land", "comfort"]
 TOUCH = 0.003
-"""A foot has landed when its lowest corner is that near to the ground, m."""
+"""Height of a foot's lowest corner below which it has landed, m."""
 
 
 class TorqueStepper(TorqueMotion):
-    """Meets pushes with torques.
+    """Controller that stands in the stance and steps to prevent a fall, with joint torques.
 
     Args:
         joints: The robot's joints.
-        body: Its whole-body control.
+        body: The robot's whole-body control.
         stance: (n,) rad, the pose to stand in.
         rule: When and where to step; None balances without steps.
-        stepping: How.
-        no_step: Where no foot may come down.
-        comfort: How it comes back to its stance; None stays as it stands.
+        stepping: Stepping parameters of the robot.
+        no_step: Regions where no foot may come down.
+        comfort: Comfort steps; None takes none.
 
     Attributes:
-        steps: Steps that were taken to prevent a fall.
-        comforts: Comfort steps.
-        phase: What it is at.
+        steps: Number of steps taken to prevent a fall.
+        comforts: Number of comfort steps.
+        phase: Present phase.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class TorqueStepper(TorqueMotion):
         self._landed: int | None = None
 
     def reset(self, observation: Observation) -> None:
-        """Begin to stand; the robot is in its stance."""
+        """Start standing; the robot must be in its stance."""
         super().reset(observation)
         self.phase, self.steps, self.comforts, self._landed = "stand", 0, 0, None
         self.no_step.begin(self.dynamics.ends, [self.dynamics.ground(foot) for foot in (0, 1)])
@@ -84,17 +84,17 @@ class TorqueStepper(TorqueMotion):
             self._comfort.reset(self.places)
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the torques of now.
+        """Return the command of this tick; see `TorqueMotion.step`.
 
         Raises:
             StateMissingError: The observation has no base.
-            WindupError: The optimisation found no answer.
+            WindupError: The optimisation found no solution.
         """
         now = observation.time
         if self.phase == "comfort":
             command = self._walk.step(observation, dt)
             if self._walk.finished or (self._rule is not None and self._falls(self._rule)):
-                # What the legs cannot do now they cannot do until something moves the robot.
+                # A step that was given up would fail again until something moves the robot.
                 self._moved = np.inf if self._walk.given_up else now
                 self._due, self._plan = now, None
                 self._enter("stand", now)
@@ -105,20 +105,20 @@ class TorqueStepper(TorqueMotion):
         return command
 
     def _settle(self, comfort: TorqueComfort, observation: Observation) -> None:
-        """Begin a comfort step when the robot has stood still for long enough off its stance."""
+        """Start a comfort step if one is needed and the robot has stood still long enough."""
         now = observation.time
         if np.linalg.norm(self.dynamics.momenta.velocity[:2]) > STILL:
             self._moved = now
         if now - self._moved < self._stepping.patience:
             return
-        self._moved = now  # where nothing is to do, it looks again as long after
+        self._moved = now  # if no step is needed, check again after the same time
         if (missing := comfort.needed(self.places, self.no_step.allows)) is not None:
             self._walk = comfort.walk(missing)
             self._walk.reset(observation)
             self.phase, self.comforts = "comfort", self.comforts + 1
 
     def _decide(self, now: float) -> None:
-        """Go over to the next phase where it is time."""
+        """Enter the next phase if it is due."""
         if self.phase == "swing":
             self._fly(now)
             return
@@ -136,14 +136,14 @@ class TorqueStepper(TorqueMotion):
         self._began = self.dynamics.momenta.com[:2].copy()
 
     def _falls(self, rule: StepRule) -> bool:
-        """Return whether both feet as they stand cannot prevent a fall."""
+        """Return whether the trigger point has left the support of both feet."""
         soles = [self.dynamics.ground(end) for end in (0, 1)]
         rounded = self._stepping.support == "capsule"
         support = SupportRegion.rounded(soles) if rounded else SupportRegion.hull(np.vstack(soles))
         return needs_step(trigger_point(rule, self.dynamics.momenta), support, self._stepping.slack)
 
     def _begin(self, rule: StepRule, now: float) -> None:
-        """Choose a foot and lift it, if there is a place for it."""
+        """Start a step with the better foot, if any foot has an allowed place."""
         duration = self._stepping.duration
         placements = [self._placement(rule, foot, duration) for foot in (0, 1)]
         possible = [found for found in placements if found is not None]
@@ -156,7 +156,7 @@ class TorqueStepper(TorqueMotion):
         self._enter("swing", now)
 
     def _fly(self, now: float) -> None:
-        """Aim anew, or land."""
+        """Update the target of the swing foot early in the swing, or end the swing."""
         swing, stepping = self._flying, self._stepping
         part = (now - swing.began) / swing.duration
         if self._rule is not None and part < stepping.update:
@@ -169,13 +169,13 @@ class TorqueStepper(TorqueMotion):
             self._enter("land", now)
 
     def _placement(self, rule: StepRule, foot: int, left: float) -> Placement | None:
-        """Return where `foot` should land in `left` s, or None where it cannot."""
+        """Return the placement of `foot`, landing in `left` s, or None if no place is allowed."""
         other = 1 - foot
         momenta = self.dynamics.momenta
         support = SupportRegion.hull(self.dynamics.ground(other))
         pivot = support.nearest(capture_point(momenta))
         wanted = landing_point(rule, momenta, pivot, left)
-        # The point is where the ground should push: the middle of the sole, not below the ankle.
+        # The landing point is a centre of pressure: the sole's centre, not the end's site.
         middle = self._middle(foot) - self.dynamics.ends[foot].position[:2]
         self._wanted = pivot + self._stepping.gain * (wanted - pivot) - middle
         stance = self.dynamics.ends[other]
@@ -194,7 +194,7 @@ class TorqueStepper(TorqueMotion):
         return yaw_of(self.dynamics.base.rotation)
 
     def _com_aim(self, now: float) -> Array:
-        """Return where (2,) m the centre of mass should be."""
+        """Return the desired position (2,) of the centre of mass, m."""
         centre = 0.5 * (self._middle(0) + self._middle(1))
         if self._swing is not None:
             return self._com_swing(self._swing, now)

@@ -1,1 +1,1 @@
-"""Walking as a linear inverted pendulum plans it."""
+"""Walking planned with a linear inverted pendulum."""

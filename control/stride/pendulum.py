@@ -1,9 +1,9 @@
-"""The inverted pendulum that walks: where feet go for a wanted velocity, and the weight with them.
+"""Walking with an inverted pendulum: footsteps for a commanded velocity, and the capture point.
 
 Kenwright 2012, section V: it "can predict where to move the feet to maintain a persistent stable
-walking motion or to halt movement in any direction". At constant height its capture point xi runs
-away from the centre of pressure p, ``xi' = omega (xi - p)``, and the weight x follows it,
-``x' = omega (xi - x)``. So the way of xi is found backward from where it shall end.
+walking motion or to halt movement in any direction". At constant height the capture point xi
+diverges from the centre of pressure p, ``xi' = omega (xi - p)``, and the CoM x follows it,
+``x' = omega (xi - x)``. So the trajectory of xi is integrated backward from its end.
 
 Places are (x m, y m, yaw rad) on the ground.
 """
@@ -21,12 +21,12 @@ from windup.hal.joints import Array
 
 @dataclass(frozen=True)
 class VelocityCommand:
-    """Where somebody wants a robot to walk.
+    """Commanded velocity of a walk.
 
     Attributes:
-        speed: m/s; 0 halts it.
-        heading: Where to, rad, in the world of the plan.
-        face: Where its trunk looks, rad.
+        speed: Speed, m/s; 0 halts the robot.
+        heading: Direction of motion in the plan's frame, rad.
+        face: Heading of the trunk in the plan's frame, rad.
     """
 
     speed: float = 0.0
@@ -36,16 +36,16 @@ class VelocityCommand:
 
 @dataclass(frozen=True)
 class StepTiming:
-    """What steps a robot takes.
+    """Timing and bounds of the steps.
 
     Attributes:
-        single: Time on one foot, s.
-        double: Time on both, s.
-        width: From one foot to the other beside it, m.
-        longest: Farthest before or behind it, m.
-        narrowest: Nearest beside it, m.
-        widest: Farthest beside it, m.
-        turn: Most that a foot is turned against the other one, rad.
+        single: Duration of single support, s.
+        double: Duration of double support, s.
+        width: Nominal lateral distance of the feet, m.
+        longest: Maximum forward or backward distance of the feet, m.
+        narrowest: Minimum lateral distance of the feet, m.
+        widest: Maximum lateral distance of the feet, m.
+        turn: Maximum yaw between the feet, rad.
     """
 
     single: float
@@ -58,17 +58,17 @@ class StepTiming:
 
     @property
     def period(self) -> float:
-        """From one step to the next, s."""
+        """Duration of a step, single and double support, s."""
         return self.single + self.double
 
 
 def next_place(stance: Array, foot: int, order: VelocityCommand, pace: StepTiming) -> Array:
-    """Return where (3,) `foot` (0 left) goes from beside the other one, at `stance` (3,).
+    """Return the next place (3,) of `foot` (0 left), with the other one at `stance` (3,).
 
-    As far from there as the body goes in the time of a step, and no farther than it reaches.
+    It is displaced from its nominal place by the body's motion in a step, within the bounds.
     """
     left = way_round(stance[2], order.face)
-    # The foot that is outside turns first; the other one follows it with the next step.
+    # A foot turns only outward (the left one to the left); the other one follows in the next step.
     turned = float(np.clip(left, *((0.0, pace.turn) if foot == 0 else (-pace.turn, 0.0))))
     way = order.speed * pace.period * np.array([cos(order.heading), sin(order.heading), 0.0])
     ahead = seen_from(np.array([0.0, 0.0, stance[2] + 0.5 * turned]), way)
@@ -81,12 +81,12 @@ def next_place(stance: Array, foot: int, order: VelocityCommand, pace: StepTimin
 
 @dataclass(frozen=True)
 class PressureSegment:
-    """A stretch of the way of the centre of pressure.
+    """A linear segment of the trajectory of the centre of pressure.
 
     Attributes:
-        begin: (2,) m.
-        end: (2,) m.
-        duration: s.
+        begin: (2,) start point, m.
+        end: (2,) end point, m.
+        duration: Duration, s.
     """
 
     begin: Array
@@ -94,18 +94,18 @@ class PressureSegment:
     duration: float
 
     def pressure(self, time: float) -> Array:
-        """Return where (2,) it is `time` s after the beginning."""
+        """Return the centre of pressure (2,) m at `time`, s after the start of the segment."""
         part = min(time / self.duration, 1.0)
         return np.asarray(self.begin + part * (self.end - self.begin))
 
 
 def capture_on_way(way: Sequence[PressureSegment], omega: float, time: float) -> Array:
-    """Return where (2,) the capture point is on a way of the pressure that ends in rest.
+    """Return the capture point (2,) m on a CoP trajectory that ends at rest.
 
     Args:
-        way: What is left of it, from the present stretch on.
-        omega: Rate of the pendulum, 1/s.
-        time: How far into the present stretch, s.
+        way: The trajectory from the present segment on.
+        omega: Natural frequency of the pendulum, 1/s.
+        time: Time since the start of the present segment, s.
     """
     point = way[-1].end
     for number in range(len(way) - 1, -1, -1):
@@ -120,15 +120,15 @@ def capture_on_way(way: Sequence[PressureSegment], omega: float, time: float) ->
 def future(
     stance: Array, foot: int, landing: Array, order: VelocityCommand, pace: StepTiming, steps: int
 ) -> list[PressureSegment]:
-    """Return the way of the pressure after the present swing, which ends in rest.
+    """Return the CoP trajectory after the present swing, which ends at rest.
 
     Args:
-        stance: (3,) the foot that bears.
-        foot: The other one, in the air.
-        landing: (3,) where it comes down.
-        order: Where to walk after that.
-        pace: How.
-        steps: How many steps are looked ahead.
+        stance: (3,) place of the stance foot.
+        foot: Index of the swing foot.
+        landing: (3,) landing place of the swing foot.
+        order: Commanded velocity of the further steps.
+        pace: Timing and bounds of the steps.
+        steps: Number of further steps.
     """
     way = []
     for _ in range(steps):

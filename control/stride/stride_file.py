@@ -1,4 +1,4 @@
-"""`stride.toml` of a robot: how it walks as the inverted pendulum plans it. SI units."""
+"""Format of a robot's `stride.toml`: parameters of walking with a pendulum plan. SI units."""
 
 from windup.control.stride.pendulum import StepTiming
 from windup.hal.config import NotNegative as Gain
@@ -6,39 +6,39 @@ from windup.hal.config import Part, Positive, Record
 
 
 class Stride(Record, frozen=True, kw_only=True):
-    """How a robot with position servos strides.
+    """Parameters of walking with a pendulum plan, for a robot with position servos.
 
     Attributes:
-        stance: Name of the pose that it starts from, soles flat.
-        begin: Time in which the weight goes over the first foot that stays, s.
-        single: Time on one foot, s.
-        double: Time on both, s.
-        lift: How high a foot is lifted, m.
-        early: How much sooner than in the middle of the swing that is; see
+        stance: Name of the pose that the robot starts from, soles flat.
+        begin: Time to shift the weight onto the first stance foot, s.
+        single: Duration of single support, s.
+        double: Duration of double support, s.
+        lift: Height to which a foot is lifted, m.
+        early: Shift of the highest point to an earlier time in the swing; see
             `windup.control.footprints.swing.lift`.
-        width: From one foot to the other beside it, m.
-        lead: The foot in the air is told where it should be so much later, for servos lag, s.
-        quicken: Most that the speed changes from one step to the next, m/s.
-        height: Of the base above the soles, m.
-        fastest: Most speed that it takes orders for, m/s.
-        longest: Farthest that a foot goes before or behind the other one, m.
-        narrowest: Nearest beside it, m.
-        widest: Farthest beside it, m.
-        turn: Most that a foot is turned against the other one, rad.
-        yielding: Rate at which the planned centre of mass goes to where it is measured, 1/s; the
-            capture point is what has to be where it is planned.
-        adjust: Part of the way that the capture point will have strayed when the foot lands, by
-            which that foot lands elsewhere.
-        update: The part of the swing in which it is still decided anew.
-        most: Most that a foot lands elsewhere, m.
-        keep: Time in which it makes up for being behind where it should be, s.
-        feel: Time in which the standing sole tells how the ground lies, s.
-        hold: Proportional gain on the CoM error.
-        brake: Derivative gain on the CoM, s.
-        level: Part of the tilt of the base that the goals lean against it.
-        steady: Time by which the rate of that tilt does so, s.
-        follow: Rate at which what lasts of either is made up for, 1/s.
-        slow: Time constant of the torques that hold the weight, s.
+        width: Nominal lateral distance of the feet, m.
+        lead: Time by which the goals of the swing foot are ahead, against the servos' lag, s.
+        quicken: Maximum change of the velocity from one step to the next, m/s.
+        height: Height of the base above the soles, m.
+        fastest: Maximum commanded speed, m/s.
+        longest: Maximum forward or backward distance of the feet, m.
+        narrowest: Minimum lateral distance of the feet, m.
+        widest: Maximum lateral distance of the feet, m.
+        turn: Maximum yaw between the feet, rad.
+        yielding: Rate at which the planned CoM is drawn to the measured CoM, 1/s; only the capture
+            point has to follow the plan exactly.
+        adjust: Gain from the predicted capture point error at touchdown to the displacement of
+            the landing place.
+        update: Fraction of the swing until which the landing place is adjusted.
+        most: Maximum displacement of the landing place per axis, m.
+        keep: Time constant in which a position lag is made up for, s.
+        feel: Time constant of the low-pass filter on the ground normal, s.
+        hold: Proportional gain on the CoM position error.
+        brake: Derivative gain on the CoM velocity error, s.
+        level: Proportional gain on the tilt of the base.
+        steady: Derivative gain on the tilt rate of the base, s.
+        follow: Integral gain on the CoM error and on the tilt, 1/s.
+        slow: Time constant of the low-pass filter on the gravity torques, s.
     """
 
     stance: str
@@ -71,7 +71,7 @@ class Stride(Record, frozen=True, kw_only=True):
 
     @property
     def pace(self) -> StepTiming:
-        """Its steps."""
+        """Timing and bounds of the steps."""
         return StepTiming(
             self.single,
             self.double,

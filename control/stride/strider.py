@@ -1,8 +1,8 @@
-"""Walks and halts in any direction as the inverted pendulum plans it, on position servos.
+"""Walks and halts in any direction on position servos, planned with an inverted pendulum.
 
-Kenwright 2012, section V. The plan lives in the world in which the foot that bears stands where it
-is measured. At each step the feet are measured anew; while one is in the air it is sent where the
-capture point will have strayed to.
+Kenwright 2012, section V. The plan is fixed to the stance foot: it moves with the measured place
+of that foot. At each step the plan restarts from the measured feet; during the swing the landing
+place is displaced by the predicted error of the capture point.
 """
 
 from collections.abc import Callable, Sequence
@@ -33,31 +33,31 @@ from windup.hal.observation import Observation
 
 Phase = Literal["stand", "shift", "swing", "land", "halt"]
 AHEAD = 3
-"""Steps that are looked ahead; what comes later moves nothing any more."""
+"""Horizon of the plan, steps; later ones have no noticeable effect."""
 STEEPEST = 0.15
-"""Slope of the ground that is believed, rad."""
+"""Maximum component of the measured ground normal along x and y (about the slope in rad)."""
 MOST_BEHIND = 0.1
-"""How far behind where it should be it is at most taken to be, m."""
+"""Maximum position lag that is made up for, m."""
 FACING, AWAY = 0.1, 0.2
-"""A robot halts where it faces as ordered to so much, and turns again from so much on, rad."""
+"""Heading errors below which a walk halts, and above which a standing robot turns, rad."""
 
 
 class Strider(LegMotion):
-    """Walks where it is ordered to.
+    """Controller that walks at a commanded velocity.
 
     Args:
         joints: The robot's joints.
         body: Kinematics of the robot.
         base: Name of the body with the free joint.
-        limbs: Inverse kinematics of its two legs, in the order of its soles.
-        stance: (n,) rad, the pose to start from; joints of no leg keep it.
-        orders: What to do, given the time since the start, s; headings are seen from how the
-            robot faced there.
+        limbs: Inverse kinematics of the two legs, in the order of the soles.
+        stance: (n,) rad, the pose to start from; joints outside the legs keep it.
+        orders: Returns the command for the time since the start, s; its headings are relative to
+            the robot's heading at the start.
         how: Gains and times.
 
     Attributes:
-        steps: Steps that it took.
-        phase: What it is at.
+        steps: Number of finished steps.
+        phase: Present phase.
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class Strider(LegMotion):
         self.phase: Phase = "stand"
 
     def reset(self, observation: Observation) -> None:
-        """Begin to stand where it stands."""
+        """Start standing at the measured place."""
         super().reset(observation)
         self.steps = 0
         self._feet = self.places.copy()
@@ -97,7 +97,7 @@ class Strider(LegMotion):
         self._enter("stand", observation.time)
 
     def plan(self, now: float, dt: float) -> Aim:
-        """Return what to do now."""
+        """Return the aim of this tick."""
         self._feel(dt)
         self._advance(now)
         if self.phase != "stand":
@@ -126,12 +126,12 @@ class Strider(LegMotion):
         )
 
     def sole(self, foot: int) -> Pose:
-        """Return where the sole on the ground should be: where it is, along the ground."""
+        """Return the desired pose of a sole on the ground: its place, aligned with the ground."""
         x, y, yaw = self.places[foot]
         return Pose(np.array([x, y, self.heights[foot]]), lying(self._normal, yaw))
 
     def flying(self, foot: int) -> Pose:
-        """Return where the sole in the air should be."""
+        """Return the desired pose of the swing foot's sole."""
         if self.phase != "swing":
             x, y, yaw = self._seen(self._landing)
             up = -PRESS
@@ -146,7 +146,7 @@ class Strider(LegMotion):
         return Pose(np.array([x, y, level + up]), lying(self._normal, yaw))
 
     def _asked(self, now: float) -> VelocityCommand:
-        """Return the order of now in the plan's world, with what it is behind made up for."""
+        """Return the command of now in the plan's frame, with a velocity against position lag."""
         order = self.orders(now - self._origin)
         heading, face = self._facing + order.heading, self._facing + order.face
         wish = order.speed * np.array([cos(heading), sin(heading)])
@@ -161,7 +161,7 @@ class Strider(LegMotion):
         return VelocityCommand(float(np.linalg.norm(way)), atan2(way[1], way[0]), face)
 
     def _advance(self, now: float) -> None:
-        """Go on to the next phase when it is time."""
+        """Enter the next phase if it is due."""
         over = now - self._began >= self._time - 1e-9
         if self.phase == "stand":
             self._wanted, self._pull = between(*self.places)[:2], np.zeros(2)
@@ -179,7 +179,7 @@ class Strider(LegMotion):
             self._enter("swing", now)
 
     def _enter(self, phase: Phase, now: float) -> None:
-        """Begin a phase: plan anew from where the feet are."""
+        """Enter a phase, and replan from the measured feet."""
         self.phase, self._began = phase, now
         if phase == "shift":
             aside = way_round(self._facing, self._order.heading) * self._order.speed
@@ -196,7 +196,7 @@ class Strider(LegMotion):
         self._time, self._ways = self._stretches()
 
     def _lift_off(self, now: float) -> None:
-        """Decide where the foot goes, and whether it comes to rest there."""
+        """Set the landing place of the swing foot, and whether the walk ends there."""
         self._order = self._asked(now)
         stance = self._feet[self._bears]
         there = abs(way_round(stance[2], self._order.face)) < FACING
@@ -210,7 +210,7 @@ class Strider(LegMotion):
         self._yaws = (self._yaws[1], self._yaws[1] + way_round(self._yaws[1], towards))
 
     def _stretches(self) -> tuple[float, list[PressureSegment]]:
-        """Return how long the phase lasts, s, and the way of the pressure from there on."""
+        """Return the duration of the present phase, s, and the CoP trajectory from its start."""
         pace, middle = self.pace, between(*self._feet)[:2]
         stance, other = self._feet[self._bears], self._feet[self._foot]
         if self.phase == "stand":
@@ -231,14 +231,14 @@ class Strider(LegMotion):
         return first.duration, [first, swing, *ahead]
 
     def _swing_way(self) -> list[PressureSegment]:
-        """Return the way of the pressure from a swing on."""
+        """Return the CoP trajectory from the start of the present swing."""
         stance, steps = self._feet[self._bears], 0 if self._ending else AHEAD
         swing = PressureSegment(stance[:2], stance[:2], self.pace.single)
         ahead = future(stance, self._foot, self._landing, self._order, self.pace, steps)
         return [swing, *ahead]
 
     def _adjust(self, point: Array) -> None:
-        """Send the foot where the capture point will have strayed to from where it should be."""
+        """Displace the landing place by the capture point error predicted for touchdown."""
         now = self._planned(np.array([*self.mass[:2] + self.speed / self._omega, 0.0]))
         grows = exp(self._omega * self.pace.single * (1.0 - self._part))
         change = self.how.adjust * grows * (now[:2] - point)
@@ -250,7 +250,7 @@ class Strider(LegMotion):
         self._ways = self._swing_way()
 
     def _bearing(self, gone: float) -> float:
-        """Return what part of the weight the second foot should bear now."""
+        """Return the desired share of the weight on the second foot."""
         if self.phase == "stand":
             return 0.5
         one, way = self._feet[0, :2], self._feet[1, :2] - self._feet[0, :2]
@@ -258,7 +258,7 @@ class Strider(LegMotion):
         return float(np.clip(along, 0.0, 1.0))
 
     def _feel(self, dt: float) -> None:
-        """Let the standing sole tell how the ground lies, and how high."""
+        """Update the ground's normal and height from the stance foot's sole."""
         if self.phase == "swing":
             site = int(self.body.soles[self._bears])
             up = self.body.data.site_xmat[site].reshape(3, 3)[:, 2]
@@ -269,10 +269,10 @@ class Strider(LegMotion):
         self.ground = float((1.0 - self._share) * one + self._share * other)
 
     def _seen(self, place: Array) -> Array:
-        """Return where a place (2,) or (3,) of the plan is, by the foot that bears."""
+        """Return a place (2,) or (3,) of the plan in the world, by the measured stance foot."""
         full = place if len(place) == 3 else np.array([*place, 0.0])
         return onto(self.places[self._bears], seen_from(self._feet[self._bears], full))
 
     def _planned(self, place: Array) -> Array:
-        """Return where in the plan a place (3,) is."""
+        """Return a place (3,) of the world in the plan's frame."""
         return onto(self._feet[self._bears], seen_from(self.places[self._bears], place))

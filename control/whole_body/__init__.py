@@ -1,1 +1,1 @@
-"""Inverse dynamics as a quadratic program over the whole body."""
+"""Whole-body control: inverse dynamics as a quadratic programme."""

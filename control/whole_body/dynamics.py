@@ -1,4 +1,4 @@
-"""Equation of motion of an observed robot, and of the points and ends on which it stands."""
+"""Equation of motion of an observed robot, with the kinematics of its ends (feet or hands)."""
 
 from collections.abc import Sequence
 
@@ -13,24 +13,24 @@ from windup.hal.observation import Observation
 
 
 class Dynamics:
-    """Terms of M qdd + h = S^T tau + J^T f, with v = 6 + n degrees of freedom.
+    """Computes the terms of M qdd + h = S^T tau + J^T f, with v = 6 + n degrees of freedom.
 
     Args:
         model: The robot alone: a free joint, then n hinges in MJCF order.
         base: Name of the body with the free joint.
         ends: Names of the sites at the ends that can stand, feet or hands.
-        delay: From a state being measured to a command for it acting, s; everything is taken to
-            go on so long as it moves now.
+        delay: Latency from a measured state to the effect of its command, s; positions are
+            extrapolated by it at constant velocity.
 
     Attributes:
         mass: (v, v) mass matrix M, kg and kg m2.
         bias: (v,) gravity, Coriolis and centrifugal forces h, N and N m.
         momenta: Momenta of the whole body.
         position: (n,) joint positions, rad.
-        velocity: (v,) linear in the world, angular in the base, joints.
+        velocity: (v,) base linear (world frame), base angular (base frame), and joint velocities.
         base: Pose of the base.
         ends: Poses of the ends.
-        corners: For each end (p, 3) points that can touch the ground, in the end's frame, m.
+        corners: For each end the points (p, 3) that can touch the ground, in the end's frame, m.
     """
 
     momenta: Momenta
@@ -54,7 +54,7 @@ class Dynamics:
         self.corners = [self._find_corners(site) for site in self._sites]
 
     def update(self, observation: Observation) -> None:
-        """Measure everything anew.
+        """Update all attributes for an observation.
 
         Raises:
             StateMissingError: The observation has no base.
@@ -90,18 +90,18 @@ class Dynamics:
         ]
 
     def ground(self, end: int) -> Array:
-        """Return where (p, 3) m in the world the corners of an end are."""
+        """Return the corners (p, 3) of an end in the world frame, m."""
         return self._grounds[end]
 
     def jacobian(self, end: int) -> Array:
-        """Return the Jacobian (6, v) of an end: linear, then angular, in the world."""
+        """Return the Jacobian (6, v) of an end: linear, then angular, in the world frame."""
         if (known := self._jacobians[end]) is None:
             known = self._jacobians[end] = np.zeros((6, self.model.nv))
             mujoco.mj_jacSite(self.model, self._data, known[:3], known[3:], self._sites[end])
         return known
 
     def drift(self, end: int) -> Array:
-        """Return the acceleration (6,) of an end that comes from velocities alone."""
+        """Return the acceleration (6,) of an end at zero joint acceleration, dJ/dt v."""
         rate = np.zeros((6, self.model.nv))
         site = self._sites[end]
         body = int(self.model.site_bodyid[site])
@@ -110,10 +110,10 @@ class Dynamics:
         return np.asarray(rate @ self.velocity)
 
     def _find_corners(self, site: int) -> Array:
-        """Return the outermost points of the spheres with which an end touches the ground.
+        """Return the lowest points of the outermost contact spheres of an end, in its frame, m.
 
         Raises:
-            UsageError: It cannot touch it.
+            UsageError: The end's body has no geom that collides with the ground.
         """
         model, data = self.model, self._data
         on = model.geom_bodyid == model.site_bodyid[site]
@@ -127,7 +127,7 @@ class Dynamics:
 
 
 def _outermost(points: Array) -> Array:
-    """Return which points (p, 3) are extreme in a diagonal direction, at most four."""
+    """Return the indices of the points (p, 3) extreme in a diagonal direction, at most four."""
     signs = np.array([[1, 1], [1, -1], [-1, -1], [-1, 1]])
     centred = points[:, :2] - points[:, :2].mean(axis=0)
     scale = np.maximum(np.abs(centred).max(axis=0), 1e-9)

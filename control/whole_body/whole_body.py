@@ -1,7 +1,7 @@
-"""Whole-body control: joint accelerations and contact forces that serve several objectives.
+"""Whole-body control: joint accelerations and contact forces for several weighted objectives.
 
 The multiobjective optimisation of Macchietto et al. 2009 and Wu & Zordan 2010, section 5, as a
-quadratic programme; inverse dynamics turns its answer into torques at every tick.
+quadratic programme; inverse dynamics converts its solution into torques at every tick.
 """
 
 from collections.abc import Sequence
@@ -19,20 +19,20 @@ from windup.hal.joints import Array
 
 EDGES: Final = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 EQUAL: Final = 5
-"""daqp's mark of a constraint that always holds with equality."""
+"""daqp's flag for an equality constraint."""
 SOFT: Final = 8
-"""Its mark of one that may be broken at a cost: torque limits, at speeds that none can stop."""
+"""daqp's flag for a soft constraint: torque limits may be infeasible at high speeds."""
 REGULAR: Final = 1e-6
-"""Weight of every variable, so that the answer is the only one."""
+"""Regularisation weight of every variable, which makes the solution unique."""
 FASTEST: Final = 1000.0
-"""Largest acceleration of a plan, m/s2 and rad/s2: more only shakes a light foot."""
+"""Maximum acceleration of a plan, m/s2 and rad/s2: larger ones only shake a light foot."""
 REACH: Final = 10.0
-"""Moment of inertia that makes angular momentum commensurate with the rest, kg m2."""
+"""Moment of inertia by which angular momentum rates are scaled to accelerations, kg m2."""
 
 
 @dataclass(frozen=True)
 class Weights:
-    """How much each objective counts, for errors of accelerations in m/s2 and rad/s2."""
+    """Weights of the objectives, for errors of accelerations in m/s2 and rad/s2."""
 
     com: float = 10.0
     angular: float = 1.0
@@ -45,16 +45,16 @@ class Weights:
 
 @dataclass(frozen=True)
 class Objectives:
-    """What the body should do now.
+    """Desired accelerations of the body.
 
     Attributes:
         com: (3,) acceleration of the centre of mass (Eq. 10), m/s2.
         angular: (3,) rate of the angular momentum (Eq. 11 about the vertical), N m.
         posture: (n,) accelerations of the joints (Eq. 9), rad/s2.
         trunk: (3,) angular acceleration of the base in its own frame, rad/s2.
-        stance: Ends that stand.
+        stance: Indices of the ends that stand.
         stance_rate: For each of these the acceleration (6,) that keeps it still.
-        swing: End that swings, if any, and its acceleration (6,) m/s2 and rad/s2.
+        swing: Index of the end that swings and its acceleration (6,) m/s2 and rad/s2, or None.
     """
 
     com: Array
@@ -68,7 +68,7 @@ class Objectives:
 
 @dataclass(frozen=True)
 class Plan:
-    """Accelerations (v,) and, for each standing end, forces (p, 3) N at its corners."""
+    """Solution: accelerations (v,) and, for each standing end, forces (p, 3) N at its corners."""
 
     acceleration: Array
     forces: dict[int, Array]
@@ -78,10 +78,10 @@ class WholeBody:
     """The quadratic programme of a robot.
 
     Args:
-        dynamics: Its equation of motion.
-        limit: (n,) largest torques, N m.
+        dynamics: The robot's equation of motion.
+        limit: (n,) maximum torques, N m.
         friction: Coefficient of the friction pyramid.
-        weights: Of the objectives.
+        weights: Weights of the objectives.
     """
 
     def __init__(
@@ -91,14 +91,14 @@ class WholeBody:
         self._weights = weights or Weights()
         # Edges of a pyramid inside the cone, each with a vertical part of 1.
         self._edges = np.column_stack((friction * EDGES, np.ones(len(EDGES))))
-        # An arm (3,) times this is its cross product with each edge, one after the other.
+        # An arm (3,) times this matrix is its cross product with each edge, concatenated.
         self._levers = np.cross(np.eye(3)[:, None], self._edges).reshape(3, -1)
 
     def plan(self, wanted: Objectives) -> Plan:
-        """Return what serves `wanted` best within friction and torque limits.
+        """Return the best plan for `wanted` within friction and torque limits.
 
         Raises:
-            WindupError: There is no answer, which a body that can fall freely never meets.
+            WindupError: There is no solution; for a body that can fall freely there always is one.
         """
         dynamics = self.dynamics
         hessian, linear = self._cost(wanted)
@@ -120,7 +120,7 @@ class WholeBody:
         return Plan(answer[:count], dict(zip(wanted.stance, parts, strict=True)))
 
     def torque(self, plan: Plan) -> Array:
-        """Return the torques (n,) N m that do a plan in the state of now (inverse dynamics)."""
+        """Return the torques (n,) N m of a plan in the present state (inverse dynamics)."""
         dynamics = self.dynamics
         force = dynamics.mass @ plan.acceleration + dynamics.bias
         for end, forces in plan.forces.items():
@@ -132,7 +132,7 @@ class WholeBody:
         return np.clip(force[6:], -self._limit, self._limit)
 
     def _spread(self, stance: Sequence[int]) -> Array:
-        """Return the matrix (v, edges) that makes generalised forces of the edges' sizes."""
+        """Return the matrix (v, edges) from edge force magnitudes to generalised forces."""
         rows = []
         for end in stance:
             arms = self.dynamics.ground(end) - self.dynamics.ends[end].position
@@ -140,7 +140,7 @@ class WholeBody:
         return np.vstack(rows).T
 
     def _wrenches(self, arms: Array) -> Array:
-        """Return force and moment (edges, 6) of each edge at the ends of `arms` (p, 3)."""
+        """Return force and moment (edges, 6) of each edge's unit force at `arms` (p, 3)."""
         count = len(self._edges)
         wrenches = np.empty((len(arms), count, 6))
         wrenches[:, :, :3] = self._edges
@@ -148,7 +148,7 @@ class WholeBody:
         return wrenches.reshape(-1, 6)
 
     def _cost(self, wanted: Objectives) -> tuple[Array, Array]:
-        """Return the least squares over (accelerations, edges): Hessian and linear part."""
+        """Return Hessian and linear part of the least squares over (accelerations, edges)."""
         rows, goals = self._motion(wanted)
         momentum, rates = self._momentum(wanted)
         count = len(self.dynamics.bias)
@@ -159,7 +159,7 @@ class WholeBody:
         return hessian, -np.concatenate((goals @ rows, rates @ momentum))
 
     def _motion(self, wanted: Objectives) -> tuple[Array, Array]:
-        """Return weighted rows over the accelerations, and goals."""
+        """Return the weighted rows over the accelerations, and their goals."""
         weights, dynamics = self._weights, self.dynamics
         eye = np.eye(len(dynamics.bias))
         parts = [
@@ -177,7 +177,7 @@ class WholeBody:
         return rows, np.concatenate([sqrt(weight) * goal for weight, _, goal in parts])
 
     def _momentum(self, wanted: Objectives) -> tuple[Array, Array]:
-        """Return weighted rows (6, edges): what forces do to both momenta; and goals."""
+        """Return the weighted rows (6, edges) of the momentum rates, and their goals."""
         body, weights = self.dynamics.momenta, self._weights
         points = np.vstack([self.dynamics.ground(end) for end in wanted.stance])
         rows = self._wrenches(points - body.com).T / np.repeat((body.mass, REACH), 3)[:, None]
