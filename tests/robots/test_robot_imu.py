@@ -7,7 +7,7 @@ from windup.hal.errors import ConfigError
 from windup.robots import RobotDescription, load_robot
 
 FEETECH = [
-    ('servo = "XM430-W350"', 'servo = "STS3215"'),
+    ('servo = "XM430-W350"', 'servo = "STS3215-12V"'),
     (', servo = "XL430-W250"', ""),
     ('"dynamixel2"', '"feetech"'),
 ]

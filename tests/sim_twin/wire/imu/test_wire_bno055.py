@@ -24,7 +24,7 @@ def duck(tmp_path: Path) -> Path:
 
 
 def test_the_driver_sees_how_the_robot_stands(duck: Path) -> None:
-    with Robot.open(duck, port=f"twin://{duck}") as robot:
+    with Robot.open(str(duck), port=f"twin://{duck}") as robot:
         robot.stand(0.5)
         imu, base = robot.backend.read().imu, robot.twin.data.qpos[3:7]
         assert imu is not None and imu.orientation is not None
@@ -38,6 +38,6 @@ def test_a_chip_that_falls_silent_stops_who_balances_with_it(duck: Path) -> None
     faults = "faults=imu_silent:at=1.5"
     with (
         pytest.raises(ImuError, match="the IMU"),
-        Robot.open(duck, port=f"twin://{duck}?{faults}") as robot,
+        Robot.open(str(duck), port=f"twin://{duck}?{faults}") as robot,
     ):
         robot.walk(steps=40)
