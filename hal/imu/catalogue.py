@@ -10,11 +10,6 @@ from windup.hal.imu.opencr import OPENCR
 _KINDS = {kind.name: kind for kind in (OPENCR, BNO08X_RVC, BNO055, OPEN_DUCK)}
 
 
-def imu_kinds() -> tuple[str, ...]:
-    """Return the names of all kinds of IMU."""
-    return tuple(_KINDS)
-
-
 def imu_kind(name: str) -> ImuKind:
     """Return the kind of IMU called `name`.
 

@@ -32,7 +32,6 @@ POWER_UP_TIME = 0.5
 CUTOFF = 41.0
 """Of the low-pass filter of gyroscope and accelerometer (MPU9250), as the firmware sets it, Hz."""
 VOLTAGE = Register("present_voltage", 31, 1)
-VOLTAGE_UNIT = 0.1
 BUTTONS = ("mode", "start", "user", "reset")
 """Names on the back of the robot, from the lowest bit of register 30 up (`dxl_node_op3.cpp`).
 

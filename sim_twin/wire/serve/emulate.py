@@ -49,7 +49,6 @@ class Emulator:
 
     Attributes:
         outlets: The buses with their links.
-        slipped: Total time by which simulated time was delayed because the machine was too slow, s.
     """
 
     def __init__(
@@ -60,7 +59,6 @@ class Emulator:
     ) -> None:
         self.world = world
         self.outlets: list[Outlet] = []
-        self.slipped = 0.0
         self._wake_read, self._wake_write = os.pipe()
         self._running = True
         self._watcher = Watcher(world, journal, events)
@@ -156,10 +154,7 @@ class Emulator:
         Catching up would leave no time to receive, and the servos would run too fast.
         """
         late = now - self.world.physics_time
-        if late < SLIP:
-            return 0.0
-        self.slipped += late
-        return late
+        return 0.0 if late < SLIP else late
 
     def _wait(self, seconds: float, start: float) -> None:
         """Wait for bytes from a program for up to `seconds`, then receive them."""
