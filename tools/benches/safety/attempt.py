@@ -12,7 +12,7 @@ from pathlib import Path
 
 from windup.tools.benches.safety.emulated import Journal, serve
 from windup.tools.benches.safety.moment import Moment
-from windup.tools.benches.safety.processes import child_with, guardian_of
+from windup.tools.benches.safety.processes import alive, child_with, guardian_of, is_guardian
 from windup.tools.benches.safety.program import Program, main
 from windup.tools.benches.safety.row import Row
 from windup.tools.benches.safety.standard_error import unread
@@ -70,9 +70,10 @@ def trial(
 
 def end(running: Trial) -> None:
     """Kill a guardian that is still trying, and close the descriptors."""
-    if running.guardian is not None:
+    guardian = running.guardian or guardian_of(running.port)
+    if alive(guardian) and is_guardian(guardian):
         with suppress(ProcessLookupError):
-            os.kill(running.guardian, signal.SIGKILL)
+            os.kill(guardian, signal.SIGKILL)
     for descriptor in running.taken:
         os.close(descriptor)
 

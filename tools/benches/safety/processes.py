@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 from pathlib import Path
+from typing import TypeGuard
 
 from windup.hal.port.lock import AdapterLock
 
@@ -26,7 +27,14 @@ def child_with(parent: int, word: str) -> int | None:
     return None
 
 
-def alive(number: int | None) -> bool:
+def is_guardian(number: int) -> bool:
+    """Return whether a process is a guardian; the lock of an adapter may name another one."""
+    with suppress(OSError):
+        return b"windup.hal.guardian" in Path(f"/proc/{number}/cmdline").read_bytes()
+    return False
+
+
+def alive(number: int | None) -> TypeGuard[int]:
     """Return whether a process is running and not a zombie."""
     if number is None:
         return False
