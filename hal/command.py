@@ -61,8 +61,8 @@ class JointCommand:
         joints: Joints,
         *,
         position: Array | float,
-        velocity: Array | float = 0.0,
-        torque: Array | float = 0.0,
+        velocity: Array | float | None = None,
+        torque: Array | float | None = None,
         stiffness: Array | float | None = None,
         damping: Array | float | None = None,
     ) -> "JointCommand":
@@ -71,13 +71,17 @@ class JointCommand:
         Args:
             joints: The joints.
             position: (n,) rad.
-            velocity: (n,) rad/s.
-            torque: (n,) N m.
+            velocity: (n,) rad/s, by default 0.
+            torque: (n,) N m, by default 0.
             stiffness: (n,) N m/rad, by default the joints' own.
             damping: (n,) N m s/rad, by default the joints' own.
         """
-        block = np.empty((len(FIELDS), len(joints)))
-        block[0], block[1], block[2] = position, velocity, torque
+        block = np.zeros((len(FIELDS), len(joints)))
+        block[0] = position
+        if velocity is not None:
+            block[1] = velocity
+        if torque is not None:
+            block[2] = torque
         block[3] = joints.stiffness if stiffness is None else stiffness
         block[4] = joints.damping if damping is None else damping
         block.setflags(write=False)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import inf
 
 from windup.control.falling.protection import Protected
 from windup.control.loop import LoopReport, Until
@@ -42,7 +43,7 @@ class RunEnd:
     protected: Protected | None = None
 
     def __post_init__(self) -> None:
-        self._begin = self.opened
+        self._begin_at(self.opened)
 
     def __call__(self, observation: Observation) -> str | None:
         """Return why the run is over, or None."""
@@ -55,23 +56,17 @@ class RunEnd:
             return self._landed() if self.protected.finished else None
         if not self.down and self.fallen():
             return "fell" if self.loop.ticks else LAY
-        if self._approaches(observation.time):
+        if self.approach is not None and self.approach.active:
+            self._begin_at(observation.time)
             return None
         if self.until is not None and (reason := self.until(observation)) is not None:
             return reason
-        over = self.seconds is not None and observation.time >= self._end(self.seconds)
-        return "done" if over else None
+        return "done" if observation.time >= self._end else None
 
-    def _approaches(self, now: float) -> bool:
-        """Return whether the first motion goes on; the time of the run counts from its end."""
-        if self.approach is None or not self.approach.active:
-            return False
-        self._begin = now
-        self.loop.first_motion = now - self.opened
-        return True
-
-    def _end(self, seconds: float) -> float:
-        return self._begin + seconds - EPSILON
+    def _begin_at(self, time: float) -> None:
+        """Let the duration of the run count from `time`, the end of the first motion so far, s."""
+        self.loop.first_motion = time - self.opened
+        self._end = inf if self.seconds is None else time + self.seconds - EPSILON
 
     def _landed(self) -> str:
         """Return why a run ends whose fall is over."""
