@@ -80,7 +80,7 @@ class CyclicRead(ABC):
                 data.take(self._error_at, out=self.error, mode="clip")
                 if not self.complete:
                     self.valid.fill(True)
-                    self.complete = True
+                    self.complete, self.doubted = True, frozenset()
                 return self.valid
         self._salvage(stream)
         return self.valid

@@ -109,6 +109,20 @@ def test_servos_that_are_back_beside_a_dead_one_are_believed_behind_a_silence(
     assert read.valid[:19].all()
 
 
+def test_a_doubt_ends_with_the_first_whole_answer(read: BlockRead) -> None:
+    serial, port = fake_port(IDS)
+    exchange = exchange_of(serial, port)
+    serial.silent |= set(IDS)
+    for _ in range(4):
+        cycle(exchange, read)
+    serial.silent = {20}
+    cycle(exchange, read)
+    assert read.doubted
+    serial.silent.clear()
+    cycles = [cycle(exchange, read) for _ in range(4 * DOUBTS)]
+    assert cycles[1:] == pytest.approx([wire_time(read)] * (len(cycles) - 1))
+
+
 def test_servos_that_are_all_back_are_believed_at_once(read: BlockRead) -> None:
     serial, port = fake_port(IDS)
     exchange = exchange_of(serial, port)
