@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: walk test check clean
+.PHONY: walk test schemas check clean
 
 walk: .venv/run.stamp
 	$(BIN)/windup walk op3 --plot walk.png
@@ -13,6 +13,10 @@ test: .venv/dev.stamp .venv/clients.stamp
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/pytest -n 2
+
+# JSON Schemas of the TOML files; a test says when they are out of date.
+schemas: .venv/run.stamp
+	$(BIN)/python -m windup.tools.schemas.generate
 
 .venv/bin/python:
 	$(PYTHON) -m venv .venv

@@ -11,7 +11,7 @@ import msgspec
 from msgspec import Meta
 
 from windup.hal.errors import ConfigError, suggest
-from windup.hal.missing_keys import missing_keys
+from windup.hal.key_mistakes import key_mistakes
 from windup.hal.small_file import read_small
 
 T = TypeVar("T")
@@ -42,6 +42,20 @@ def load_toml(path: Path, record: type[T]) -> T:
     Raises:
         ConfigError: The file is missing, is not TOML, or does not fit the record.
     """
+    data = read_toml(path)
+    check_finite(path, data)
+    try:
+        return msgspec.convert(data, record)
+    except msgspec.ValidationError as error:
+        raise ConfigError(f"{path}: {_explain(str(error), record, data)}") from None
+
+
+def read_toml(path: Path) -> dict[str, Any]:
+    """Return the parsed TOML of the file at `path`.
+
+    Raises:
+        ConfigError: The file is missing, or is not TOML.
+    """
     try:
         text = read_small(path).decode("utf-8-sig")  # Windows editors may write a BOM
     except OSError as error:
@@ -49,14 +63,9 @@ def load_toml(path: Path, record: type[T]) -> T:
     except UnicodeDecodeError:
         raise ConfigError(f"{path}: not TOML: this is no UTF-8 text") from None
     try:
-        data = tomllib.loads(text)
+        return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # numbers of 5000 digits, brackets 500 deep
         raise ConfigError(f"{path}: not TOML: {error}") from None
-    check_finite(path, data)
-    try:
-        return msgspec.convert(data, record)
-    except msgspec.ValidationError as error:
-        raise ConfigError(f"{path}: {_explain(str(error), record, data)}") from None
 
 
 def check_finite(path: Path, data: Any) -> None:
@@ -65,11 +74,19 @@ def check_finite(path: Path, data: Any) -> None:
     Raises:
         ConfigError: A number is not finite; the message names the file and the key.
     """
+    for key, why in not_finite(data):
+        raise ConfigError(f"{path}: {key}: {why}")
+
+
+def not_finite(data: Any) -> Iterator[tuple[str, str]]:
+    """Yield key and message of every number in `data` that is not finite, or too large."""
     for key, number in _numbers(data, ""):
         if not -LARGEST <= number <= LARGEST:
             infinite = isinstance(number, float) and not isfinite(number)
-            why = f"{number:g} is not finite" if infinite else f"no number is beyond {LARGEST:g}"
-            raise ConfigError(f"{path}: {key}: {why}")
+            yield (
+                key,
+                (f"{number:g} is not finite" if infinite else f"no number is beyond {LARGEST:g}"),
+            )
 
 
 def _numbers(data: Any, key: str) -> Iterator[tuple[str, float]]:
@@ -87,7 +104,7 @@ def _numbers(data: Any, key: str) -> Iterator[tuple[str, float]]:
 def _explain(message: str, record: type, data: Any) -> str:
     """Return the message for msgspec's `message`: the key first, then the likely spelling."""
     if "missing required field" in message:
-        missing = list(missing_keys(data, record))
+        missing = [lost.key for lost in key_mistakes(data, record) if lost.kind == "missing"]
         more = f" and {len(missing) - MOST_NAMED} more" if len(missing) > MOST_NAMED else ""
         return f"missing: {', '.join(missing[:MOST_NAMED])}{more}"
     message = message.replace("Object ", "")

@@ -12,6 +12,7 @@ import numpy as np
 
 from windup.hal.joints import Array
 from windup.robots import mjcf
+from windup.robots.mistake import Mistake
 from windup.robots.records import CouplingEntry, RobotFile
 
 JOINT = mujoco.mjtObj.mjOBJ_JOINT
@@ -48,10 +49,12 @@ def bring_in_step(model: mujoco.MjModel, qpos: Array, driven: Iterable[str]) -> 
             known |= {int(model.eq_obj1id[eq]), int(model.eq_obj2id[eq])}
 
 
-def coupling_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[tuple[str, str]]:
-    """Yield key and message of each mistake in the couplings; their joints must be in the MJCF."""
+def coupling_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
+    """Yield key and message of each mistake in the couplings of joints that exist."""
     entries = {joint.name: joint for joint in robot.joint}
     for coupling in robot.coupling:
+        if coupling.follows not in entries or coupling.joint not in mjcf.names(model, "joint"):
+            continue  # `joint_checks` reports unknown names
         key, joint = f"coupling {coupling.joint!r}", model.joint(coupling.joint)
         both = (model.eq_type == int(KIND)) & (model.eq_obj1id == joint.id)
         if both.sum() > 1:

@@ -173,7 +173,7 @@ def load_robot(name_or_path: str | Path) -> RobotDescription:
         UnknownNameError: There is neither such a robot nor such a folder.
         ConfigError: A file of the robot cannot be read or failed a check.
     """
-    folder = _folder(name_or_path)
+    folder = folder_of(name_or_path)
     if (known := _loaded.of(folder)) is not None:
         return known
     robot = _load(folder)
@@ -185,15 +185,29 @@ def load_robot(name_or_path: str | Path) -> RobotDescription:
 def _load(folder: Path) -> RobotDescription:
     """Return the robot in a folder, read anew."""
     path = folder / FILE
-    robot = load_toml(path, RobotFile)
-    robot = replace(robot, joint=tuple(with_defaults(joint, robot.drive) for joint in robot.joint))
+    robot = filled_in(load_toml(path, RobotFile))
     model = mjcf.compile_mjcf(folder / robot.model, partial(complete_for, robot))
-    robot = replace(robot, joint=tuple(with_limits(joint, model) for joint in robot.joint))
+    robot = limited(robot, model)
     Checks(path, robot, model).run()
-    return _describe(folder, robot, model)
+    return describe(folder, robot, model)
 
 
-def _folder(name_or_path: str | Path) -> Path:
+def filled_in(robot: RobotFile) -> RobotFile:
+    """Return a robot.toml with the defaults of `[drive]` filled in for each joint."""
+    return replace(robot, joint=tuple(with_defaults(joint, robot.drive) for joint in robot.joint))
+
+
+def limited(robot: RobotFile, model: mujoco.MjModel) -> RobotFile:
+    """Return a robot.toml with omitted joint limits filled in from the MJCF."""
+    return replace(robot, joint=tuple(with_limits(joint, model) for joint in robot.joint))
+
+
+def folder_of(name_or_path: str | Path) -> Path:
+    """Return the folder of a robot by its name in `robots`, or by its path.
+
+    Raises:
+        UnknownNameError: There is neither such a robot nor such a folder.
+    """
     if str(name_or_path) in robot_names():
         return FOLDER / name_or_path
     if os.path.isdir(name_or_path):  # False without an error even for an invalid path
@@ -201,7 +215,8 @@ def _folder(name_or_path: str | Path) -> Path:
     raise UnknownNameError("robot", str(name_or_path), robot_names())
 
 
-def _describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDescription:
+def describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDescription:
+    """Return the description of a robot that has passed all `Checks`."""
     entries = {entry.name: entry for entry in robot.joint}
     ordered = [entries[name] for name in mjcf.hinge_names(model) if name in entries]
     servos = tuple(_mount(entry) for entry in ordered)

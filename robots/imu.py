@@ -6,9 +6,8 @@ from dataclasses import replace
 from windup.hal.errors import ConfigError, UnknownNameError
 from windup.hal.imu.catalogue import imu_kind, usual_kind
 from windup.hal.imu.kind import ImuKind
+from windup.robots.mistake import Mistake
 from windup.robots.records import Bus, Imu
-
-Mistake = tuple[str, str]
 
 
 def imu_of(imu: Imu | None, buses: Sequence[Bus]) -> ImuKind | None:
@@ -26,7 +25,7 @@ def imu_of(imu: Imu | None, buses: Sequence[Bus]) -> ImuKind | None:
     return kind if imu.mounting is None else replace(kind, axes=imu.mounting)
 
 
-def imu_mistakes(imu: Imu, buses: Sequence[Bus]) -> Iterator[Mistake]:
+def kind_mistakes(imu: Imu, buses: Sequence[Bus]) -> Iterator[Mistake]:
     """Yield key and mistake of the kind and the mounting of an [imu]."""
     try:
         kind = imu_of(imu, buses)

@@ -10,7 +10,7 @@ import numpy as np
 from windup.hal.errors import ConfigError
 from windup.hal.joints import Array
 from windup.hal.small_file import MOST
-from windup.robots.mjcf_numbers import wrong_number
+from windup.robots.mjcf_numbers import wrong_numbers
 
 OBJECTS = {
     "body": mujoco.mjtObj.mjOBJ_BODY,
@@ -53,16 +53,25 @@ def compile_mjcf(
     Raises:
         ConfigError: The file is missing, MuJoCo rejects it, or a number in it is invalid.
     """
+    model = model_of(path, complete)
+    for wrong in wrong_numbers(model):
+        raise ConfigError(f"{path}: {wrong}")
+    return model
+
+
+def model_of(path: Path, complete: Callable[[mujoco.MjSpec], None] | None = None) -> mujoco.MjModel:
+    """Return the MJCF at `path` as a model without a check of its numbers; see `compile_mjcf`.
+
+    Raises:
+        ConfigError: The file is missing, or MuJoCo rejects it.
+    """
     try:
         spec = parse_mjcf(path)
         if complete is not None:
             complete(spec)
-        model = spec.compile()
+        return spec.compile()
     except ValueError as error:
         raise ConfigError(f"{path}: {_one_line(error)}") from None
-    if wrong := wrong_number(model):
-        raise ConfigError(f"{path}: {wrong}")
-    return model
 
 
 def is_alone(path: Path) -> bool:

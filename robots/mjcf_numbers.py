@@ -1,5 +1,6 @@
 """Check for invalid numbers of an MJCF that MuJoCo accepts: not finite, huge, or negative."""
 
+from collections.abc import Iterator
 from typing import Any, Final
 
 import mujoco
@@ -21,20 +22,19 @@ TIMESTEP: Final = (1e-5, 0.05)
 """Minimum and maximum physics step, s."""
 
 
-def wrong_number(model: mujoco.MjModel) -> str:
-    """Return a message about the first invalid number of `model`, or "" if there is none."""
+def wrong_numbers(model: mujoco.MjModel) -> Iterator[str]:
+    """Yield a message about each field of `model` with an invalid number."""
     step, gravity = float(model.opt.timestep), model.opt.gravity
     if not TIMESTEP[0] <= step <= TIMESTEP[1]:
-        return f"option timestep: {step:g} s is outside {TIMESTEP[0]:g} .. {TIMESTEP[1]:g} s"
+        yield f"option timestep: {step:g} s is outside {TIMESTEP[0]:g} .. {TIMESTEP[1]:g} s"
     if not (np.abs(gravity) <= LARGEST).all():
-        return f"option gravity: {gravity} is not finite"
+        yield f"option gravity: {gravity} is not finite"
     for name in FIELDS:
         values = getattr(model, name)
         if not (fine := np.abs(values) <= LARGEST).all():
-            return _said(model, name, values, fine, "is not finite, or huge")
-        if name in (*NOT_NEGATIVE, "geom_friction") and not (fine := values >= 0.0).all():
-            return _said(model, name, values, fine, "is negative")
-    return ""
+            yield _said(model, name, values, fine, "is not finite, or huge")
+        elif name in (*NOT_NEGATIVE, "geom_friction") and not (fine := values >= 0.0).all():
+            yield _said(model, name, values, fine, "is negative")
 
 
 def _said(model: mujoco.MjModel, field: str, values: Any, fine: Any, what: str) -> str:

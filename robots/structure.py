@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 
 from windup.robots import mjcf
+from windup.robots.mistake import Mistake, known
 from windup.robots.records import RobotFile
 
-Mistake = tuple[str, str]
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
 
 
@@ -17,9 +17,13 @@ def is_fixed(model: mujoco.MjModel) -> bool:
     return mjcf.FREE not in model.jnt_type
 
 
-def mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
+def structure_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
     """Yield key and message of each mismatch between robot.toml and MJCF in base and joints."""
-    yield from _of_the_base(robot, model)
+    bodies = mjcf.names(model, "body")
+    yield from known("base", "body", robot.base, bodies)
+    yield from known("torso", "body", robot.torso, bodies)
+    if robot.base in bodies:
+        yield from _of_the_base(robot, model)
     if model.nu:
         yield "model", _actuators(model)
     yield from _of_the_joints(robot, model)

@@ -85,7 +85,7 @@ def _say_lost(status: int) -> int:
 
 
 def _write_unparsed(arguments: list[str], error: WindupError) -> None:
-    """Tell programs that their command line could not be understood."""
+    """Tell programs that their command line could not be decode."""
     if "--json" in arguments[:-1]:
         target = Path(arguments[arguments.index("--json") + 1])
         write_json(target, arguments[0], error_record(error))

@@ -4,7 +4,7 @@ import pytest
 from msgspec import Meta
 
 from windup.hal.config import Record
-from windup.hal.missing_keys import missing_keys
+from windup.hal.key_mistakes import key_mistakes
 
 
 class Wheel(Record, frozen=True):
@@ -37,4 +37,5 @@ WHOLE = {"name": "cart", "weight": 3.0, "wheels": [WHEEL]}
     ],
 )
 def test_every_missing_key_is_named_at_once(data: object, missing: list[str]) -> None:
-    assert list(missing_keys(data, Cart)) == missing
+    found = key_mistakes(data, Cart)
+    assert [mistake.key for mistake in found if mistake.kind == "missing"] == missing

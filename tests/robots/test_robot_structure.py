@@ -8,7 +8,7 @@ import pytest
 from tests.shapes import ARM, QUADRUPED, THIRTY, Limb, Shape, write_shape
 from windup.hal.errors import ConfigError
 from windup.robots import load_robot
-from windup.robots.doubts import doubts
+from windup.robots.inspection.doubts import doubts
 
 TOE = '<body name="toe" pos="0 0 0.1"><joint name="toe" {}/><geom size="0.01" mass="0.01"/></body>'
 

@@ -19,7 +19,7 @@ def styles_of_walk(options: WalkOptions) -> tuple[StyleInterval, ...]:
     """Return the styles of a walk, and its blends.
 
     Raises:
-        UsageError: One cannot be understood.
+        UsageError: One cannot be decode.
     """
     styles = [spell(text, "--style") for text in options.style]
     return (*styles, *(_blend(text) for text in options.blend))
@@ -35,7 +35,7 @@ def blended(robot: RobotDescription, gait: Gait, options: WalkOptions) -> Gait:
     """Return `gait` with the gaits to blend into it.
 
     Raises:
-        UsageError: A blend cannot be understood.
+        UsageError: A blend cannot be decode.
         UnknownNameError: There is no such gait.
         ConfigError: The graphs have different states.
     """

@@ -46,6 +46,8 @@ COMMANDS: Final[dict[str, Entry]] = {
     ),
     "health": Entry("bringup.health", "Health", "Say whether a running robot is well"),
     "robots": Entry("commands.robots_list", "Robots", "List the robots and what they can do"),
+    "check": Entry("commands.check", "Check", "Show all errors and warnings of a robot folder"),
+    "new": Entry("commands.new", "New", "Write an example robot, gait or controller"),
     "estimate": Entry(
         "commands.estimate", "Estimate", "Measure the estimated state against the twin's truth"
     ),

@@ -8,7 +8,6 @@ import tyro
 from rich.table import Table
 
 from windup.robots import load_robot, robot_names
-from windup.robots.doubts import doubts
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
 
@@ -18,7 +17,7 @@ class Robots(Command):
     """List the robots and what they can do."""
 
     robot: Annotated[str | None, tyro.conf.Positional, tyro.conf.arg(metavar="[ROBOT]")] = None
-    """Only this one, by name or folder, and what is doubtful about its MJCF."""
+    """Only this one, by name or folder; `windup check FOLDER` says what is wrong with it."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
@@ -35,9 +34,5 @@ class Robots(Command):
             rows.append({"robot": robot.name, "title": robot.title, "joints": n, "drive": kind,
                          "rate_hz": rate, "gaits": gaits})  # fmt: skip
         console.print(table)
-        if self.robot is not None:
-            rows[0]["doubts"] = doubts(robots[0])
-            for doubt in rows[0]["doubts"]:
-                console.print(f"warning: {doubt}", markup=False, soft_wrap=True)
         write_json(self.json, "robots", {"robots": rows})
         return 0

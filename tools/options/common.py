@@ -61,7 +61,7 @@ class Common(Command):
             raise UsageError("--arm needs a --port; without one only the twin moves")
 
     def warn(self) -> None:
-        """Say that the robot's MJCF is doubtful; see `Command.warn`."""
+        """Say that something about the robot is doubtful; see `Command.warn`."""
         doubt_once(load_robot(self.robot))
 
     @property

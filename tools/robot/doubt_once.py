@@ -1,4 +1,4 @@
-"""What is doubtful about the MJCF of a user's own robot: said once, where it is first used."""
+"""What is doubtful about a user's own robot: said once, where it is first used."""
 
 import logging
 import shlex
@@ -6,13 +6,13 @@ from pathlib import Path
 
 from windup.robots import RobotDescription
 from windup.robots.description import FOLDER
-from windup.robots.doubts import doubts
+from windup.robots.inspection.doubts import doubts
 
 _looked_at: set[Path] = set()
 
 
 def doubt_once(robot: RobotDescription) -> None:
-    """Warn in one line if the MJCF of a robot that is not of the package is doubtful.
+    """Warn in one line if something about a robot that is not of the package is doubtful.
 
     Once a process; processes that are forked from this one have been told, too.
     """
@@ -23,6 +23,6 @@ def doubt_once(robot: RobotDescription) -> None:
     if count := len(doubts(robot)):
         what = "1 thing is" if count == 1 else f"{count} things are"
         logging.getLogger(__name__).warning(
-            "%s doubtful about the MJCF of %s: run `windup robots %s`",
+            "%s doubtful about %s: run `windup check %s`",
             what, robot.name, shlex.quote(str(robot.folder)),
         )  # fmt: skip

@@ -28,6 +28,8 @@ LINES = {
     "emulate": "emulate op3",
     "health": "health op3",
     "robots": "robots",
+    "check": "check op3",
+    "new": "new robot rex",
     "estimate": "estimate op3 --port twin://op3",
     "bench": "bench tick",
     "sweep": "sweep walk op3 --out sweep.csv",

@@ -1,4 +1,4 @@
-"""Doubts about the MJCF of one's own robot: one line, where it is first used, and no more."""
+"""Doubts about one's own robot: one line, where it is first used, and no more."""
 
 from pathlib import Path
 
@@ -26,9 +26,7 @@ def test_the_first_command_points_to_the_doubts(
 ) -> None:
     for _ in range(2):
         assert shell("stand", doubtful, "--seconds", "0.02").status == 0
-    assert caplog.messages == [
-        f"1 thing is doubtful about the MJCF of arm: run `windup robots '{doubtful}'`"
-    ]
+    assert caplog.messages == [f"1 thing is doubtful about arm: run `windup check '{doubtful}'`"]
 
 
 @pytest.mark.parametrize("wired", [False, True])

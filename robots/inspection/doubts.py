@@ -1,32 +1,41 @@
-"""Warnings about valid but probably unintended contents of an MJCF."""
+"""Warnings about valid but probably unintended contents of a robot's files."""
 
 from collections.abc import Iterator
 
 import mujoco
 import numpy as np
 
-from windup.robots.couplings import bring_in_step
+from windup.hal.geometry.gravity import GRAVITY
 from windup.robots.description import RobotDescription
+from windup.robots.inspection.posture_doubts import posture_doubts
+from windup.robots.inspection.servo_doubts import servo_doubts
+from windup.robots.inspection.stance import in_stance
 
 POINTS = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 DEEP = 1e-3
 """Maximum penetration of bodies that only touch, m."""
+DOWN = (0.0, 0.0, -GRAVITY)
 
 
 def doubts(robot: RobotDescription) -> list[str]:
-    """Return warnings about a robot's MJCF, one line each, with a remedy."""
-    model = robot.model
-    data = mujoco.MjData(model)
-    for name, angle in zip(robot.joints.names, robot.stance, strict=True):
-        data.joint(name).qpos[0] = angle
-    bring_in_step(model, data.qpos, robot.joints.names)
-    mujoco.mj_kinematics(model, data)
+    """Return warnings about a robot's MJCF and robot.toml, one line each, with a remedy."""
+    model, data = in_stance(robot)
     return [
         *_floor(robot, model),
+        *_gravity(model),
         *_points(robot, model, data),
         *_armature(robot, model),
         *_neighbours(model, data),
+        *servo_doubts(robot),
+        *posture_doubts(robot, model, data),
     ]
+
+
+def _gravity(model: mujoco.MjModel) -> Iterator[str]:
+    """Yield a warning if the gravity of the MJCF is not that of the earth."""
+    if np.abs(model.opt.gravity - DOWN).max() > 0.05:
+        given = " ".join(f"{value:g}" for value in model.opt.gravity)
+        yield f"gravity is {given} m/s2 in the MJCF's <option>; omit it for 0 0 -9.81"
 
 
 def _floor(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:

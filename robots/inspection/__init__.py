@@ -1,0 +1,1 @@
+"""Inspection of a whole robot folder: all mistakes at once, and warnings."""

@@ -1,0 +1,119 @@
+"""Checks of the joints of a robot.toml: names, limits, servos, buses and ids."""
+
+from collections.abc import Iterator
+from math import isnan
+
+import mujoco
+
+from windup.hal.families import family_of
+from windup.hal.servos import servo_names
+from windup.robots import mjcf
+from windup.robots.limits import travel_mistakes
+from windup.robots.mistake import SLACK, Mistake, known, unique
+from windup.robots.records import JointEntry, RobotFile
+
+
+def name_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
+    """Yield repeated names of joints, and names that do not exist in the MJCF."""
+    entries = [joint.name for joint in robot.joint]
+    yield from unique("joint", "joint", entries)
+    for index, body in enumerate(model.jnt_bodyid.tolist()):
+        if model.jnt_type[index] != mjcf.FREE and not model.joint(index).name:
+            on = model.body(body).name
+            yield "model", f"a joint of body {on!r} has no name in the MJCF: give it one"
+    hinges, joints = mjcf.hinge_names(model), mjcf.names(model, "joint")
+    for name in entries:
+        yield from known("joint", "MJCF hinge", name, hinges)
+    for name in robot.passive:
+        yield from known("passive", "MJCF joint", name, joints)
+    for coupling in robot.coupling:
+        key = f"coupling {coupling.joint!r}"
+        yield from known("coupling", "MJCF joint", coupling.joint, joints)
+        yield from known(f"{key}: follows", "joint", coupling.follows, entries)
+
+
+def joint_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
+    """Yield mistakes in limits, gains and servos; defaults must be filled in."""
+    hinges = mjcf.hinge_names(model)
+    yield from _without_limits(robot, hinges)
+    for joint in robot.joint:
+        yield from _limit_mistakes(joint, model, joint.name in hinges)
+        yield from _servo_mistakes(robot, joint)
+    yield from _id_mistakes(robot)
+
+
+def _without_limits(robot: RobotFile, hinges: tuple[str, ...]) -> Iterator[Mistake]:
+    """Yield one mistake that names all joints without limits."""
+    lost = [joint.name for joint in robot.joint if joint.name in hinges and _unlimited(joint)]
+    if lost:
+        names = ", ".join(repr(name) for name in lost)
+        extended = 'mode = "extended" where a Dynamixel X shall turn on and on'
+        yield (
+            f"joint {names}",
+            "no range in the MJCF, and no lower and upper here: give both, at most one turn "
+            f"of its servo, or {extended}",
+        )
+
+
+def _unlimited(joint: JointEntry) -> bool:
+    return isnan(joint.upper - joint.lower)
+
+
+def _limit_mistakes(joint: JointEntry, model: mujoco.MjModel, known: bool) -> Iterator[Mistake]:
+    """Yield missing gains, and limits that are reversed or wider than the MJCF's."""
+    key = f"joint {joint.name!r}"
+    for gain in ("stiffness", "damping"):
+        if getattr(joint, gain) is None:
+            yield key, f"needs {gain}, here or in [drive]"
+    if joint.lower >= joint.upper:
+        yield key, f"lower {joint.lower:g} is not below upper {joint.upper:g}"
+    if not known or not model.jnt_limited[model.joint(joint.name).id]:
+        return  # the MJCF has no limits; those of robot.toml apply
+    low, high = model.joint(joint.name).range
+    if joint.lower < low - SLACK or joint.upper > high + SLACK:
+        given = f"{joint.lower:g} to {joint.upper:g} rad"
+        yield key, f"{given} is wider than the MJCF's {low:g} to {high:g} rad"
+
+
+def _servo_mistakes(robot: RobotFile, joint: JointEntry) -> Iterator[Mistake]:
+    """Yield mistakes in servo, bus, id, mode and travel of a joint."""
+    key, drive = f"joint {joint.name!r}", robot.drive.kind
+    if drive == "torque":
+        if joint.servo or joint.bus or joint.id is not None or joint.mode == "extended":
+            yield key, 'has a servo, but drive.kind is "torque"'
+        return
+    if joint.servo is None or joint.bus is None or joint.id is None:
+        yield key, 'needs servo, bus and id: drive.kind is "servo"'
+    if joint.servo is not None:
+        yield from known(f"{key}: servo", "servo", joint.servo, servo_names())
+    if joint.bus is not None:
+        yield from known(f"{key}: bus", "bus", joint.bus, [bus.name for bus in robot.bus])
+    if joint.servo in servo_names():
+        yield from _bus_mistakes(robot, joint, key)
+        if not _unlimited(joint):
+            yield from ((key, mistake) for mistake in travel_mistakes(joint))
+
+
+def _bus_mistakes(robot: RobotFile, joint: JointEntry, key: str) -> Iterator[Mistake]:
+    """Yield a mistake if a servo's protocol or baud rate does not match its bus."""
+    family = family_of(str(joint.servo))
+    for bus in [bus for bus in robot.bus if bus.name == joint.bus][:1]:
+        if family.protocol != bus.protocol:
+            speaks = f'a {joint.servo} speaks "{family.protocol}"'
+            yield key, f'{speaks}, and bus {bus.name!r} has protocol "{bus.protocol}"'
+        elif bus.baud not in family.bauds:
+            rates = ", ".join(map(str, sorted(family.bauds)))
+            yield f"bus {bus.name!r}: baud", f"a {joint.servo} has no {bus.baud}, but {rates}"
+
+
+def _id_mistakes(robot: RobotFile) -> Iterator[Mistake]:
+    """Yield repeated names of buses, and ids that two servos of a bus share."""
+    yield from unique("bus", "bus", [bus.name for bus in robot.bus])
+    taken: dict[tuple[str | None, int], str] = {}
+    for joint in robot.joint:
+        if joint.id is None:
+            continue
+        other = taken.setdefault((joint.bus, joint.id), joint.name)
+        if other != joint.name:
+            both = f"{other!r} already has on bus {joint.bus!r}"
+            yield f"joint {joint.name!r}", f"has id {joint.id}, which {both}"

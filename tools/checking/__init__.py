@@ -1,0 +1,1 @@
+"""Inspection of a robot folder, file by file, for `windup check`."""

@@ -1,0 +1,1 @@
+"""The example robot, gait and controller that `windup new` writes."""

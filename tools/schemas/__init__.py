@@ -1,0 +1,1 @@
+"""JSON Schemas of the TOML files, for editors, generated from the records of the files."""
