@@ -20,9 +20,9 @@ from windup.hal.servos.servo_model import ServoMount
 from windup.robots import mjcf, structure
 from windup.robots.checks import Checks, whole_steps
 from windup.robots.completion import complete, complete_for
+from windup.robots.folders import FILE, FOLDER, Loaded, gait_files, robot_names
 from windup.robots.imu import imu_of
 from windup.robots.limits import with_limits
-from windup.robots.loaded import Loaded
 from windup.robots.mirror import mirror_map
 from windup.robots.records import (
     Bus,
@@ -37,8 +37,6 @@ from windup.robots.records import (
     with_defaults,
 )
 
-FOLDER = Path(__file__).parent
-FILE = "robot.toml"
 NEVER = Fall(height=1e-9, tilt=4.0)
 """Fall criterion of a robot with a fixed base, which is never met."""
 _loaded: "Loaded[RobotDescription]" = Loaded()
@@ -137,7 +135,7 @@ class RobotDescription:
 
     def gaits(self) -> dict[str, Path]:
         """Return the paths of the robot's gait files by name."""
-        return {path.stem: path for path in sorted((self.folder / "gaits").glob("*.toml"))}
+        return gait_files(self.folder)
 
     def physics_steps(self, rate_hz: float | None = None) -> int:
         """Return the physics steps per tick at `rate_hz` (by default the robot's own rate).
@@ -153,15 +151,6 @@ class RobotDescription:
                 f"{1e3 * self.timestep:g} ms; {self.rate_hz:g} Hz is"
             )
         return steps
-
-
-def robot_names() -> tuple[str, ...]:
-    """Return the names of the robots that come with Windup.
-
-    >>> {"human", "op3"} <= set(robot_names())
-    True
-    """
-    return tuple(sorted(path.parent.name for path in FOLDER.glob(f"*/{FILE}")))
 
 
 def load_robot(name_or_path: str | Path) -> RobotDescription:

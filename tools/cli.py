@@ -12,8 +12,9 @@ from windup.tools.command_line.sweep_line import separate
 from windup.tools.command_line.table import COMMANDS
 from windup.tools.command_line.version import installed_version
 from windup.tools.stopping.interrupts import end_on_signals, ignore_signals
-from windup.tools.terminal.output import console, error_record, print_result, write_json
+from windup.tools.terminal.result import print_result
 from windup.tools.terminal.run_notes import NOTES
+from windup.tools.terminal.say import say
 from windup.tools.terminal.streams import drop_unwritten, fill_closed_streams
 from windup.tools.terminal.writing import check_writable
 
@@ -46,7 +47,7 @@ def run(arguments: list[str] | None = None) -> int:
         return _say_lost(status)
     except WindupError as error:
         _say_warnings(error.kind if isinstance(error, UnwellError) else "")
-        console.print(f"windup: {error}", markup=False, soft_wrap=True)
+        say(f"windup: {error}")
         if command is None:
             _write_unparsed(words, error)
         else:
@@ -54,7 +55,7 @@ def run(arguments: list[str] | None = None) -> int:
         return error.exit_status
     except KeyboardInterrupt:
         _say_warnings()
-        console.print("windup: interrupted")
+        say("windup: interrupted")
         return 130
     except BrokenPipeError:
         return 1  # whoever read our words, such as `head`, has gone
@@ -74,21 +75,20 @@ def _quiet_mujoco() -> None:
 def _say_warnings(ended_by: str = "") -> None:
     """Print what there was to warn about, but for the kind of what ended the run."""
     if said := NOTES.said(ended_by):
-        console.print(f"warning: {said}", markup=False, soft_wrap=True)
+        say(f"warning: {said}")
 
 
 def _say_lost(status: int) -> int:
     """Print which results could not be written; return the exit status, 1 if it was 0."""
     for why in filter(None, NOTES.lost):
-        console.print(f"windup: {why}", markup=False, soft_wrap=True)
+        say(f"windup: {why}")
     return status or int(bool(NOTES.lost))
 
 
 def _write_unparsed(arguments: list[str], error: WindupError) -> None:
     """Tell programs that their command line could not be decode."""
     if "--json" in arguments[:-1]:
-        target = Path(arguments[arguments.index("--json") + 1])
-        write_json(target, arguments[0], error_record(error))
+        _write_record(Path(arguments[arguments.index("--json") + 1]), arguments[0], error)
 
 
 def parse(arguments: list[str]) -> Any:
@@ -120,4 +120,11 @@ def parse(arguments: list[str]) -> Any:
 def _write_error(command: object, error: WindupError) -> None:
     """Tell programs too, where they asked for JSON."""
     target = getattr(command, "json", None)
-    write_json(target, type(command).__name__.lower(), error_record(error))
+    _write_record(target, type(command).__name__.lower(), error)
+
+
+def _write_record(target: Path | None, command: str, error: WindupError) -> None:
+    """Write an error as JSON."""
+    from windup.tools.terminal.output import error_record, write_json
+
+    write_json(target, command, error_record(error))

@@ -9,7 +9,6 @@ Nothing is imported before its name is used, so `import windup.hal` loads neithe
 """
 
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -86,6 +85,8 @@ def __dir__() -> list[str]:
 
 def _version() -> str:
     """Return the version that is installed; "unknown" where only the files lie there."""
+    from importlib.metadata import PackageNotFoundError, version
+
     try:
         return version("windup-robotics")
     except PackageNotFoundError:

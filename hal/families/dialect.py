@@ -3,11 +3,9 @@
 import contextlib
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from windup.hal.errors import CorruptAnswerError, HardwareError, NoAnswerError, RefusedError
-from windup.hal.families.configurator import DynamixelConfigurator, ServoConfigurator
-from windup.hal.families.configurator1 import Dynamixel1Configurator, FeetechConfigurator
 from windup.hal.port.adapter import MARGIN, Probe
 from windup.hal.port.port import BITS, Port
 from windup.hal.protocols import protocol1, protocol2
@@ -16,6 +14,9 @@ from windup.hal.protocols.batched1 import ChainRead, GoalWrite, bulk_read, sync_
 from windup.hal.protocols.cyclic import CyclicRead, CyclicWrite
 from windup.hal.protocols.protocol2 import Span
 from windup.hal.registers import Register
+
+if TYPE_CHECKING:
+    from windup.hal.families.configurator import ServoConfigurator
 
 PING_SLOT = 3e-3
 """Time slot of each id in the answer to a broadcast ping of protocol 2, s."""
@@ -47,7 +48,7 @@ class ServoProtocol(ABC):
     weak: bool
 
     @abstractmethod
-    def link(self, port: Port) -> ServoConfigurator:
+    def link(self, port: Port) -> "ServoConfigurator":
         """Return a configurator, for access to one servo at a time."""
 
     @abstractmethod
@@ -67,7 +68,7 @@ class ServoProtocol(ABC):
         """Return a request to one servo whose answer cannot be mistaken for its echo."""
 
     @abstractmethod
-    def who(self, port: Port, link: ServoConfigurator) -> list[Answered]:
+    def who(self, port: Port, link: "ServoConfigurator") -> list[Answered]:
         """Return the servos that answer at the port's present baud rate."""
 
     def estranged(self, port: Port, id: int) -> int | None:
@@ -80,8 +81,10 @@ class Protocol2(ServoProtocol):
 
     last_id, weak = protocol2.LAST_ID, False
 
-    def link(self, port: Port) -> ServoConfigurator:
+    def link(self, port: Port) -> "ServoConfigurator":
         """Return a configurator, for access to one servo at a time."""
+        from windup.hal.families.configurator import DynamixelConfigurator  # and the SDK
+
         return DynamixelConfigurator(port)
 
     def read(self, spans: Sequence[Span], fast: bool = False) -> CyclicRead:
@@ -101,7 +104,7 @@ class Protocol2(ServoProtocol):
         answer = protocol2.status(id, bytes(3))
         return Probe(protocol2.ping(id), len(answer), answer[:8])
 
-    def who(self, port: Port, link: ServoConfigurator) -> list[Answered]:
+    def who(self, port: Port, link: "ServoConfigurator") -> list[Answered]:
         """Send a broadcast ping, and return all servos with a valid reply."""
         port.flush_input()
         port.write(protocol2.ping())
@@ -117,6 +120,8 @@ class Protocol2(ServoProtocol):
 
     def estranged(self, port: Port, id: int) -> int | None:
         """Return the model number of a servo that answers in protocol 1 instead, or None."""
+        from windup.hal.families.configurator1 import Dynamixel1Configurator
+
         with contextlib.suppress(NoAnswerError, CorruptAnswerError, RefusedError):
             return Dynamixel1Configurator(port, MODEL_NUMBER).ping(id, attempts=1)
         return None
@@ -156,7 +161,7 @@ class Protocol1(ServoProtocol):
         request = protocol1.read(id, self.model_number.address, 1)
         return Probe(request, len(answer), answer[:4])
 
-    def who(self, port: Port, link: ServoConfigurator) -> list[Answered]:
+    def who(self, port: Port, link: "ServoConfigurator") -> list[Answered]:
         """Ping each id in turn, as answers to a broadcast ping would collide; return who answered.
 
         An answer that comes while a later id is pinged shows that the adapter's latency is longer
@@ -190,8 +195,10 @@ class Protocol1(ServoProtocol):
 class Dynamixel1(Protocol1):
     """Dynamixel AX and MX. The common read is the bulk read, which an AX does not support."""
 
-    def link(self, port: Port) -> ServoConfigurator:
+    def link(self, port: Port) -> "ServoConfigurator":
         """Return a configurator, for access to one servo at a time."""
+        from windup.hal.families.configurator1 import Dynamixel1Configurator  # and the SDK
+
         return Dynamixel1Configurator(port, self.model_number)
 
     def _common(self, spans: Sequence[Span]) -> CyclicRead:
@@ -214,8 +221,10 @@ class Feetech(Protocol1):
         super().__init__(model_number, firmware, protocol1.LONGEST_FEETECH)
         self.always_sync = always_sync
 
-    def link(self, port: Port) -> ServoConfigurator:
+    def link(self, port: Port) -> "ServoConfigurator":
         """Return a configurator, for access to one servo at a time."""
+        from windup.hal.families.configurator1 import FeetechConfigurator  # and the SDK
+
         return FeetechConfigurator(port, self.model_number)
 
     def read(self, spans: Sequence[Span], fast: bool = False) -> CyclicRead:

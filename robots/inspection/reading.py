@@ -15,7 +15,8 @@ from windup.hal.key_mistakes import key_mistakes, without_unknown
 from windup.robots import mjcf
 from windup.robots.checks import Checks
 from windup.robots.completion import complete_for
-from windup.robots.description import FILE, RobotDescription, describe, filled_in, limited
+from windup.robots.description import RobotDescription, describe, filled_in, limited
+from windup.robots.folders import FILE
 from windup.robots.mjcf_numbers import wrong_numbers
 from windup.robots.records import RobotFile
 

@@ -2,18 +2,21 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 
-from windup.control.falling.fall import FallPredictor
-from windup.control.falling.protection import FallWay, Protected
 from windup.control.kinematics.soles import Soles
 from windup.hal.controller import Controller
 from windup.hal.joints import Array, Mask
 from windup.robots import RobotDescription
 from windup.robots.records import Shares
 from windup.tools.assembly.build import body_of
+
+if TYPE_CHECKING:
+    from windup.control.falling.fall import FallPredictor
+    from windup.control.falling.protection import FallWay, Protected
 
 
 @dataclass
@@ -31,19 +34,25 @@ class Protection:
         """Does the robot's file say how it falls?"""
         return bool(self.robot.fall.way)
 
-    def around(self, controller: Controller) -> Protected:
+    def around(self, controller: Controller) -> "Protected":
         """Return `controller`, protected; one at a time, for they share what foresees a fall."""
+        from windup.control.falling.protection import Protected
+
         return Protected(controller, self._predictor, self._ways, self.robot.joints)
 
     @cached_property
-    def _predictor(self) -> FallPredictor:
+    def _predictor(self) -> "FallPredictor":
+        from windup.control.falling.fall import FallPredictor
+
         robot, body = self.robot, body_of(self.robot)
         assert robot.fall.reach is not None, "the robot's file was checked"
         soles = Soles(body.model, [foot.body for foot in robot.feet], robot.contacts)
         return FallPredictor(body, soles, robot.fall.reach)
 
     @cached_property
-    def _ways(self) -> tuple[FallWay, ...]:
+    def _ways(self) -> "tuple[FallWay, ...]":
+        from windup.control.falling.protection import FallWay
+
         robot = self.robot
         legs = leg_joints(robot, robot.model)
         return tuple(

@@ -21,6 +21,7 @@ from windup.tools.benches.random_starts import measure_starts
 from windup.tools.benches.safety.bench import ROBOTS, measure_safety
 from windup.tools.benches.servo import measure_servos
 from windup.tools.benches.soak_table import fault_table
+from windup.tools.benches.startup import measure_startup
 from windup.tools.benches.unplug import measure_unplugs
 from windup.tools.benches.wire import Maker, measure_bus
 from windup.tools.terminal.command import Command
@@ -41,6 +42,7 @@ What = Literal[
     "leaks",
     "starts",
     "fuzz",
+    "startup",
 ]
 
 USED: dict[What, tuple[str, ...]] = {
@@ -57,6 +59,7 @@ USED: dict[What, tuple[str, ...]] = {
     "leaks": ("robot", "times"),
     "starts": ("robot", "times", "seed"),
     "fuzz": ("robot", "times", "seed"),
+    "startup": ("times",),
 }
 """The options that each bench accepts, besides --json."""
 
@@ -76,6 +79,7 @@ class Bench(Command):
     unplug: a robot whose adapter is pulled out and plugged in again (4 minutes).
     starts: starts of a robot from random poses, without and with a fault in it (5 min).
     fuzz: odd command lines on broken robots; none may end in a traceback (give --times 10000).
+    startup: time of each way to start, as a ratio to importing NumPy (a minute).
     leaks: resources left over by opening and closing a robot 1000 times (10 minutes); status 1 if
     that is more than 5 MB, or any file, thread or process."""
     robot: str | None = None
@@ -89,7 +93,7 @@ class Bench(Command):
     reads: Annotated[int, Range(1, 10**9)] = 10_000_000
     """faults: total number of servo readings."""
     times: Count | None = None
-    """unplug, leaks, starts and fuzz: number of repetitions; 100, 1000, 100, and 1000."""
+    """unplug, leaks, starts, fuzz and startup: repetitions; 100, 1000, 100, 1000, and 20."""
     seed: Seed = 0
     """safety, faults, unplug, fuzz: seed of the random numbers; starts: of the first start."""
     minutes: Annotated[float, Range(0.0, 10_000.0, "minutes", above=True)] = 10.0
@@ -124,6 +128,7 @@ class Bench(Command):
             "leaks": partial(measure_leaks, times=self.times or 1_000),
             "starts": partial(measure_starts, starts=self.times or 100, seed=self.seed),
             "fuzz": partial(measure_fuzz, times=self.times or 1_000, seed=self.seed),
+            "startup": partial(measure_startup, times=self.times or 20),
         }
         if self.what == "safety":
             return self._safety()

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from windup.hal.errors import UsageError
 from windup.robots import RobotDescription, mjcf
 from windup.robots.completion import COM_VELOCITY
-from windup.robots.description import FILE
+from windup.robots.folders import FILE
 from windup.robots.inspection.reading import Reading
 from windup.tools.assembly.shape import check_walks
 

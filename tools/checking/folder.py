@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from windup.robots.description import FILE
+from windup.robots.folders import FILE
 from windup.robots.inspection.doubts import doubts
 from windup.robots.inspection.reading import Reading, read_folder
 from windup.tools.checking.assumed import assumed

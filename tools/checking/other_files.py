@@ -10,7 +10,7 @@ from windup.control.stride.stride_file import Stride
 from windup.hal.config import read_toml
 from windup.hal.errors import ConfigError, suggest
 from windup.robots import RobotDescription
-from windup.robots.description import FILE
+from windup.robots.folders import FILE
 from windup.robots.inspection.reading import decode, relative
 from windup.tools.assembly.stepping import FOOTPRINTS, STEPPING, WAYS
 from windup.tools.behaviours.striding import FILE as STRIDE

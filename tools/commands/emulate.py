@@ -1,4 +1,7 @@
-"""`windup emulate`: serve a robot's emulated servo buses to other programs, in real time."""
+"""`windup emulate`: serve a robot's emulated servo buses to other programs, in real time.
+
+MuJoCo is imported for a robot only, so that a bench of servos starts fast.
+"""
 
 import os
 import signal
@@ -6,19 +9,18 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated
+from urllib.parse import urlencode
 
 import tyro
 
-from windup.hal.errors import PortError
+from windup.hal.errors import PortError, UsageError
 from windup.hal.ranges import Range
-from windup.robots import load_robot
 from windup.sim_twin.wire import Address, parse_address
 from windup.sim_twin.wire.faults.fault_text import parse_rules
 from windup.sim_twin.wire.serve.emulate import Emulator, emulate
 from windup.sim_twin.wire.serve.outlet import Outlet
 from windup.sim_twin.wire.world.address import BENCH, SCHEME
 from windup.sim_twin.wire.world.hand import parse_hands
-from windup.tools.robot.doubt_once import doubt_once
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console
 from windup.tools.terminal.quantities import Seed
@@ -27,10 +29,13 @@ from windup.tools.terminal.writing import check_writable
 
 @dataclass(frozen=True, kw_only=True)
 class Emulate(Command):
-    """Serve the servos of a robot's twin to any program, until Ctrl-C."""
+    """Serve the servos of a robot's twin, or servos alone, to any program, until Ctrl-C."""
 
-    robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
+    robot: Annotated[str | None, tyro.conf.Positional, tyro.conf.arg(metavar="[ROBOT]")] = None
     """A robot's name, the path of its folder, or a whole twin:// URL (twin://bench?servos=...)."""
+    servos: str = ""
+    """Servos without a robot: models and ids, STS3215:1-6 or XM430-W350:1-20,XL430:30; all of one
+    protocol."""
     pty: Path | None = None
     """Serve on a pseudo-terminal, to be found under this path. It loses some of what a program
     writes and flushes at once (tcflush, as pypot does); --tcp loses nothing."""
@@ -60,12 +65,15 @@ class Emulate(Command):
     def warn(self) -> None:
         """Say that the robot's MJCF is doubtful; see `Command.warn`."""
         if (robot := self._address().robot) != BENCH:
+            from windup.robots import load_robot
+            from windup.tools.robot.doubt_once import doubt_once
+
             doubt_once(load_robot(robot))
 
     def run(self) -> int:
         """Serve; returns the exit status."""
         address = self._address()
-        ready = partial(_on_ready, "" if address.robot == BENCH else self.robot)
+        ready = partial(_on_ready, "" if address.robot == BENCH else self.robot or "")
         try:
             emulate(address, self.pty, self.tcp, on_ready=ready)
         except OSError as error:
@@ -75,9 +83,15 @@ class Emulate(Command):
         return 0
 
     def _address(self) -> Address:
-        """Return the world to serve; options win over the URL."""
-        url = self.robot if "://" in self.robot else f"{SCHEME}://{self.robot}"
-        address = parse_address(url)
+        """Return the world to serve; options win over the URL.
+
+        Raises:
+            UsageError: Neither a robot nor servos are given, or both, or they cannot be.
+        """
+        if (self.robot is None) is not bool(self.servos):
+            raise UsageError("give either a ROBOT, or servos without one: --servos STS3215:1-6")
+        name = self.robot or f"{BENCH}?{urlencode({'servos': self.servos})}"
+        address = parse_address(name if "://" in name else f"{SCHEME}://{name}")
         return replace(
             address,
             clock="real",

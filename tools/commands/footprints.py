@@ -13,7 +13,7 @@ from windup.hal.ranges import Range
 from windup.robots import load_robot
 from windup.tools.behaviours.directed import build_checks, feet_of
 from windup.tools.options.directed_options import DirectedOptions
-from windup.tools.terminal.output import print_result
+from windup.tools.terminal.result import print_result
 
 
 @dataclass(frozen=True, kw_only=True)

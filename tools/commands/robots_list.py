@@ -7,7 +7,8 @@ from typing import Annotated, Any
 import tyro
 from rich.table import Table
 
-from windup.robots import load_robot, robot_names
+from windup.robots.folders import FOLDER, robot_names
+from windup.robots.summary import summarise
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
 
@@ -22,17 +23,22 @@ class Robots(Command):
     """Write the result as JSON to a file, or to standard output with '-'."""
 
     def run(self) -> int:
-        """List; returns the exit status."""
-        names = robot_names() if self.robot is None else (self.robot,)
-        robots = [load_robot(name) for name in names]
-        table = Table("robot", "", "joints", "drive", "rate", "gaits", box=None)
-        rows: list[dict[str, Any]] = []
-        for robot in robots:
-            gaits = sorted(robot.gaits())
-            n, kind, rate = len(robot.joints), robot.drive.kind, robot.rate_hz
-            table.add_row(robot.name, robot.title, str(n), kind, f"{rate:g} Hz", ", ".join(gaits))
-            rows.append({"robot": robot.name, "title": robot.title, "joints": n, "drive": kind,
-                         "rate_hz": rate, "gaits": gaits})  # fmt: skip
-        console.print(table)
+        """List the robots; return the exit status."""
+        folders = [FOLDER / name for name in robot_names()]
+        if self.robot is not None:
+            from windup.robots import load_robot  # imports MuJoCo, which the list does not need
+
+            folders = [load_robot(self.robot).folder]
+        rows = [summarise(folder)._asdict() for folder in folders]
+        console.print(_table(rows))
         write_json(self.json, "robots", {"robots": rows})
         return 0
+
+
+def _table(rows: list[dict[str, Any]]) -> Table:
+    """Return the table of robots for people."""
+    table = Table("robot", "", "joints", "drive", "rate", "gaits", box=None)
+    for row in rows:
+        gaits, rate = ", ".join(row["gaits"]), f"{row['rate_hz']:g} Hz"
+        table.add_row(row["robot"], row["title"], str(row["joints"]), row["drive"], rate, gaits)
+    return table

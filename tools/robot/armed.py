@@ -15,7 +15,7 @@ from windup.tools.stopping.interrupts import (
     forget_interruption,
 )
 from windup.tools.stopping.stop_request import check_released, how_to_stop
-from windup.tools.terminal.output import console
+from windup.tools.terminal.say import say
 
 
 @dataclass(eq=False)
@@ -102,7 +102,7 @@ class Armed(Stoppable):
             raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
         check_released(self.backend.backend)
         if self.stack.real:
-            console.print(f"arming {self.description.name}: {how_to_stop(self.backend.backend)}")
+            say(f"arming {self.description.name}: {how_to_stop(self.backend.backend)}")
         self.backend.admit()
         if asked():
             return

@@ -5,7 +5,7 @@ import shlex
 from pathlib import Path
 
 from windup.robots import RobotDescription
-from windup.robots.description import FOLDER
+from windup.robots.folders import FOLDER
 from windup.robots.inspection.doubts import doubts
 
 _looked_at: set[Path] = set()

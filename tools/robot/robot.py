@@ -7,7 +7,8 @@ with Robot.open("op3") as robot:              # its twin
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
-from typing import Self
+from importlib import import_module
+from typing import Final, Self
 
 from windup.control.loop import LoopReport, Until
 from windup.control.motions.play import GraphPlayer, PoseHolder
@@ -21,10 +22,9 @@ from windup.robots import load_robot
 from windup.sim_twin.environment import Environment
 from windup.sim_twin.ground.clearance import FootClearance
 from windup.sim_twin.rollouts import RolloutPredictor
-from windup.sim_twin.wire.world.bus_world import RealClock
+from windup.sim_twin.wire.world.clocks import RealClock
 from windup.tools.assembly.build import build_walk
 from windup.tools.assembly.gaits import find_gait
-from windup.tools.assembly.supervise import build_supervisor
 from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.measures.gauges import Gauges
 from windup.tools.measures.load_gauge import LoadGauge
@@ -37,6 +37,13 @@ from windup.tools.robot.walk_report import WalkReport
 from windup.tools.stopping.interrupts import RunInterruptedError
 from windup.tools.terminal.quantities import Count, Delay, Noise, Rate, Seconds, Seed, Speed
 
+LATER: Final = (
+    "windup.control.falling.protection",
+    "windup.sim_twin.wire.world.worlds",
+    "windup.tools.assembly.supervise",
+    "windup.tools.terminal.output",
+)
+"""Modules that only some runs use, imported by `open` so that no run of an armed robot waits."""
 START_SECONDS = 1.0
 PLAY_SECONDS = 5.0
 
@@ -96,6 +103,8 @@ class Robot(Session):
         Raises:
             WindupError: The robot's files, these options, or the bus cannot be.
         """
+        for module in LATER:
+            import_module(module)
         description = load_robot(name)
         doubt_once(description)
         wired = description.wire_rate_hz if port is not None else None
@@ -190,6 +199,8 @@ class Robot(Session):
         walker = build_walk(self.description, options, self.predictor, latency=wait)
         supervisor = None
         if options.catch is not None:
+            from windup.tools.assembly.supervise import build_supervisor
+
             supervisor = build_supervisor(self.description, walker, options.catch)
         end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
         report = WalkReport(

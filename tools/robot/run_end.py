@@ -3,13 +3,16 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf
+from typing import TYPE_CHECKING
 
-from windup.control.falling.protection import Protected
 from windup.control.loop import LoopReport, Until
 from windup.control.motions.first_motion import Approach
 from windup.hal.observation import Observation
 from windup.tools.robot.stopping import INTERRUPTED, LAY
 from windup.tools.stopping.interrupts import Asked
+
+if TYPE_CHECKING:  # not needed by robots that do not fall
+    from windup.control.falling.protection import Protected
 
 EPSILON = 1e-9  # s
 
@@ -40,7 +43,7 @@ class RunEnd:
     until: Until | None = None
     down: bool = False
     approach: Approach | None = None
-    protected: Protected | None = None
+    protected: "Protected | None" = None
 
     def __post_init__(self) -> None:
         self._begin_at(self.opened)

@@ -22,7 +22,7 @@ from windup.hal.telemetry.layout import ring_path
 from windup.hal.telemetry.leftovers import remove_leftovers
 from windup.hal.telemetry.ring import TelemetryWriter
 from windup.sim_twin.backend import TwinClock
-from windup.sim_twin.wire.world.bus_world import VirtualClock
+from windup.sim_twin.wire.world.clocks import VirtualClock
 from windup.tools.assembly.protect import Protection
 from windup.tools.robot.armed import Armed
 from windup.tools.robot.run_end import RunEnd

@@ -22,7 +22,7 @@ from windup.tools.stopping.interrupts import (
 )
 from windup.tools.stopping.overheard import forget, overhear
 from windup.tools.stopping.running import Running
-from windup.tools.terminal.output import console
+from windup.tools.terminal.say import say
 
 INTERRUPTED = "interrupted"
 """The reason of a run that somebody ended."""
@@ -128,9 +128,7 @@ class Stoppable(OnStack):
     def _say_off(self, was_on: bool) -> None:
         if was_on and self.stack.real:
             count = len(self.description.joints)
-            console.print(
-                f"{self.description.name}: torque is off at all {count} joints, read back"
-            )
+            say(f"{self.description.name}: torque is off at all {count} joints, read back")
 
     def _stop_before(self, asked: Asked) -> None:
         """Stop a robot whose run was to end before its first tick."""

@@ -1,7 +1,7 @@
 """What a walk was like: the numbers of `windup walk --json`."""
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -9,7 +9,6 @@ from windup.control.limit_cycle.balancer import Balancer
 from windup.control.limit_cycle.planner import StepPlanner
 from windup.control.loop import LoopReport
 from windup.control.steering.navigation import PathFollower, PointFollower
-from windup.control.stepping.supervisor import Supervisor
 from windup.hal.controller import Stopwatch
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
@@ -18,6 +17,9 @@ from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.measures.gauges import Gauges
 from windup.tools.measures.walk_text import format_walk
 from windup.tools.robot.session import Session
+
+if TYPE_CHECKING:
+    from windup.control.stepping.supervisor import Supervisor
 
 SETTLED = 10  # steps left out of the mean speed
 
@@ -47,7 +49,7 @@ class WalkReport:
     seed: int
     gauges: Gauges
     feet: FootClearance | None = None
-    supervisor: Supervisor | None = None
+    supervisor: "Supervisor | None" = None
     loop: LoopReport = field(default_factory=LoopReport)
 
     def __post_init__(self) -> None:

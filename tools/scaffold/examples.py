@@ -7,7 +7,7 @@ from typing import Final
 
 from windup.hal.joints import Joint
 from windup.robots import RobotDescription
-from windup.robots.description import FILE
+from windup.robots.folders import FILE
 from windup.tools.scaffold.joint_choice import harmless_swing
 from windup.tools.schemas.files import schema_line
 

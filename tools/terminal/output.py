@@ -1,7 +1,6 @@
 """Output for people (on standard error) and for programs (JSON)."""
 
 import json
-import sys
 from math import isfinite
 from pathlib import Path
 from typing import IO, Any, cast
@@ -10,9 +9,10 @@ import numpy as np
 from rich.console import Console
 
 from windup.hal.errors import WindupError
+from windup.tools.terminal.result import print_result
 from windup.tools.terminal.run_notes import NOTES
-from windup.tools.terminal.streams import StandardError, drop_unwritten
-from windup.tools.terminal.writing import STANDARD_OUTPUT, check_writable, writing
+from windup.tools.terminal.streams import StandardError
+from windup.tools.terminal.writing import STANDARD_OUTPUT, writing
 
 SCHEMA = 1
 console = Console(file=cast(IO[str], StandardError()), highlight=False)
@@ -53,24 +53,6 @@ def write_json(target: Path | None, command: str, result: dict[str, Any]) -> Non
             return
         with writing(target):
             target.write_text(text + "\n", encoding="utf-8")
-
-
-def print_result(text: str) -> None:
-    """Write a text to standard output and flush it.
-
-    Raises:
-        UsageError: Standard output is closed.
-        OutputError: It cannot be written.
-        BrokenPipeError: Its reader has closed it.
-    """
-    check_writable(STANDARD_OUTPUT)
-    with writing(STANDARD_OUTPUT):
-        try:
-            sys.stdout.write(text)
-            sys.stdout.flush()
-        except OSError:
-            drop_unwritten(sys.stdout)
-            raise
 
 
 def error_record(error: WindupError) -> dict[str, Any]:

@@ -1,1 +1,4 @@
-"""Emulated servo buses for tests of other programs."""
+"""Emulated servos for tests of other programs: `ServoBus`, `ServoPty`, and pytest fixtures."""
+
+PLUGIN = "windup.tools.testing.pytest_plugin"
+"""Name under which pytest knows the fixtures."""

@@ -1,17 +1,18 @@
-"""Servo buses for tests: a robot's emulated bus, its faults, traces, and the real driver on it.
+"""Emulated servo buses for tests, with faults, traces, SDK ports and the real driver.
 
-with ServoBus("op3", seed=1) as bus:
-    bus.faults.drop(ids=[7], rate=0.02)
-    robot = bus.robot()
-    robot.stand()
+with ServoBus(servos="STS3215:1-6") as bus:
+    bus.faults.drop(ids=[3], rate=0.02)
+    port = bus.open_sdk("feetech")  # a PortHandler of scservo_sdk
+    bus.faults.overload(ids=[2])    # now
+
+A bench of servos does not need MuJoCo, which is imported when a robot is used.
 """
 
 import math
 from itertools import count
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
-from urllib.parse import urlencode
+from typing import TYPE_CHECKING, Any, Self, Unpack
 
 import serial
 
@@ -24,46 +25,39 @@ from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.faults.faults import Faults
 from windup.sim_twin.wire.serve.tape import check_played, tape_world
 from windup.sim_twin.wire.serve.trace import Checker, Recorder, Tap
-from windup.sim_twin.wire.world.bus_world import BusWorld, VirtualClock
+from windup.sim_twin.wire.world.address import BENCH
+from windup.sim_twin.wire.world.bus_world import BusWorld
+from windup.sim_twin.wire.world.clocks import VirtualClock
 from windup.sim_twin.wire.world.hand import Swing
-from windup.tools.robot.robot import Robot
+from windup.tools.testing.bus_options import BusOptions, bus_url
+from windup.tools.testing.sdk_port import Sdk, port_handler_class
+
+if TYPE_CHECKING:
+    from windup.tools.robot.robot import Robot
 
 _numbers = count(1)
 
 
 class ServoBus:
-    """The emulated buses of one robot, on a virtual clock.
+    """The emulated buses of one robot, or servos on a bench, on a virtual clock.
+
+    Time advances only in a read, in `wait`, or while a robot on these buses runs; `time.sleep` does
+    not advance it.
 
     Args:
-        robot: Name of a robot, path of a folder with one, or "bench" with `servos`.
-        physics: "mujoco": the robot's twin; "inertia": each servo alone with its inertia.
-        seed: Seed of the faults.
-        faults: Faults as a URL has them; or add them to `faults`.
-        **options: What else a twin:// URL says, such as servos, missing, latency, return_delay.
+        robot: Name of a robot, path of its folder, or "bench" for `servos` without a robot.
+        **options: Servos, baud rate, latency, supply, faults, seed: see `BusOptions`.
 
     Attributes:
         world: The world.
         clock: Its clock; it moves when somebody waits.
-        faults: What goes wrong.
+        faults: The faults, one method for each kind.
         url: What to open: any pyserial program in this process can.
     """
 
-    def __init__(
-        self,
-        robot: str,
-        *,
-        physics: str = "mujoco",
-        seed: int = 0,
-        faults: str = "",
-        **options: str | float,
-    ) -> None:
-        self._robot, self._seed = str(robot), seed
-        given = {"physics": physics, "seed": seed, "faults": faults, **options}
-        query = urlencode({key: value for key, value in given.items() if value != ""}, safe=":,;")
-        if set(given) & {"clock", "world"}:
-            raise UsageError("a servo bus chooses its own clock and world")
-        world = build_world(parse_address(f"twin://{robot}?{query}"))
-        self._begin(world)
+    def __init__(self, robot: str | Path = BENCH, **options: Unpack[BusOptions]) -> None:
+        self._robot, self._seed = str(robot), options.get("seed", 0)
+        self._begin(build_world(parse_address(bus_url(robot, options))))
 
     @classmethod
     def replay(cls, path: str | Path) -> Self:
@@ -81,12 +75,20 @@ class ServoBus:
         self.faults: Faults = world.faults
         self.url = f"twin://{self._robot or 'tape'}?clock=virtual&world={self._name}"
         self._robots: list[Robot] = []
+        self._sdk_ports: list[Any] = []
         self._taps: list[Tap] = []
 
-    def robot(self, **options: Any) -> Robot:
-        """Return the robot, opened with the real driver on these buses; see `Robot.open`."""
-        if not self._robot:
-            raise UsageError("a trace says nothing of a robot; open `url` with a driver")
+    def robot(self, **options: Any) -> "Robot":
+        """Return the robot, opened with the real driver on these buses; see `Robot.open`.
+
+        Raises:
+            UsageError: This is a bench of servos or a trace, which has no robot.
+        """
+        if self._robot in ("", BENCH):
+            what = "servos on a bench are" if self._robot else "a trace is"
+            raise UsageError(f"{what} no robot; use port(), serial() or open_sdk()")
+        from windup.tools.robot.robot import Robot  # imports MuJoCo, which a bench does not need
+
         robot = Robot.open(self._robot, port=self.url, **{"seed": self._seed, **options})
         self._robots.append(robot)
         return robot
@@ -98,6 +100,45 @@ class ServoBus:
     def serial(self, bus: str = "", baud: int = 1_000_000, timeout: float = 0.02) -> Any:
         """Return an open pyserial port on a bus, the first by default."""
         return serial.serial_for_url(self._url(bus), baudrate=baud, timeout=timeout)
+
+    def open_sdk(self, sdk: Sdk, bus: str = "", baud: int = 1_000_000) -> Any:
+        """Return an open PortHandler of a maker's SDK on a bus.
+
+        Packet handlers and groups of the SDK use it like any other, and virtual time advances while
+        they wait::
+
+            port = bus.open_sdk("dynamixel")
+            model, result, error = dynamixel_sdk.PacketHandler(2.0).ping(port, 1)
+
+        Args:
+            sdk: "dynamixel" (dynamixel_sdk) or "feetech" (scservo_sdk).
+            bus: Name of the bus; by default the first.
+            baud: Baud rate, bits/s; one that the SDK supports.
+
+        Raises:
+            UsageError: The SDK is unknown or not installed, or does not support the baud rate.
+        """
+        port = self.port_handler(sdk, bus)(self._url(bus))
+        if not port.setBaudRate(baud):
+            raise UsageError(f"the {sdk} SDK does not support {baud} baud")
+        self._sdk_ports.append(port)
+        return port
+
+    def port_handler(self, sdk: Sdk, bus: str = "") -> type[Any]:
+        """Return a PortHandler class whose instances open a bus, whatever their port name is.
+
+        This is for programs that create their PortHandler themselves::
+
+            monkeypatch.setattr(my_arm, "PortHandler", bus.port_handler("feetech"))
+
+        Args:
+            sdk: "dynamixel" (dynamixel_sdk) or "feetech" (scservo_sdk).
+            bus: Name of the bus; by default the first.
+
+        Raises:
+            UsageError: The SDK is unknown or not installed.
+        """
+        return port_handler_class(sdk, self._url(bus), self.clock)
 
     def servo(self, identifier: int, bus: str = "") -> Device:
         """Return an emulated servo.
@@ -121,7 +162,7 @@ class ServoBus:
         self.world.hand(Swing(joint, math.radians(degrees), seconds))
 
     def wait(self, seconds: float) -> None:
-        """Let time pass."""
+        """Let `seconds` s of virtual time pass."""
         self.clock.wait_until(self.clock.now() + seconds)
 
     def record(self, path: str | Path) -> None:
@@ -140,7 +181,7 @@ class ServoBus:
             self.record(path)
 
     def close(self) -> None:
-        """Disconnect robots, end traces, and forget the world.
+        """Disconnect robots, close ports of SDKs, end traces, and forget the world.
 
         Raises:
             TraceError: Not all that a trace holds has happened.
@@ -148,10 +189,12 @@ class ServoBus:
         try:
             for robot in self._robots:
                 robot.stack.close()
+            for port in self._sdk_ports:
+                port.closePort()
             for tap in self._taps:
                 tap.close()
         finally:
-            self._robots, self._taps = [], []
+            self._robots, self._sdk_ports, self._taps = [], [], []
             drop_world(self._name)
         check_played(self.world)
 

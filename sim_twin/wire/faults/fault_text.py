@@ -1,5 +1,6 @@
 """Parses the text form of faults, as used in URLs, on the command line and in injections."""
 
+from collections.abc import Iterable
 from typing import Final
 
 from windup.hal.errors import UsageError, suggest
@@ -7,6 +8,7 @@ from windup.sim_twin.wire.faults.fault_rule import (
     EVENTS,
     EXTRA,
     LAST_ID,
+    SECONDS,
     Rule,
     check_kind,
     make_rule,
@@ -34,6 +36,30 @@ def parse_rules(text: str, live: bool = False) -> list[Rule]:
         UsageError: The text is malformed or a value is out of range.
     """
     return [_parse(part.strip(), live) for part in text.split(",") if part.strip()]
+
+
+def format_rule(rule: Rule) -> str:
+    """Return a fault as text, in the form that `parse_rules` reads.
+
+    >>> format_rule(make_rule("unplug", at=2.5, seconds=1.0))
+    'unplug:at=2.5:seconds=1.0'
+    """
+    words = [rule.kind]
+    words.append(f"at={_joined(rule.at)}" if rule.at else f"rate={rule.rate}")
+    if rule.ids is not None:
+        words.append(f"ids={_joined(sorted(rule.ids))}")
+    if rule.bus is not None:
+        words.append(f"bus={rule.bus}")
+    if SECONDS[rule.kind]:
+        words.append(f"seconds={rule.seconds}")
+    words += [
+        f"{key}={getattr(rule, key)}" for key, (kind, _) in EXTRA.items() if kind == rule.kind
+    ]
+    return ":".join(words)
+
+
+def _joined(numbers: Iterable[float]) -> str:
+    return ";".join(map(str, numbers))
 
 
 def _parse(part: str, live: bool) -> Rule:

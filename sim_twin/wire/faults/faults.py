@@ -100,6 +100,11 @@ class Faults(FaultMethods):
                 self._script(rule)
 
     @property
+    def now(self) -> float:
+        """Time of the world, s; 0 before `attach`."""
+        return 0.0 if self._world is None else self._world.now
+
+    @property
     def _world(self) -> Circuit | None:
         return None if self._of is None else self._of()
 
@@ -190,5 +195,4 @@ class Faults(FaultMethods):
 
     def _note(self, kind: str, bus: str, identifier: int) -> None:
         self.counts[kind] += 1
-        now = 0.0 if self._world is None else self._world.now
-        self.hits.append(Hit(now, kind, bus, identifier))
+        self.hits.append(Hit(self.now, kind, bus, identifier))

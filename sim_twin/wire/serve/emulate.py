@@ -62,7 +62,7 @@ class Emulator:
         self._wake_read, self._wake_write = os.pipe()
         self._running = True
         self._watcher = Watcher(world, journal, events)
-        self._orders: SimpleQueue[list[Rule]] = SimpleQueue()
+        self._orders: SimpleQueue[Callable[[], object]] = SimpleQueue()
 
     def plug(self, bus: str, make: Callable[[], Link]) -> None:
         """Connect a bus to the link that `make` makes, now and after each unplugging."""
@@ -87,8 +87,11 @@ class Emulator:
             raise UsageError("the emulator has ended; nothing can be injected any more")
         rules = parse_rules(text, live=True)
         self.world.faults.check(rules)
-        self._orders.put(rules)
-        os.write(self._wake_write, b"i")
+        self._order(partial(self._begin, rules))
+
+    def clear_faults(self) -> None:
+        """Remove all faults, from any thread; devices that are broken already stay broken."""
+        self._order(self.world.faults.clear)
 
     def run(self) -> None:
         """Serve until `stop`."""
@@ -169,11 +172,20 @@ class Emulator:
         for outlet in self.outlets:
             outlet.feed()
 
+    def _order(self, what: Callable[[], object]) -> None:
+        """Queue a call for the thread that runs `run`, and wake it."""
+        self._orders.put(what)
+        os.write(self._wake_write, b"i")
+
     def _take_orders(self) -> None:
-        """Apply the faults that `inject` has queued."""
+        """Run what other threads have queued."""
         os.read(self._wake_read, CHUNK)
         while not self._orders.empty():
-            self.world.faults.inject(self._orders.get(), self.world.now)
+            self._orders.get()()
+
+    def _begin(self, rules: list[Rule]) -> None:
+        """Add injected faults, whose times count from now."""
+        self.world.faults.inject(rules, self.world.now)
 
 
 def emulate(

@@ -3,7 +3,7 @@
 from windup.hal.errors import UsageError
 from windup.sim_twin.wire.imu.bno055 import Bno055Registers
 from windup.sim_twin.wire.world.address import parse_address
-from windup.sim_twin.wire.world.bus_world import WireClock
+from windup.sim_twin.wire.world.clocks import WireClock
 from windup.sim_twin.wire.world.worlds import enter, leave
 
 CLOCK_RATE = 400_000.0

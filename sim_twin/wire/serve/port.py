@@ -9,7 +9,8 @@ from windup.hal.backend import Clock
 from windup.hal.errors import WindupError
 from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.world.address import parse_address
-from windup.sim_twin.wire.world.bus_world import BusWorld, RealClock
+from windup.sim_twin.wire.world.bus_world import BusWorld
+from windup.sim_twin.wire.world.clocks import RealClock
 from windup.sim_twin.wire.world.worlds import Running, enter, leave
 
 PATIENCE = 60.0  # longest wait of a read without a time-out and answer, virtual s

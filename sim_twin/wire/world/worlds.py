@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 from windup.hal.errors import UnknownNameError, UsageError
 from windup.sim_twin.wire.world.address import Address
 from windup.sim_twin.wire.world.build import build_world
-from windup.sim_twin.wire.world.bus_world import BusWorld, RealClock, VirtualClock, WireClock
+from windup.sim_twin.wire.world.bus_world import BusWorld
+from windup.sim_twin.wire.world.clocks import RealClock, VirtualClock, WireClock
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""Every call of dynamixel-sdk's handlers and groups on emulated servos, in real time."""
+"""Every call of dynamixel-sdk on emulated servos, in real time and on a virtual clock."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -10,6 +10,7 @@ import pytest
 
 from tests.sim_twin.wire.clients.record import calls, recorded
 from tests.sim_twin.wire.emulator_process import emulator
+from windup.tools.testing.servo_bus import ServoBus
 
 OK, NOT_AVAILABLE = sdk.COMM_SUCCESS, sdk.COMM_NOT_AVAILABLE
 GROUPS = ("GroupSyncRead", "GroupSyncWrite", "GroupBulkRead", "GroupBulkWrite")
@@ -32,8 +33,8 @@ MX = Bus(1.0, "MX-28:1-2", 29, {1: 25, 2: 32, 4: 30})
 class Sdk:
     """A handler on an open port, which notes what has been called."""
 
-    def __init__(self, bus: Bus, path: str) -> None:
-        port, self.port_called = recorded(sdk.PortHandler)
+    def __init__(self, bus: Bus, path: str, port_handler: type[Any] = sdk.PortHandler) -> None:
+        port, self.port_called = recorded(port_handler)
         self.kind = type(sdk.PacketHandler(bus.version))
         handler, self.called = recorded(self.kind)
         self.bus, self.port, self.handler = bus, port(path), handler()
@@ -55,11 +56,20 @@ class Sdk:
 
 
 @pytest.fixture(params=[X, MX], ids=["protocol 2", "protocol 1"])
+def bus(request: pytest.FixtureRequest) -> Bus:
+    found: Bus = request.param
+    return found
+
+
+@pytest.fixture(params=["path", "virtual clock"])
 def open_sdk(
-    tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+    bus: Bus, tmp_path: Path, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Sdk]:
+    if request.param == "virtual clock":
+        with ServoBus(servos=bus.servos, return_delay=0) as world:
+            yield Sdk(bus, "whatever", world.port_handler("dynamixel"))
+        return
     monkeypatch.setattr(sdk.port_handler, "LATENCY_TIMER", 1000)
-    bus: Bus = request.param
     with emulator(f"twin://bench?servos={bus.servos}&return_delay=0", tmp_path / "bus") as name:
         made = Sdk(bus, name)
         yield made

@@ -1,6 +1,11 @@
-"""Every call of Feetech's two unmodified SDKs on emulated STS and SCS servos, in real time."""
+"""Every call of Feetech's two unmodified SDKs on emulated STS and SCS servos.
 
+In real time, under a path; and on a virtual clock.
+"""
+
+import json
 from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -8,22 +13,28 @@ import pytest
 
 from tests.sim_twin.wire.clients.run import run_client
 from tests.sim_twin.wire.emulator_process import emulator
+from windup.tools.testing.bus_options import bus_url
 
-SERVOS = {"sts": ("STS3215:1-2", 777, 2048), "scs": ("SCS0009:1-2&supply=6", 1284, 512)}
+SERVOS = {"sts": ("STS3215:1-2", 777, 2048), "scs": ("SCS0009:1-2", 1284, 512)}
+SUPPLY = {"sts": 7.4, "scs": 6.0}  # V
 SDKS = {"feetech-servo-sdk": None, "ftservo-python-sdk": "ftservo"}
 NEAR = 8  # counts of a goal, which a servo without an integral gain does not reach
 
 
-@pytest.fixture(scope="module", params=[(family, sdk) for family in SERVOS for sdk in SDKS])
+@pytest.fixture(scope="module", params=product(SERVOS, SDKS, ("path", "virtual clock")))
 def said(
     tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest
 ) -> Iterator[dict[str, Any]]:
-    family, sdk = request.param
+    family, sdk, time = request.param
     servos, model, middle = SERVOS[family]
+    expected = {"should": (model, middle), "new": SDKS[sdk] is not None}
+    options = {"servos": servos, "return_delay": 0, "supply": SUPPLY[family]}
+    if time == "virtual clock":
+        yield expected | run_client("feetech", family, json.dumps(options), package=SDKS[sdk])
+        return
     path: Path = tmp_path_factory.mktemp("feetech") / "servos"
-    with emulator(f"twin://bench?servos={servos}&return_delay=0", path) as name:
-        found = run_client("feetech", family, name, package=SDKS[sdk])
-        yield {"should": (model, middle), "new": SDKS[sdk] is not None, **found}
+    with emulator(bus_url("bench", options), path) as name:
+        yield expected | run_client("feetech", family, name, package=SDKS[sdk])
 
 
 def test_it_makes_every_call(said: dict[str, Any]) -> None:

@@ -61,6 +61,15 @@ def test_a_tcp_port_says_its_number() -> None:
         assert process.wait(20) == 0
 
 
+def test_servos_need_no_robot() -> None:
+    with start("--servos", "STS3215:1-6", "--tcp", "0") as process:
+        lines = said(process)
+        assert lines[0].startswith("bus 'bench' (6 devices at 1000000 baud) on socket://127.0.0.1:")
+        assert len(lines) == 2  # no robot to run
+        process.terminate()
+        assert process.wait(20) == 0
+
+
 def test_what_was_unplugged_can_be_opened_again(tmp_path: Path) -> None:
     path = tmp_path / "bus"
     with start(STS, "--pty", str(path), "--faults", "unplug:at=2:seconds=0.5") as process:
@@ -85,6 +94,10 @@ def test_what_was_unplugged_can_be_opened_again(tmp_path: Path) -> None:
     ("arguments", "message"),
     [
         ([STS], "needs a --pty PATH or a --tcp PORT"),
+        (["--tcp", "0"], "give either a ROBOT, or servos without one: --servos STS3215:1-6"),
+        (["op3", "--servos", "STS3215:1", "--tcp", "0"], "give either a ROBOT, or servos"),
+        (["--servos", "STS3215", "--tcp", "0"], "a model and its ids, as in 'XM430-W350:1-20'"),
+        (["--servos", "STS3125:1", "--tcp", "0"], "unknown servo model 'STS3125'"),
         (["opp3", "--tcp", "0"], "unknown robot 'opp3'; did you mean 'op3'?"),
         (["op3", "--tcp", "0", "--faults", "dorp"], "unknown kind 'dorp'"),
         (["op3", "--tcp", "0", "--supply", "0"], "give more than 0, up to 60 V"),

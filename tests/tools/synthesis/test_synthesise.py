@@ -13,7 +13,7 @@ from windup.control.pose_graph.gait_file import GaitFile
 from windup.hal.config import load_toml
 from windup.hal.errors import UnknownNameError, UsageError
 from windup.robots import load_robot
-from windup.robots.description import robot_names
+from windup.robots.folders import robot_names
 from windup.tools.assembly.gaits import find_gait, gait_path
 from windup.tools.synthesis.gait_toml import write_gait
 from windup.tools.synthesis.genes import Gene, Genome

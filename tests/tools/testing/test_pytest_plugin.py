@@ -23,6 +23,33 @@ def test_the_example_in_docs_passes(pytester: pytest.Pytester) -> None:
     run(pytester).assert_outcomes(passed=6)
 
 
+def test_the_five_tests_with_the_makers_sdks_pass(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile((ROOT / "docs/test_sdk_example.py").read_text())
+    run(pytester).assert_outcomes(passed=10)
+
+
+def test_the_fixture_of_paths_serves_until_the_test_ends(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(
+        """
+        from pathlib import Path
+        import serial
+
+        paths = []
+
+        def test_open(servo_pty):
+            pty = servo_pty(servos="STS3215:1-2")
+            with serial.Serial(pty.path, 1_000_000, timeout=20) as port:
+                port.write(bytes.fromhex("FF FF 01 02 01 FB"))
+                assert len(port.read(6)) == 6
+            paths.append(pty.path)
+
+        def test_gone():
+            assert not Path(paths[0]).exists()
+        """
+    )
+    run(pytester).assert_outcomes(passed=2)
+
+
 def test_two_runs_bring_the_same_bytes(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(
         """

@@ -1,7 +1,8 @@
 """A script of somebody who has one of Feetech's SDKs and two servos: ``sts|scs PORT``.
 
-Makes every call of the SDK and prints what it found as JSON. The SDKs have one import name:
-feetech-servo-sdk takes the port in each call, ftservo-python-sdk has classes for STS and SCS.
+PORT is a path, or the options of a `ServoBus` as JSON, for servos on a virtual clock. Makes every
+call of the SDK and prints what it found as JSON. The SDKs have one import name: feetech-servo-sdk
+takes the port in each call, ftservo-python-sdk has classes for STS and SCS.
 """
 
 import json
@@ -13,6 +14,7 @@ from typing import Any, Literal
 import scservo_sdk as sdk
 
 from tests.sim_twin.wire.clients.record import calls, recorded
+from windup.tools.testing.servo_bus import ServoBus
 
 IDS = (1, 2)
 NEW = hasattr(sdk, "sms_sts")  # ftservo-python-sdk
@@ -23,10 +25,10 @@ OK = sdk.COMM_SUCCESS
 class Servos:
     """The packets of either SDK; what it is asked for gets the port if it takes one."""
 
-    def __init__(self, family: str, path: str) -> None:
+    def __init__(self, family: str, path: str, port_handler: type[Any]) -> None:
         end = int(family == "scs")
         kind = (sdk.scscl if end else sdk.sms_sts) if NEW else type(sdk.PacketHandler(end))
-        port, self.port_asked = recorded(sdk.PortHandler)
+        port, self.port_asked = recorded(port_handler)
         packets, self.asked = recorded(kind)
         self.kind, self.port = kind, port(path)
         self.order: Literal["little", "big"] = "big" if end else "little"
@@ -183,8 +185,15 @@ def drive(servos: Servos) -> dict[str, Any]:
 
 
 def main(family: str, path: str) -> None:
+    if path.startswith("{"):
+        with ServoBus(**json.loads(path)) as bus:
+            make_every_call(Servos(family, "servos", bus.port_handler("feetech")), "servos")
+        return
     sdk.port_handler.LATENCY_TIMER = 2000  # ms, for a busy machine
-    servos = Servos(family, path)
+    make_every_call(Servos(family, path, sdk.PortHandler), path)
+
+
+def make_every_call(servos: Servos, path: str) -> None:
     said = {**open_port(servos, path), **read(servos), **write(servos)}
     said.update(in_groups(servos))
     if NEW:

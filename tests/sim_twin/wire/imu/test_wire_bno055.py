@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from windup.hal.errors import ImuError
-from windup.robots.description import FOLDER
+from windup.robots.folders import FOLDER
 from windup.tools.robot.robot import Robot
 
 

@@ -1,4 +1,4 @@
-"""A cache of objects made from the files of a folder, valid until a file changes."""
+"""Folders of robots: those that come with Windup, and a cache of what was made of their files."""
 
 import os
 import time
@@ -6,11 +6,27 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Generic, TypeVar
 
+FOLDER = Path(__file__).parent
+FILE = "robot.toml"
 Made = TypeVar("Made")
 Stamp = tuple[tuple[int, int, int], ...]
 
 FRESH = 0.1
 """Minimum age of a file, s: a younger one may change again with the same modification time."""
+
+
+def robot_names() -> tuple[str, ...]:
+    """Return the names of the robots that come with Windup.
+
+    >>> {"human", "op3"} <= set(robot_names())
+    True
+    """
+    return tuple(sorted(path.parent.name for path in FOLDER.glob(f"*/{FILE}")))
+
+
+def gait_files(folder: Path) -> dict[str, Path]:
+    """Return the paths of the gait files in a robot's folder by name."""
+    return {path.stem: path for path in sorted((folder / "gaits").glob("*.toml"))}
 
 
 class Loaded(Generic[Made]):

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from windup.robots import load_robot
-from windup.robots.description import FOLDER
+from windup.robots.folders import FOLDER
 
 
 @pytest.fixture
