@@ -1,9 +1,9 @@
-# Two commands do everything: `make walk` and `make test`.
+# `make walk` shows a robot walking, `make test` checks everything, `make docs` builds the pages.
 PYTHON ?= python3
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 
-.PHONY: walk test schemas check clean
+.PHONY: walk test docs schemas clean
 
 walk: .venv/run.stamp
 	$(BIN)/windup walk op3 --plot walk.png
@@ -13,6 +13,10 @@ test: .venv/dev.stamp .venv/clients.stamp
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/pytest -n 2
+
+docs: .venv/docs.stamp
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+	@echo "documentation: .venv/site/index.html"
 
 # JSON Schemas of the TOML files; a test says when they are out of date.
 schemas: .venv/run.stamp
@@ -28,6 +32,10 @@ schemas: .venv/run.stamp
 .venv/dev.stamp: pyproject.toml | .venv/bin/python
 	$(PIP) -e '.[dev]'
 	@touch $@ .venv/run.stamp
+
+.venv/docs.stamp: pyproject.toml | .venv/bin/python
+	$(PIP) -e '.[docs]'
+	@touch $@
 
 # Clients for tests. They lie beside the environment: one has the import name of
 # feetech-servo-sdk, LeRobot would bring torch, and pypot OpenCV.

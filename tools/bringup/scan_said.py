@@ -67,7 +67,7 @@ def complaints(survey: Survey, url: str, missing: list[str]) -> Iterator[str]:
     if survey.echo:
         yield f"{url} sends back what it is sent: switch the echo of the adapter off"
     elif strange := [one for _, _, one in survey.strange if one.whole or one.id is None]:
-        yield f"something answers on {url} that is not decode (first bytes {_hex(strange[0])})"
+        yield f"something answers on {url} that is not understood (first bytes {_hex(strange[0])})"
     if missing:
         yield f"silent: {', '.join(missing)}"
     if not (survey.servos or survey.unknown or survey.protocol_1 or survey.strange or survey.echo):

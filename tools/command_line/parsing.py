@@ -2,7 +2,7 @@
 
 import io
 import sys
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import redirect_stderr, redirect_stdout, suppress
 from typing import Any
 
 import tyro
@@ -37,6 +37,14 @@ def parse_options(name: str, kind: type, words: list[str]) -> Any:
             return _parse(name, kind, words)  # print the help again, in the terminal's width
         finally:
             sys.stdout.flush()
+
+
+def help_text(name: str, kind: type) -> str:
+    """Return the help text of a command of this kind, as wide as COLUMNS or the terminal."""
+    said = io.StringIO()
+    with redirect_stdout(said), suppress(SystemExit):
+        _parse(name, kind, ["--help"])
+    return said.getvalue()
 
 
 def _parse(name: str, kind: type, words: list[str]) -> Any:

@@ -28,7 +28,8 @@ PATIENCE = 5.0
 OUTSIDE = 0.12
 """A joint that is farther outside of its limits would jump, rad; their stops are not exact."""
 CLEAR = 0.02
-"""A robot of which something else is no higher than this above its feet rests on that too, m."""
+"""A robot of which something else is no higher than this above its feet rests on that too, m; where
+that is so in its stance, because its ankles are low, half as high as there."""
 
 
 class Start:
@@ -56,9 +57,11 @@ class Start:
         self.motion = FirstMotion(
             robot.joints, share, safety.first_speed, safety.first_lag, planted
         )
-        self._sense = None
+        self._sense, self._clear = None, CLEAR
         if robot.imu is not None and robot.feet and known:
             self._sense = PostureSense(model, feet)
+            low, others = self._sense.lowest(robot.stance, np.array([0.0, 0.0, 1.0]))
+            self._clear = min(CLEAR, 0.5 * (others - low))
         self.unseen = True
         if isinstance(self.backend.backend, ServoBackend):
             self.backend.backend.arming_stiffness = share * robot.joints.stiffness
@@ -106,7 +109,7 @@ class Start:
             return
         if posture.tilt > fall.tilt:
             how = f"lies on its {posture.side}"
-        elif posture.height < fall.height or posture.clearance < CLEAR:
+        elif posture.height < fall.height or posture.clearance < self._clear:
             how = "sits"
         else:
             return

@@ -120,7 +120,8 @@ class ParquetTable:
             import polars
         except ImportError:
             raise UsageError(
-                f"--out {path}: Parquet needs polars: pip install 'windup[sweep]', or name it .csv"
+                f"--out {path}: Parquet needs polars: pip install 'windup-robotics[sweep]', or "
+                "name it .csv"
             ) from None
         self._polars = polars
         self.path = path

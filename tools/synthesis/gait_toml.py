@@ -21,7 +21,7 @@ def write_gait(path: Path, file: GaitFile) -> None:
         import tomli_w
     except ImportError:
         raise UsageError(
-            "synthesis needs cma and tomli-w: pip install 'windup[synthesis]'"
+            "synthesis needs cma and tomli-w: pip install 'windup-robotics[synthesis]'"
         ) from None
     with writing(path):
         path.write_text(tomli_w.dumps(sparse(file)), encoding="utf-8")

@@ -90,7 +90,7 @@ class Search:
             import cma
         except ImportError:
             raise UsageError(
-                "synthesis needs cma and tomli-w: pip install 'windup[synthesis]'"
+                "synthesis needs cma and tomli-w: pip install 'windup-robotics[synthesis]'"
             ) from None
         start, lower, upper = shape(self.genes)
         random = np.random.default_rng(self.seed)

@@ -53,4 +53,4 @@ def save_picture(path: Path, figure: Any, **options: Any) -> None:
 
 def _check_installed(wanted_by: str) -> None:
     if find_spec("matplotlib") is None:
-        raise UsageError(f"{wanted_by} needs matplotlib: pip install 'windup[plot]'")
+        raise UsageError(f"{wanted_by} needs matplotlib: pip install 'windup-robotics[plot]'")

@@ -99,7 +99,7 @@ def test_an_answer_that_is_none_is_no_silence() -> None:
     found = survey(clone)
     assert found.servos == []
     assert said(found) == (
-        "something answers on URL that is not decode (first bytes ff ff fd 00 01 08 00 55 ..)"
+        "something answers on URL that is not understood (first bytes ff ff fd 00 01 08 00 55 ..)"
     )
 
 
@@ -117,7 +117,7 @@ def test_somebody_who_talks_unasked_is_heard() -> None:
 
     found = Survey(Port(Chatter(lambda _: b""), "line"), {})
     found.update(4_000_000, lambda _: None)
-    assert "not decode (first bytes aa aa 07)" in said(found)
+    assert "not understood (first bytes aa aa 07)" in said(found)
 
 
 def test_an_x_that_speaks_protocol_1_is_told_by_its_model() -> None:

@@ -1,6 +1,7 @@
 """What comes before the first command to a robot on a port: how it is, and its first motion."""
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,9 @@ from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics
 from windup.tools.commands.rise import lay, rise
 from windup.tools.robot.robot import Robot
 from windup.tools.testing.servo_bus import ServoBus
+
+BIPED = str(Path(__file__).parents[3] / "examples/biped")
+"""A robot with ankles 2 cm above its soles."""
 
 
 @pytest.fixture
@@ -42,6 +46,11 @@ def test_one_without_a_motion_for_it_is_only_told_to_be_put_up() -> None:
         lay(duck, "back")
         with pytest.raises(PostureError, match=r"^duck lies on its back: put it on its feet$"):
             duck.stand(1.0)
+
+
+def test_one_whose_ankles_are_low_in_its_stance_does_not_sit() -> None:
+    with ServoBus(BIPED) as bus, bus.robot() as robot:
+        assert robot.stand(0.5).reason == "done"
 
 
 def test_one_that_was_armed_lying_goes_limp_when_it_is_to_stand(op3: Robot) -> None:

@@ -1,0 +1,55 @@
+"""The scripts in `examples` do what they are for."""
+
+import runpy
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+PLUGIN = "windup.tools.testing.pytest_plugin"
+
+
+def load(name: str) -> dict[str, Any]:
+    return runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name=name)
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.name)
+def test_an_example_is_short(path: Path) -> None:
+    assert 30 <= len(path.read_text().splitlines()) <= 65
+
+
+def test_own_controller_sways_and_stands() -> None:
+    width, fallen = load("own_controller")["main"]()
+    assert width > 0.01 and not fallen
+
+
+def test_live_speed_follows_what_is_commanded() -> None:
+    speeds = load("live_speed")["main"]()
+    slow, fast = (np.mean([speeds[n] for n in steps]) for steps in (range(12, 20), range(32, 40)))
+    assert slow == pytest.approx(0.1, abs=0.04) and fast == pytest.approx(0.25, abs=0.05)
+    assert speeds[70] == pytest.approx(0.0, abs=0.05)
+
+
+def test_push_and_step_stays_up_with_steps_alone() -> None:
+    results = load("push_and_step")["main"]()
+    assert not results["hold"]["survived"] and results["predictive"]["survived"]
+    assert results["predictive"]["steps"] > 0
+
+
+def test_log_and_plot_writes_a_log_and_a_picture(tmp_path: Path) -> None:
+    arrays = load("log_and_plot")["main"](tmp_path)
+    kept = np.load(tmp_path / "walk.npz")
+    assert np.array_equal(kept["position"], arrays["position"]) and len(kept["time"]) > 100
+    assert (tmp_path / "walk_log.png").stat().st_size > 10_000
+
+
+def test_own_robot_stands_and_walks() -> None:
+    stands, speed = load("own_robot")["main"](steps=20)
+    assert stands and speed is not None and speed == pytest.approx(0.1, abs=0.04)
+
+
+def test_servo_tests_pass(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile((EXAMPLES / "test_servos.py").read_text())
+    pytester.runpytest("-p", PLUGIN).assert_outcomes(passed=3)
