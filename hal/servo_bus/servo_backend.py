@@ -10,7 +10,6 @@ from windup.hal.bus.bus import Bus
 from windup.hal.bus.transactions import TURNAROUND
 from windup.hal.clock import WallClock
 from windup.hal.command import JointCommand, shifted_goal
-from windup.hal.coupling import Coupling, Couplings
 from windup.hal.errors import HardwareError, PortError
 from windup.hal.heartbeat import Heartbeat, beating, no_heartbeat
 from windup.hal.imu.opencr import OpenCr
@@ -21,6 +20,7 @@ from windup.hal.port.open_port import open_port
 from windup.hal.port.port import Port
 from windup.hal.servo_bus.bus_connection import BusConnection, BusPort
 from windup.hal.servo_bus.bus_readout import BusReadout
+from windup.hal.servo_bus.coupling import Coupling, Couplings
 from windup.hal.servo_bus.joint_readings import JointReadings
 from windup.hal.servo_bus.joint_torque import JointTorque
 from windup.hal.servo_bus.servo_alerts import ServoAlerts, count_errors

@@ -24,6 +24,7 @@ from windup.sim_twin.ground.clearance import FootClearance
 from windup.sim_twin.rollouts import RolloutPredictor
 from windup.sim_twin.wire.world.clocks import RealClock
 from windup.tools.assembly.build import build_walk
+from windup.tools.assembly.catching import supervisor_for
 from windup.tools.assembly.gaits import find_gait
 from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.measures.gauges import Gauges
@@ -197,11 +198,7 @@ class Robot(Session):
         # A plan takes its time on a robot; an emulated one waits for it as long.
         wait = self.description.model_latency if self.stack.wired else 0.0
         walker = build_walk(self.description, options, self.predictor, latency=wait)
-        supervisor = None
-        if options.catch is not None:
-            from windup.tools.assembly.supervise import build_supervisor
-
-            supervisor = build_supervisor(self.description, walker, options.catch)
+        supervisor = supervisor_for(self.description, walker, options.catch)
         end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
         report = WalkReport(
             self, walker, options, steps, self.predictor.stopwatch, self.seed,
