@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
+from windup.hal.backend import Clock
 from windup.hal.command import JointCommand
 from windup.hal.controller import Controller, Stopwatch
 from windup.hal.guard import GuardedBackend
@@ -69,6 +70,37 @@ class LoopReport:
         return {"p50": float(p50), "p99": float(p99)}
 
 
+class Schedule:
+    """An absolute schedule of ticks, from now on; those that come too late are left out.
+
+    Args:
+        clock: The clock that it keeps.
+        period: From one tick to the next, s.
+    """
+
+    def __init__(self, clock: Clock, period: float) -> None:
+        self._clock, self._period = clock, period
+        self._started, self._tick = clock.now(), 0
+
+    @property
+    def elapsed(self) -> float:
+        """Time since it began, s."""
+        return self._clock.now() - self._started
+
+    def advance(self) -> int:
+        """Go on to the next tick that is still to come; return how many are left out."""
+        self._tick += 1
+        late = int(self.elapsed / self._period - self._tick + 1e-6)
+        if late <= 0:
+            return 0
+        self._tick += late
+        return late
+
+    def wait(self) -> None:
+        """Wait for that tick."""
+        self._clock.wait_until(self._started + self._tick * self._period)
+
+
 def run_loop(
     backend: GuardedBackend,
     controller: Controller,
@@ -99,9 +131,7 @@ def run_loop(
     """
     report = report or LoopReport()
     rollouts = rollouts or Stopwatch()
-    clock = backend.clock
-    started, wall_started = clock.now(), wall.perf_counter()
-    tick = 0
+    schedule, wall_started = Schedule(backend.clock, period), wall.perf_counter()
     first = True
     while True:
         began, playing = wall.perf_counter(), rollouts.seconds
@@ -120,11 +150,7 @@ def run_loop(
         report.ticks += 1
         if recorder is not None:
             recorder.record(observation, command, spent, report.ticks, report.missed)
-        tick += 1
-        late = int((clock.now() - started) / period - tick + 1e-6)
-        if late > 0:
-            report.missed += late
-            tick += late
-        clock.wait_until(started + tick * period)
-        report.sim_time = clock.now() - started
+        report.missed += schedule.advance()
+        schedule.wait()
+        report.sim_time = schedule.elapsed
         report.wall_time = wall.perf_counter() - wall_started

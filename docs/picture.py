@@ -26,7 +26,7 @@ def pose_of_a_step() -> np.ndarray:
             if not poses and robot.twin.time >= WHEN:
                 poses.append(robot.twin.data.qpos.copy())
 
-        robot.watch = keep
+        robot.watch.append(keep)
         robot.walk(speed=0.3, steps=16)
     return poses[0]
 

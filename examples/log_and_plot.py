@@ -33,7 +33,7 @@ def main(folder: Path = Path()) -> dict[str, np.ndarray]:
     """Walk twelve steps, write the log and the picture into `folder`, and return the arrays."""
     log = Log()
     with Robot.open("op3") as robot:
-        robot.watch = log
+        robot.watch.append(log)
         print(robot.walk(speed=0.15, steps=12))
         names = robot.description.joints.names
         feet = robot.description.contacts

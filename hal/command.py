@@ -22,6 +22,8 @@ class JointCommand:
     instead of a torque limit, and at least the back-EMF damping K^2/R of its motor. The backend's
     `write` therefore returns the command that was really applied.
 
+    Made by `of`, and not changed afterwards: whoever wants another command makes another one.
+
     Attributes:
         block: (5, n) array with the rows of `FIELDS`; the properties are views of its rows.
     """
@@ -54,13 +56,47 @@ class JointCommand:
         return self.block[4]
 
     @classmethod
-    def hold(cls, joints: Joints, position: Array) -> "JointCommand":
-        """Return the command that holds `position` (n,) rad with the robot's default gains."""
+    def of(
+        cls,
+        joints: Joints,
+        *,
+        position: Array | float,
+        velocity: Array | float | None = None,
+        torque: Array | float | None = None,
+        stiffness: Array | float | None = None,
+        damping: Array | float | None = None,
+    ) -> "JointCommand":
+        """Return a command whose arrays are read-only.
+
+        Args:
+            joints: The joints.
+            position: (n,) rad.
+            velocity: (n,) rad/s, by default 0.
+            torque: (n,) N m, by default 0.
+            stiffness: (n,) N m/rad, by default the joints' own.
+            damping: (n,) N m s/rad, by default the joints' own.
+        """
         block = np.zeros((len(FIELDS), len(joints)))
         block[0] = position
-        block[3] = joints.stiffness
-        block[4] = joints.damping
+        if velocity is not None:
+            block[1] = velocity
+        if torque is not None:
+            block[2] = torque
+        block[3] = joints.stiffness if stiffness is None else stiffness
+        block[4] = joints.damping if damping is None else damping
+        block.setflags(write=False)
         return cls(block)
+
+    @classmethod
+    def hold(cls, joints: Joints, position: Array) -> "JointCommand":
+        """Return the command that holds `position` (n,) rad with the robot's default gains."""
+        return cls.of(joints, position=position)
+
+    def at(self, position: Array) -> "JointCommand":
+        """Return the same command with other target positions (n,) rad."""
+        block = self.block.copy()
+        block[0] = position
+        return JointCommand(block)
 
 
 def joint_torque(command: JointCommand, q: Array, dq: Array, limit: Array) -> Array:

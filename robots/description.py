@@ -1,7 +1,7 @@
 """Description of a robot for the rest of the stack, from its checked robot.toml and model.xml."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from windup.hal.config import load_toml
 from windup.hal.contacts import ContactSensors
 from windup.hal.errors import UnknownNameError, UsageError
 from windup.hal.guard import HealthLevels, StopPolicy
+from windup.hal.imu.kind import ImuKind
 from windup.hal.joints import Array, Joint, Joints
 from windup.hal.mirror import Mirror
 from windup.hal.servos import servo_model
@@ -19,7 +20,8 @@ from windup.hal.servos.servo_model import ServoMount
 from windup.robots import mjcf, structure
 from windup.robots.checks import Checks, whole_steps
 from windup.robots.completion import complete, complete_for
-from windup.robots.folders import FILE, FOLDER, gait_files, robot_names
+from windup.robots.folders import FILE, FOLDER, Loaded, gait_files, robot_names
+from windup.robots.imu import imu_of
 from windup.robots.limits import with_limits
 from windup.robots.mirror import mirror_map
 from windup.robots.records import (
@@ -37,6 +39,7 @@ from windup.robots.records import (
 
 NEVER = Fall(height=1e-9, tilt=4.0)
 """Fall criterion of a robot with a fixed base, which is never met."""
+_loaded: "Loaded[RobotDescription]" = Loaded()
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +75,7 @@ class RobotDescription:
         stop: Stop policy: hold, crouch or limp.
         safety: Time-outs and levels of the `[safety]` table.
         fall: Criterion for a fallen robot, and protective falls.
+        model: The compiled MJCF with its sensors. It is shared: copy it to change it.
     """
 
     folder: Path
@@ -102,6 +106,7 @@ class RobotDescription:
     stop: StopPolicy
     safety: Safety
     fall: Fall
+    model: mujoco.MjModel = field(repr=False)
 
     @cached_property
     def mirror(self) -> Mirror:
@@ -111,6 +116,11 @@ class RobotDescription:
             ConfigError: The robot is not symmetric.
         """
         return mirror_map(self.joints.names, self.axes)
+
+    @cached_property
+    def imu_kind(self) -> ImuKind | None:
+        """Kind of its IMU with the mounting in this robot, or None."""
+        return imu_of(self.imu, self.buses)
 
     @cached_property
     def health(self) -> HealthLevels:
@@ -146,11 +156,23 @@ class RobotDescription:
 def load_robot(name_or_path: str | Path) -> RobotDescription:
     """Return a robot by the name of a folder in `robots`, or by the path of another folder.
 
+    A robot whose files have not changed since is the same object as before.
+
     Raises:
         UnknownNameError: There is neither such a robot nor such a folder.
         ConfigError: A file of the robot cannot be read or failed a check.
     """
     folder = folder_of(name_or_path)
+    if (known := _loaded.of(folder)) is not None:
+        return known
+    robot = _load(folder)
+    if mjcf.is_alone(robot.model_path):
+        _loaded.keep(folder, (folder / FILE, robot.model_path), robot)
+    return robot
+
+
+def _load(folder: Path) -> RobotDescription:
+    """Return the robot in a folder, read anew."""
     path = folder / FILE
     robot = filled_in(load_toml(path, RobotFile))
     model = mjcf.compile_mjcf(folder / robot.model, partial(complete_for, robot))
@@ -219,6 +241,7 @@ def describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDesc
         stop=robot.stop,
         safety=robot.safety,
         fall=robot.fall or NEVER,
+        model=model,
     )
 
 

@@ -1,9 +1,18 @@
-"""The folders of the robots that come with Windup."""
+"""Folders of robots: those that come with Windup, and a cache of what was made of their files."""
 
+import os
+import time
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Generic, TypeVar
 
 FOLDER = Path(__file__).parent
 FILE = "robot.toml"
+Made = TypeVar("Made")
+Stamp = tuple[tuple[int, int, int], ...]
+
+FRESH = 0.1
+"""Minimum age of a file, s: a younger one may change again with the same modification time."""
 
 
 def robot_names() -> tuple[str, ...]:
@@ -18,3 +27,47 @@ def robot_names() -> tuple[str, ...]:
 def gait_files(folder: Path) -> dict[str, Path]:
     """Return the paths of the gait files in a robot's folder by name."""
     return {path.stem: path for path in sorted((folder / "gaits").glob("*.toml"))}
+
+
+class Loaded(Generic[Made]):
+    """Keeps one object per folder.
+
+    Args:
+        most: Maximum number of folders.
+    """
+
+    def __init__(self, most: int = 32) -> None:
+        self._most = most
+        self._kept: dict[tuple[str, str], tuple[Sequence[Path], Stamp, Made]] = {}
+
+    def of(self, folder: Path) -> Made | None:
+        """Return the object kept for a folder if its files are unchanged, else None."""
+        kept = self._kept.get(_key(folder))
+        if kept is None:
+            return None
+        files, stamp, made = kept
+        return made if _stamp(files) == stamp else None
+
+    def keep(self, folder: Path, files: Sequence[Path], made: Made) -> None:
+        """Keep the object made from the `files` of a folder, unless one was just written."""
+        stamp = _stamp(files)
+        newest = max((changed for changed, _, _ in stamp), default=0)
+        if len(stamp) == len(files) and time.time() - newest * 1e-9 > FRESH:
+            self._kept.pop(_key(folder), None)
+            self._kept[_key(folder)] = (files, stamp, made)
+            while len(self._kept) > self._most:
+                del self._kept[next(iter(self._kept))]
+
+
+def _key(folder: Path) -> tuple[str, str]:
+    """Return the folder as named, which error messages repeat, and its absolute path."""
+    return str(folder), os.path.abspath(folder)
+
+
+def _stamp(files: Sequence[Path]) -> Stamp:
+    """Return modification time, size and inode of each file; () if one is missing."""
+    try:
+        found = [os.stat(file) for file in files]
+    except OSError:
+        return ()
+    return tuple((item.st_mtime_ns, item.st_size, item.st_ino) for item in found)

@@ -74,6 +74,11 @@ def model_of(path: Path, complete: Callable[[mujoco.MjSpec], None] | None = None
         raise ConfigError(f"{path}: {_one_line(error)}") from None
 
 
+def is_alone(path: Path) -> bool:
+    """Return whether an MJCF or URDF names no other file, such as a mesh or a part of itself."""
+    return b"file" not in path.read_bytes()
+
+
 def names(model: mujoco.MjModel, kind: str) -> tuple[str, ...]:
     """Return the names of all objects of a `kind` of `OBJECTS`, in MJCF order."""
     count = {

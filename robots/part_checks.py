@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import mujoco
 
 from windup.robots import mjcf
+from windup.robots.imu import kind_mistakes
 from windup.robots.mistake import Mistake, known, unique
 from windup.robots.records import Foot, RobotFile
 
@@ -38,11 +39,12 @@ def foot_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
 
 
 def imu_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
-    """Yield an unknown site and unknown sensors of the IMU."""
+    """Yield an unknown site, an unknown kind or mounting, and unknown sensors of the IMU."""
     imu, sites = robot.imu, mjcf.names(model, "site")
     if imu is None:
         return
     yield from known("imu.site", "site", imu.site, sites)
+    yield from kind_mistakes(imu, robot.bus)
     for key, kind in IMU_SENSORS.items() if imu.site in sites else ():
         if (name := getattr(imu, key)) is not None:
             yield from _sensor(f"imu.{key}", name, kind, model)

@@ -145,9 +145,21 @@ class Imu(Record, frozen=True):
     """The IMU: its site and the names of its sensors in the MJCF.
 
     A gyroscope and an accelerometer of the default names are added if the MJCF lacks them.
+
+    Attributes:
+        site: A site whose axes are those of the base.
+        kind: opencr, bno08x_rvc, bno055 or open_duck. The default is opencr if the first bus has
+            protocol "dynamixel2" or there is no bus, else bno08x_rvc.
+        mounting: The axes of the IMU that point along the base's x (forward), y (left) and z (up),
+            such as ["-y", "x", "z"]; the default is that of the kind.
+        gyro: Name of the gyroscope in the MJCF.
+        accelerometer: Name of the accelerometer in the MJCF.
+        orientation: Name of an orientation sensor in the MJCF, or None.
     """
 
     site: str
+    kind: str | None = None
+    mounting: tuple[str, str, str] | None = None
     gyro: str = GYRO
     accelerometer: str = ACCELEROMETER
     orientation: str | None = None

@@ -1,42 +1,23 @@
 """Error model of an IMU: low-pass filter, noise, bias and quantisation to counts."""
 
-from dataclasses import dataclass
-from math import pi, radians
+from math import pi
 
 import numpy as np
 
-from windup.hal.imu.opencr import ACCELERATION, CUTOFF, GYRO
+from windup.hal.imu.kind import ImuKind
+from windup.hal.imu.opencr import OPENCR
 from windup.hal.joints import Array
+from windup.robots import RobotDescription
 
 
-@dataclass(frozen=True)
-class ImuFigures:
-    """Error parameters of an IMU, as (gyro, accelerometer) pairs.
+def imu_on_twin(robot: RobotDescription) -> ImuKind:
+    """Return the IMU of a twin without a wire whose base state is estimated.
 
-    Attributes:
-        cutoff: Cutoff frequency of the low-pass filter, modelled as first order, Hz.
-        noise: Noise densities, rad/s/sqrt(Hz) and m/s2/sqrt(Hz).
-        bias: Standard deviations of the bias on each axis, rad/s and m/s2.
-        unit: Size of one count, rad/s and m/s2.
+    A twin measures angular rates and accelerations. Robots without an IMU, or with one that sends
+    no rates, get an OpenCR; behind ``twin://`` the robot's own IMU is emulated.
     """
-
-    cutoff: float
-    noise: tuple[float, float]
-    bias: tuple[float, float]
-    unit: tuple[float, float]
-
-    @property
-    def lag(self) -> float:
-        """Time constant of the filter, s."""
-        return 1.0 / (2.0 * pi * self.cutoff)
-
-
-OPENCR = ImuFigures(
-    cutoff=CUTOFF,
-    noise=(radians(0.01), 300e-6 * 9.80665),  # from the data sheet
-    bias=(radians(0.3), 0.05),  # our guess of the residual after calibration at rest
-    unit=(GYRO, ACCELERATION),
-)
+    kind = robot.imu_kind
+    return kind if kind is not None and kind.gyroscope else OPENCR
 
 
 class LowPass:
@@ -67,7 +48,7 @@ class ImuErrors:
     """Turns true motion into IMU samples with errors.
 
     Args:
-        figures: Error parameters of the IMU.
+        kind: The IMU.
         timestep: Time between two calls of `feel`, s.
         seed: Seed of noise and biases.
 
@@ -75,13 +56,13 @@ class ImuErrors:
         bias: (6,) biases of gyro and accelerometer, rad/s and m/s2.
     """
 
-    def __init__(self, figures: ImuFigures, timestep: float, seed: int = 0) -> None:
+    def __init__(self, kind: ImuKind, timestep: float, seed: int = 0) -> None:
         self._random = np.random.default_rng(seed)
-        self._filter = LowPass(figures.lag, timestep)
-        bandwidth = 0.5 * pi * figures.cutoff
-        self._noise = np.repeat(figures.noise, 3) * bandwidth**0.5
-        self._unit = np.repeat(figures.unit, 3)
-        self.bias = self._random.normal(size=6) * np.repeat(figures.bias, 3)
+        self._filter = LowPass(kind.lag, timestep)
+        bandwidth = 0.5 * pi * kind.cutoff
+        self._noise = np.repeat(kind.noise, 3) * bandwidth**0.5
+        self._unit = np.repeat(kind.unit, 3)
+        self.bias = self._random.normal(size=6) * np.repeat(kind.bias, 3)
 
     def feel(self, motion: Array) -> None:
         """Filter the true angular rates and accelerations (6,) of one time step."""

@@ -15,9 +15,11 @@ import numpy.typing as npt
 from mujoco.batch import Batch
 
 from windup.hal.controller import BatchPolicy, Outcomes, Plane, PolicyInput, RolloutStart, Stopwatch
+from windup.hal.geometry.up_axis import UP_AXIS
 from windup.hal.joints import Array, Mask
 from windup.robots.completion import COM_VELOCITY
 from windup.robots.description import RobotDescription
+from windup.robots.fallen import has_fallen
 from windup.sim_twin.environment import Environment, build_model
 from windup.sim_twin.ground.foot_level import FootLevel
 from windup.sim_twin.ground.terrain import Ground
@@ -213,14 +215,14 @@ class _Worlds:
         )
 
     def _fallen(self) -> Mask:
-        fall = self.robot.fall
-        low = self.qpos[:, 2] < fall.height
+        height = self.qpos[:, 2]
         if any(self.slope):
-            low = self.qpos[:, 2] - self.qpos[:, :2] @ np.array(self.slope) < fall.height
+            height = height - self.qpos[:, :2] @ np.array(self.slope)
         elif not self.ground.flat:
             ground = [self.ground.height(float(x), float(y)) for x, y in self.qpos[:, :2]]
-            low = self.qpos[:, 2] - ground < fall.height
-        return low | ~(self.xmat[:, self.torso, 8] > np.cos(fall.tilt))
+            height = height - ground
+        up = self.xmat[:, self.torso, UP_AXIS]
+        return np.asarray(has_fallen(self.robot.fall, height, up[:, 2]))
 
     def _empty(self) -> Outcomes:
         m, n = self.size, len(self.robot.joints)
@@ -248,7 +250,7 @@ class _Worlds:
         result.com[rows] = self.com[rows, self.base]
         result.com_velocity[rows] = self.sensors[rows, self.com_velocity]
         result.feet[rows] = self.sites[rows][:, self.soles]
-        result.torso[rows] = self.xmat[rows, self.torso, 2::3]
+        result.torso[rows] = self.xmat[rows, self.torso, UP_AXIS]
         result.contacts[rows] = self.sensors[rows][:, self.touch]
         result.fell[rows] = ~done[rows]
 

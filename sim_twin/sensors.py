@@ -4,10 +4,12 @@ from collections import deque
 from math import pi
 from typing import NamedTuple
 
+import mujoco
 import numpy as np
 
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState, ImuState, JointState, Observation
+from windup.robots import Imu, RobotDescription
 from windup.sim_twin.imu_errors import ImuErrors
 from windup.sim_twin.places import places
 from windup.sim_twin.twin import Twin
@@ -47,24 +49,13 @@ class Sensors:
         self._errors = imu_errors if twin.robot.imu is not None else None
         robot, model = twin.robot, twin.model
         n = len(robot.joints)
-        self._counts = np.array(
-            [
-                servo.model.counts_per_rev / (2.0 * pi) * servo.ratio if servo else 0.0
-                for servo in robot.servos
-            ]
-        )
+        self._counts = _counts_per_rad(robot)
         self._encoders = bool(self._counts.any())
         touch = [model.sensor(name).adr[0] for name in robot.contacts.names]
         self._contacts = places(np.array(touch, dtype=np.intp))
         self._position, self._velocity = twin.places.position, twin.places.velocity
         self._fixed = twin.fixed_base() if robot.fixed else None
-        self._imu = robot.imu
-        if robot.imu is not None:
-            self._gyro = _place(model.sensor(robot.imu.gyro).adr[0], 3)
-            self._accelerometer = _place(model.sensor(robot.imu.accelerometer).adr[0], 3)
-            self._motion = np.r_[self._gyro, self._accelerometer]
-            name = robot.imu.orientation
-            self._orientation = None if name is None else _place(model.sensor(name).adr[0], 4)
+        self._find_imu(robot.imu, model)
         self._voltage = _constant(n, twin.supply)
         self._temperature = _constant(n, AMBIENT)
         self._age = _constant(n, delay)
@@ -76,6 +67,16 @@ class Sensors:
         if delay > 0.0 or self._errors is not None:
             twin.on_step = self._record
             twin.on_jump = self._line.clear
+
+    def _find_imu(self, imu: Imu | None, model: mujoco.MjModel) -> None:
+        """Look up where the IMU's sensors stand among all."""
+        self._imu = imu
+        if imu is not None:
+            self._gyro = _place(model.sensor(imu.gyro).adr[0], 3)
+            self._accelerometer = _place(model.sensor(imu.accelerometer).adr[0], 3)
+            self._motion = np.r_[self._gyro, self._accelerometer]
+            name = imu.orientation
+            self._orientation = None if name is None else _place(model.sensor(name).adr[0], 4)
 
     def read(self) -> Observation:
         """Return the observation that is available now."""
@@ -113,6 +114,16 @@ class Sensors:
             self._errors.feel(self._views[3][self._motion])
         if self.delay > 0.0:
             self._line.append(self._snapshot())
+
+
+def _counts_per_rad(robot: RobotDescription) -> Array:
+    """Return (n,) counts of each joint's encoder; 0 where it has none."""
+    return np.array(
+        [
+            servo.model.counts_per_rev / (2.0 * pi) * servo.ratio if servo else 0.0
+            for servo in robot.servos
+        ]
+    )
 
 
 def _place(start: int, size: int) -> slice:

@@ -8,10 +8,12 @@ import mujoco
 import numpy as np
 
 from windup.hal.errors import DivergedError, UnknownNameError, UsageError
+from windup.hal.geometry.up_axis import UP_AXIS
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState
 from windup.robots.couplings import bring_in_step
 from windup.robots.description import RobotDescription
+from windup.robots.fallen import has_fallen
 from windup.sim_twin.environment import Environment, build_model
 from windup.sim_twin.lowest import lowest_point
 from windup.sim_twin.places import JointPlaces
@@ -78,7 +80,7 @@ class Twin:
         self._pushes: list[Push] = []
         self._torso = self.model.body(robot.torso).id
         self.places = JointPlaces(self.model, robot.joints.names)
-        self.up = self.data.xmat[self._torso, 2::3]
+        self.up = self.data.xmat[self._torso, UP_AXIS]
         self._qpos, self._qvel = self.data.qpos, self.data.qvel
         self._before = np.empty(self.model.nq + self.model.nv)
         self.reset()
@@ -164,11 +166,10 @@ class Twin:
         """True when the base is low or the torso tilted beyond the limits in the robot's file."""
         if self.robot.fixed:
             return False
-        fall = self.robot.fall
         height = self._qpos[2]
         if not self.world.ground.flat:
             height -= self.world.ground.height(float(self._qpos[0]), float(self._qpos[1]))
-        return bool(height < fall.height or self.up[2] < np.cos(fall.tilt))
+        return bool(has_fallen(self.robot.fall, height, self.up[2]))
 
     @property
     def powered(self) -> bool:

@@ -14,7 +14,7 @@ MAY_IMPORT = {
 }
 COMMAND_LINE = {"argparse", "tyro", "rich", "click", "readline", "curses"}
 PICTURES = {"matplotlib", "plotly", "viser", "mujoco.viewer", "foxglove", "mcap"}
-WIRE = {"serial", "dynamixel_sdk", "scservo_sdk", "rustypot", "socket", "pty"}
+WIRE = {"serial", "smbus2", "dynamixel_sdk", "scservo_sdk", "rustypot", "socket", "pty"}
 MAY_NOT_IMPORT = {
     "hal": COMMAND_LINE | PICTURES | {"mujoco"},
     "control": COMMAND_LINE | PICTURES | WIRE,

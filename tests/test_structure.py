@@ -1,15 +1,17 @@
-"""How the house is built: no circles."""
+"""How the house is built: no circles, no crowded folders, no long files or functions."""
 
 import ast
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
+from statistics import median
 
 import pytest
 
 ROOT = Path(__file__).parent.parent
 ROOMS = ("hal", "control", "robots", "sim_twin", "tools")
+MOST_FILES, MOST_LINES, USUAL, LONGEST_FUNCTION = 20, 300, 120, 40
 Graph = Mapping[str, set[str]]
 
 
@@ -80,8 +82,41 @@ def test_a_circle_is_seen() -> None:
     assert circle({"a": {"b"}, "b": {"c"}, "c": {"a"}}) != []
 
 
+def test_no_folder_is_crowded() -> None:
+    count: dict[Path, int] = defaultdict(int)
+    for path in files(*ROOMS, "tests"):
+        count[path.parent.relative_to(ROOT)] += 1
+    assert {folder: number for folder, number in count.items() if number > MOST_FILES} == {}
+
+
+def test_files_are_short() -> None:
+    lines = {path: len(path.read_text().splitlines()) for path in files(*ROOMS, "tests")}
+    assert [str(path) for path, number in lines.items() if number > MOST_LINES] == []
+    assert median(lines.values()) <= USUAL
+
+
 def test_every_folder_says_what_it_is() -> None:
     silent = [
         name for name in MODULES if not ast.get_docstring(ast.parse(MODULES[name].read_text()))
     ]
     assert silent == []
+
+
+def body_lines(function: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
+    """Return the lines of a function without its docstring."""
+    first, whole = function.body[0], function.end_lineno or 0
+    said = 0
+    if ast.get_docstring(function) is not None:
+        said = (first.end_lineno or 0) - first.lineno + 1
+    return whole - function.lineno + 1 - said
+
+
+def test_functions_are_short() -> None:
+    long = [
+        f"{path.relative_to(ROOT)}: {node.name}"
+        for path in files(*ROOMS, "tests")
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        if body_lines(node) > LONGEST_FUNCTION
+    ]
+    assert long == []

@@ -15,9 +15,10 @@ from windup.control.estimation.foot_load import FootLoad
 from windup.control.estimation.fused_attitude import FusedAttitude
 from windup.control.estimation.height_filter import HeightFilter
 from windup.control.estimation.leg_odometry import FootNoise, leg_odometry
-from windup.control.estimation.tilt_filter import GRAVITY, ImuNoise, TiltFilter
+from windup.control.estimation.tilt_filter import ImuNoise, TiltFilter
 from windup.control.kinematics.soles import spin
 from windup.hal.errors import StateMissingError
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState, ImuState, Observation
 

@@ -7,8 +7,8 @@ from typing import Protocol
 import numpy as np
 
 from windup.hal.errors import ImuError
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.guard.finding import CHECK
-from windup.hal.guard.gyro_watch import GRAVITY
 from windup.hal.guard.imu_watch import SILENT, ImuWatch
 from windup.hal.observation import ImuState, Observation
 

@@ -13,7 +13,7 @@ from typing import Literal
 import mujoco
 import numpy as np
 
-from windup.control.estimation.tilt_filter import GRAVITY
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
 

@@ -17,9 +17,8 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
-
-GRAVITY = 9.81
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from windup.control.falling.fall import FallPredictor
 from windup.hal.command import JointCommand
 from windup.hal.controller import Controller
 from windup.hal.errors import StateMissingError
+from windup.hal.geometry.up_axis import uprightness
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import JointState, Observation
 
@@ -62,15 +63,13 @@ def bounded(joints: Joints, pose: Array, share: Array, state: JointState) -> Joi
         share: (n,) of the joints' stiffness.
         state: The joints as observed.
     """
-    command = JointCommand.hold(joints, pose)
-    stiffness = command.stiffness
-    stiffness *= share
+    stiffness = joints.stiffness * share
     most, braking = EFFORT * joints.torque, joints.damping * state.velocity
     lowest = state.position + (braking - most) / stiffness
     highest = state.position + (braking + most) / stiffness
     goal = np.minimum(np.maximum(pose, lowest), highest)
-    command.position[:] = np.clip(goal, joints.lower, joints.upper)
-    return command
+    goal = np.clip(goal, joints.lower, joints.upper)
+    return JointCommand.of(joints, position=goal, stiffness=stiffness)
 
 
 class Phase(Enum):
@@ -163,7 +162,7 @@ class Protected:
         if base is None:
             raise StateMissingError("the base state was lost in a fall")
         _, x, y, _ = base.orientation
-        if self.phase is Phase.FALLING and 1.0 - 2.0 * (x * x + y * y) < cos(way.soften):
+        if self.phase is Phase.FALLING and uprightness(x, y) < cos(way.soften):
             self.phase = Phase.IMPACT
         if float(np.linalg.norm(base.angular_velocity)) > STILL:
             self._still = None

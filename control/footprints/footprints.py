@@ -13,6 +13,7 @@ import numpy as np
 from windup.hal.config import Positive, Record, load_toml
 from windup.hal.errors import UnknownNameError, UsageError
 from windup.hal.joints import Array
+from windup.hal.mirror import side_of
 
 Frame = Literal["stance", "start"]
 
@@ -100,7 +101,7 @@ def foot_index(name: str, feet: tuple[str, ...]) -> int:
 
 
 def _short(foot: str) -> str:
-    return foot.removesuffix("_foot").removesuffix("_hand")
+    return side_of(foot) or foot
 
 
 def write_footprints(prints: list[Footprint], feet: tuple[str, ...]) -> str:

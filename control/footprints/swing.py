@@ -7,6 +7,7 @@ from math import erf, exp, pi, sin, sqrt
 
 import numpy as np
 
+from windup.hal.geometry.smooth_step import smooth_step
 from windup.hal.joints import Array
 
 WIDTH = 0.08
@@ -59,6 +60,6 @@ def bezier(start: Array, pivot: Array, end: Array, s: float) -> Array:
     and the target of the swing foot (section 5.2). The speed is zero at both ends.
     """
     s = min(max(s, 0.0), 1.0)
-    eased = s * s * (3.0 - 2.0 * s)
+    eased = smooth_step(s)
     rest = 1.0 - eased
     return rest * rest * start + 2.0 * rest * eased * pivot + eased * eased * end

@@ -15,6 +15,7 @@ from windup.control.footprints.swing import gaussian_progress, lift
 from windup.control.kinematics.rotation import turn, turn_between, yaw_of
 from windup.control.whole_body.whole_body import Objectives, Plan, WholeBody
 from windup.hal.command import JointCommand
+from windup.hal.geometry.angles import wrapped
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
@@ -94,13 +95,15 @@ class TorqueMotion(ABC):
             self._decide(now)
             self._plan = self._body.plan(self._objectives(now))
             self._planned, self._speed = now, self.dynamics.velocity[6:].copy()
-        command = JointCommand(np.zeros((5, len(self._joints))))
-        command.position[:] = self._stance
-        command.torque[:] = self._body.torque(self._plan)
-        # Without this, a light foot that meets unexpected ground speeds away between two plans.
-        command.damping[:] = FOLLOW_DAMPING
-        command.velocity[:] = self._speed + (now - self._planned) * self._plan.acceleration[6:]
-        return command
+        return JointCommand.of(
+            self._joints,
+            position=self._stance,
+            velocity=self._speed + (now - self._planned) * self._plan.acceleration[6:],
+            torque=self._body.torque(self._plan),
+            stiffness=0.0,
+            # Without this, a light foot that meets unexpected ground speeds away between two plans.
+            damping=FOLLOW_DAMPING,
+        )
 
     @abstractmethod
     def _decide(self, now: float) -> None:
@@ -180,13 +183,13 @@ class TorqueMotion(ABC):
         at[:2] += way * (swing.target - swing.start[:2])
         at[2] = (1.0 - way) * swing.start[2] + lift(part, self._lifted)
         at[2] -= max(part - 1.0, 0.0) * self._lifted  # then further down until contact
-        left = (swing.yaw[1] - swing.yaw[0] + np.pi) % (2.0 * np.pi) - np.pi
+        left = wrapped(swing.yaw[1] - swing.yaw[0])
         return at, swing.yaw[0] + way * left
 
     def _trunk_rate(self) -> Array:
         """Return the angular acceleration (3,) of the base toward upright and the feet's yaw."""
         yaws = [yaw_of(end.rotation) for end in self.dynamics.ends]
-        half = 0.5 * ((yaws[1] - yaws[0] + np.pi) % (2.0 * np.pi) - np.pi)
+        half = 0.5 * wrapped(yaws[1] - yaws[0])
         base = self.dynamics.base.rotation
         error = base.T @ turn_between(base, turn(yaws[0] + half))  # in the base frame
         return POSE_GAIN * error - POSE_DAMPING * self.dynamics.velocity[3:6]

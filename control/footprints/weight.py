@@ -6,9 +6,8 @@ import mujoco
 import numpy as np
 
 from windup.control.kinematics.body import Body
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
-
-GRAVITY = 9.81
 
 
 def holding_torque(body: Body, base: str, shares: Sequence[float]) -> Array:

@@ -8,6 +8,7 @@ import numpy as np
 from windup.control.kinematics.momenta import Momenta
 from windup.hal.controller import Outcomes
 from windup.hal.errors import StateMissingError
+from windup.hal.geometry.up_axis import UP_AXIS
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
 
@@ -62,7 +63,7 @@ class Body:
             com=data.subtree_com[None, self._base].copy(),
             com_velocity=data.subtree_linvel[None, self._base].copy(),
             feet=data.site_xpos[None, self.soles].copy(),
-            torso=data.xmat[None, self._torso, 2::3].copy(),
+            torso=data.xmat[None, self._torso, UP_AXIS].copy(),
             contacts=observation.contacts[None],
             fell=np.zeros(1, dtype=bool),
         )

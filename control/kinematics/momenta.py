@@ -10,9 +10,9 @@ from math import sqrt
 import mujoco
 import numpy as np
 
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
 
-GRAVITY = 9.81
 LEAST_LOAD = 0.3
 """Minimum vertical ground force assumed, as a share of the weight, even in free fall."""
 

@@ -35,12 +35,36 @@ class LearntModel(Record, frozen=True):
 
 
 class ModelFile(Record, frozen=True):
-    """A file of step models with their variables; `gait` is the `gait_hash` of their gait."""
+    """A file of step models with their variables.
+
+    Attributes:
+        gait: The `gait_hash` of their gait.
+        commands: Command lines of the walks they were learnt from.
+        rate_hz: Rate of the control loop in these walks, Hz.
+        regulation: Names of the r regulation variables.
+        perturbations: Names of the r perturbations.
+        models: The models.
+    """
 
     regulation: list[str]
     perturbations: list[str]
     models: list[LearntModel]
     gait: str = ""
+    commands: list[str] = []
+    rate_hz: float | None = None
+
+    def text(self) -> str:
+        """Return it as JSON, with one model a line."""
+        rows = [f" {_json(model)}" for model in self.models]
+        head = [
+            f"{_json(name)}: {_json(getattr(self, name))},"
+            for name in ("gait", "commands", "rate_hz", "regulation", "perturbations")
+        ]
+        return "\n".join(["{", *head, '"models": [', ",\n".join(rows), "]", "}", ""])
+
+
+def _json(value: object) -> str:
+    return msgspec.json.encode(value).decode()
 
 
 @dataclass
@@ -50,10 +74,12 @@ class LearntModels:
     Attributes:
         complete: No more models are sampled; every step uses the nearest stored model.
         reach: Maximum distance of two starts whose models are averaged into one.
+        commands: Command lines of the walks that the models in its files were learnt from.
     """
 
     complete: bool = False
     reach: float = 0.02
+    commands: list[str] = field(default_factory=list, init=False)
     _known: dict[int, list[tuple[Array, Array, int]]] = field(default_factory=dict, init=False)
 
     def reset(self) -> None:
@@ -108,12 +134,15 @@ class LearntModels:
                 f"{path}: learnt for another version of the gait: delete it, and learn its models "
                 "anew with `windup walk ... --learn FILE`"
             )
+        self.commands += file.commands
         for number, model in enumerate(file.models):
             _check_shape(path, number, model, file)
             self.add(model.phase, np.array(model.start), np.array(model.jacobian), model.steps)
 
-    def write(self, path: Path, regulation: list[str], perturbations: list[str], gait: str) -> None:
-        """Write all models to a file."""
+    def file(
+        self, regulation: list[str], perturbations: list[str], gait: str, rate_hz: float
+    ) -> ModelFile:
+        """Return all models as a file; see `ModelFile` for the arguments."""
         models = [
             LearntModel(
                 phase=phase,
@@ -124,10 +153,14 @@ class LearntModels:
             for phase, entries in sorted(self._known.items())
             for start, jacobian, steps in entries
         ]
-        file = ModelFile(
-            regulation=regulation, perturbations=perturbations, models=models, gait=gait
+        return ModelFile(
+            regulation=regulation,
+            perturbations=perturbations,
+            models=models,
+            gait=gait,
+            commands=self.commands,
+            rate_hz=rate_hz,
         )
-        path.write_bytes(msgspec.json.format(msgspec.json.encode(file), indent=1) + b"\n")
 
     @staticmethod
     def _nearest(entries: list[tuple[Array, Array, int]], start: Array) -> int:

@@ -12,14 +12,13 @@ There are four sampling methods. "sp" takes each dimension alone (a diagonal J, 
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal
 
 import numpy as np
 
 from windup.control.limit_cycle.step_memory import Memory
+from windup.control.pose_graph.gait_file import Sampling
 from windup.hal.joints import Array, Mask
 
-Sampling = Literal["sp", "fl", "lf", "full"]
 # Plays m steps with scalings (m, r); returns regulation variables (m, r) and which steps fell.
 Sample = Callable[[Array], tuple[Array, Mask]]
 

@@ -14,11 +14,10 @@ from windup.control.motions.planted import Planted
 from windup.hal.command import JointCommand
 from windup.hal.controller import Begins, Controller, first_pose_of
 from windup.hal.errors import FirstMotionError
+from windup.hal.geometry.smooth_step import PEAK, smooth_step
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
-PEAK = 1.5
-"""Peak speed of a smooth step (3 s^2 - 2 s^3), as a multiple of its mean speed."""
 STIFFENING = 0.6
 """Minimum duration of the stiffness ramp, s."""
 SETTLING = 0.3
@@ -184,7 +183,7 @@ class Approach:
     def _on_the_way(self, observation: Observation, dt: float) -> JointCommand:
         passed = observation.time - self._began
         s = min(passed / self._seconds, 1.0)
-        smooth = s * s * (3.0 - 2.0 * s)
+        smooth = smooth_step(s)
         assert self._following is not None, "planned before"
         goal = self._from + smooth * self._way
         if passed >= self._seconds + SETTLING:
@@ -194,9 +193,8 @@ class Approach:
         if self._planted is not None and (wrong := self._planted.update(observation)) is not None:
             raise FirstMotionError(wrong)
         self.motion.share = self._share + smooth * (1.0 - self._share)
-        command = JointCommand.hold(self.joints, goal)
-        command.stiffness[:] *= self.motion.share
-        return command
+        stiffness = self.joints.stiffness * self.motion.share
+        return JointCommand.of(self.joints, position=goal, stiffness=stiffness)
 
     def _hand_over(self, observation: Observation, goal: Array, dt: float) -> JointCommand:
         """Finish the motion: reset the controller and return its first command."""

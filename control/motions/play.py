@@ -7,6 +7,7 @@ from windup.control.pose_graph.pose_tracker import PoseTracker
 from windup.hal.command import JointCommand
 from windup.hal.contacts import ContactSensors
 from windup.hal.controller import PolicyInput
+from windup.hal.geometry.smooth_step import smooth_step
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
@@ -35,8 +36,8 @@ class PoseHolder:
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the command of this tick: an intermediate pose, or the pose itself."""
         s = min((observation.time - self._began) / self.ramp, 1.0) if self.ramp > 0.0 else 1.0
-        smooth = s * s * (3.0 - 2.0 * s)
-        return JointCommand.hold(self.joints, self._from + smooth * (self.pose - self._from))
+        way = smooth_step(s) * (self.pose - self._from)
+        return JointCommand.hold(self.joints, self._from + way)
 
 
 class GraphPlayer:
@@ -72,9 +73,7 @@ class GraphPlayer:
         self._begun = True
         nothing = np.zeros((1, 0))
         state = PolicyInput(nothing, nothing, nothing, nothing, observation.contacts[None])
-        block = self._hold.block.copy()
-        block[0] = self._tracker.step(state, dt)[0]
-        return JointCommand(block)
+        return self._hold.at(self._tracker.step(state, dt)[0])
 
     @property
     def finished(self) -> bool:

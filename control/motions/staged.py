@@ -11,6 +11,7 @@ from windup.control.motions.upright import UprightFeedback
 from windup.control.pose_graph.gait import Gait
 from windup.hal.command import JointCommand
 from windup.hal.contacts import ContactSensors
+from windup.hal.geometry.smooth_step import smooth_step
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
@@ -79,9 +80,7 @@ class StagedPlayer:
         goal = self._goal
         if self._upright is not None:
             goal = self._upright.apply(goal, observation, self._state)
-        block = self._hold.block.copy()
-        block[0] = goal
-        return JointCommand(block)
+        return self._hold.at(goal)
 
     def _enter(self, state: int) -> None:
         self._state, self._elapsed, self._from = state, 0.0, self._goal
@@ -89,7 +88,7 @@ class StagedPlayer:
     def _on_the_way(self) -> Array:
         pose, move = self.gait.graph.pose[self._state], self.gait.file.state[self._state].move
         s = min(self._elapsed / move, 1.0) if move > 0.0 else 1.0
-        goal: Array = self._from + s * s * (3.0 - 2.0 * s) * (pose - self._from)
+        goal: Array = self._from + smooth_step(s) * (pose - self._from)
         return goal
 
     def _advance(self, observation: Observation) -> None:

@@ -8,6 +8,8 @@ from windup.control.kinematics.body import Body, heading
 from windup.control.regulation.variables import RegulationVariable, StepEnd
 from windup.hal.contacts import ContactSensors
 from windup.hal.controller import Outcomes
+from windup.hal.geometry.angles import wrapped
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
 
@@ -91,7 +93,7 @@ class StepStart:
         """
         body = self.body
         offset = body.com[0] - body.feet[0, self.stance]
-        slow = np.sqrt(max(float(offset[2]), 0.1) / 9.81)
+        slow = np.sqrt(max(float(offset[2]), 0.1) / GRAVITY)
         c, s = np.cos(self.heading), np.sin(self.heading)
         out = np.sign(body.feet[0, 1 - self.stance] @ [-s, c, 0.0] - body.com[0] @ [-s, c, 0.0])
         turn = np.array([[c, s], [-s * out, c * out]])
@@ -101,7 +103,7 @@ class StepStart:
     def turned(self, end: Outcomes) -> float:
         """Return the change of heading until `end`, rad."""
         change = float(heading(end.base_orientation)[0]) - self.heading
-        return (change + np.pi) % (2.0 * np.pi) - np.pi
+        return wrapped(change)
 
     def velocity(self, end: Outcomes, duration: float) -> Array:
         """Return the mean velocity (2,) until `end`, along and left of the mean heading, m/s."""

@@ -13,9 +13,10 @@ import numpy as np
 from windup.control.kinematics.body import heading
 from windup.hal.controller import Outcomes
 from windup.hal.errors import UnknownNameError
+from windup.hal.geometry.gravity import GRAVITY
+from windup.hal.geometry.up_axis import up_axis
 from windup.hal.joints import Array
 
-GRAVITY = 9.81
 AXES = ("forward", "lateral")
 
 
@@ -52,10 +53,7 @@ def up(end: StepEnd) -> Array:
 
 def pelvis_up(end: StepEnd) -> Array:
     """Return the unit vectors (m, 3) along the pelvis; for use with a torso servo (section 3.8)."""
-    w, x, y, z = np.moveaxis(end.outcomes.base_orientation, -1, 0)
-    return np.stack(
-        [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)], axis=-1
-    )
+    return up_axis(end.outcomes.base_orientation)
 
 
 def swing_com(end: StepEnd) -> Array:

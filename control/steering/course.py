@@ -1,19 +1,15 @@
 """Course control: the desired heading advances at the turn rate, and each step turns toward it."""
 
 from dataclasses import dataclass, field
-from math import copysign, degrees, isfinite, pi, radians, sqrt
+from math import copysign, degrees, isfinite, radians, sqrt
 
 import numpy as np
 
 from windup.control.pose_graph.gait_file import Heading, Turn
 from windup.control.steering.guide import WalkCommand
+from windup.hal.geometry.angles import wrapped
 
 LEAD = radians(30.0)  # maximum lead of the desired heading over the measured one
-
-
-def wrapped(angle: float) -> float:
-    """Return `angle`, rad, wrapped to -pi .. pi."""
-    return (angle + pi) % (2.0 * pi) - pi
 
 
 @dataclass

@@ -10,9 +10,9 @@ from math import atan2, cos, pi
 
 import numpy as np
 
-from windup.control.steering.course import wrapped
 from windup.control.steering.guide import Place, WalkCommand
 from windup.hal.errors import UsageError
+from windup.hal.geometry.angles import wrapped
 from windup.hal.joints import Array
 
 BRAKE = 0.4  # speed per distance to the goal, 1/s

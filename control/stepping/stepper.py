@@ -129,12 +129,11 @@ class Stepper:
         now = observation.time
         self.footing.update(observation)
         self._decide(now)
-        command = JointCommand(self._hold.block.copy())
         part = min((now - self._taken) / TAKE, 1.0)
-        command.position[:] = self._before + part * (self.stance - self._before)
+        goals = self._before + part * (self.stance - self._before)
         self._height = self._above + part * (self.footing.height - self._above)
-        self._pose(command.position, now)
-        return command
+        self._pose(goals, now)
+        return self._hold.at(goals)
 
     @property
     def stepping_foot(self) -> int:

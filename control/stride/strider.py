@@ -17,7 +17,6 @@ from windup.control.footprints.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
 from windup.control.footprints.swing import gaussian_progress, lift
 from windup.control.kinematics.body import Body
 from windup.control.kinematics.limb_ik import LimbIk, Pose
-from windup.control.kinematics.momenta import GRAVITY
 from windup.control.kinematics.rotation import lying, turn, way_round
 from windup.control.stride.pendulum import (
     PressureSegment,
@@ -27,6 +26,8 @@ from windup.control.stride.pendulum import (
     next_place,
 )
 from windup.control.stride.stride_file import Stride
+from windup.hal.geometry.gravity import GRAVITY
+from windup.hal.geometry.smooth_step import smooth_step
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
@@ -109,7 +110,7 @@ class Strider(LegMotion):
         self._com = self._com + dt * (pace + self.how.yielding * (there - self._com))
         if self.phase == "swing" and part < self.how.update:
             self._adjust(point)
-        s = part * part * (3.0 - 2.0 * part) if self.phase == "swing" else 1.0
+        s = smooth_step(part) if self.phase == "swing" else 1.0
         yaw = self._yaws[0] + s * (self._yaws[1] - self._yaws[0])
         com = self._seen(np.array([*self._com, yaw]))
         rise = min((now - self._origin) / self.how.begin, 1.0)

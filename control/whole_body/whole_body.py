@@ -12,9 +12,9 @@ from typing import Final
 import daqp
 import numpy as np
 
-from windup.control.kinematics.momenta import GRAVITY
 from windup.control.whole_body.dynamics import Dynamics
 from windup.hal.errors import WindupError
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
 
 EDGES: Final = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])

@@ -11,6 +11,7 @@ import numpy as np
 from windup.hal.backend import Backend, Clock, Rearmable
 from windup.hal.command import FIELDS, JointCommand
 from windup.hal.errors import GuardianError, PortError, UnsafeCommandError
+from windup.hal.geometry.smooth_step import smooth_step
 from windup.hal.guard.arming import check_health, read_afresh
 from windup.hal.guard.ending import check_off
 from windup.hal.guard.limits import SafetyLimits, StopPolicy
@@ -246,8 +247,7 @@ class GuardedBackend:
         while (now := self.clock.now()) < began + seconds and not hurry():
             with suppress(GuardianError):  # the stop continues without a guardian
                 self.heartbeat()
-            s = (now - began) / seconds
-            pose = start + (end - start) * s * s * (3.0 - 2.0 * s)
+            pose = start + (end - start) * smooth_step((now - began) / seconds)
             self._send(JointCommand.hold(self.joints, pose))
             self.clock.wait_until(now + TICK)
 

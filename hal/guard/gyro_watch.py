@@ -14,6 +14,7 @@ from math import acos, exp, pi, sqrt
 
 import numpy as np
 
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.guard.finding import AGAIN, Saying
 from windup.hal.joints import Array
 
@@ -42,8 +43,8 @@ AROUND = 1.0
 """Maximum turn about the vertical while all joints stand still, rad."""
 STANDS = 0.5
 """Maximum speed of a joint that counts as standing still, rad/s."""
-GRAVITY, NEAR = 9.81, 0.15
-"""Gravity, m/s2, and the relative deviation within which an acceleration counts as gravity."""
+NEAR = 0.15
+"""Relative deviation from gravity within which an acceleration counts as gravity."""
 DRAW = 1.0
 """Time constant of the correction of the vertical by the accelerometer, s."""
 LONGEST = 0.1

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from windup.hal.geometry.smooth_step import smooth_step
 from windup.hal.guard.guarded import CROUCH_SECONDS
 from windup.hal.guardian.remote_bus import RemoteBus
 
@@ -24,7 +25,7 @@ def crouch(buses: Sequence[RemoteBus]) -> None:
     s = 0.0
     while s < 1.0:
         s = min((time.monotonic() - began) / CROUCH_SECONDS, 1.0)
-        blend = s * s * (3.0 - 2.0 * s)
+        blend = smooth_step(s)
         for bus, start, end in zip(buses, starts, ends, strict=True):
             bus.send_goals(start + (end - start) * blend)
         time.sleep(PERIOD)

@@ -20,11 +20,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from windup.hal.geometry.gravity import STANDARD_GRAVITY
 from windup.hal.imu.frame_clock import FrameClock
+from windup.hal.imu.kind import ImuKind
+from windup.hal.imu.mounting import Mounting
 from windup.hal.imu.quaternion import between, conjugate, euler_zxy, multiply, rotate
+from windup.hal.imu.serial_link import SerialLink
 from windup.hal.joints import Array
 from windup.hal.observation import ImuState
 from windup.hal.port.port import Port
+from windup.hal.port.replug import Opener
 
 HEADER = b"\xaa\xaa"
 LENGTH = 19
@@ -35,7 +40,7 @@ ON_THE_WIRE = 10 * LENGTH / BAUD
 """From a sample to the end of its frame, s."""
 DEGREE = 0.01 * np.pi / 180.0
 """rad of one count of an angle."""
-ACCELERATION = 1e-3 * 9.80665
+ACCELERATION = 1e-3 * STANDARD_GRAVITY
 """m/s2 of one count."""
 LARGEST: Array = np.radians([180.0, 90.0, 180.0]) + 1e-9
 """Largest yaw, pitch and roll, rad."""
@@ -127,6 +132,10 @@ class Bno08xRvc:
         self._index, self._seen, self._at = 0, -np.inf, -np.inf
         self.implausible = 0
 
+    def connect(self, opener: Opener) -> SerialLink:
+        """Open its port; see `ImuSource`."""
+        return SerialLink(self, opener)
+
     def attach(self, port: Port) -> None:
         """Listen on `port` from now on; a frame begun on another port is forgotten."""
         self._port = port
@@ -177,3 +186,20 @@ class Bno08xRvc:
         if self._before is None:
             return np.zeros(3)
         return between(self._before, orientation) / (frames * PERIOD) if recent else None
+
+
+def _mounted(url: str, mounting: Mounting) -> Bno08xRvc:
+    return Bno08xRvc(url, mounting.quaternion)
+
+
+BNO08X_RVC = ImuKind(
+    name="bno08x_rvc",
+    wiring="serial",
+    rate=1.0 / PERIOD,
+    cutoff=CUTOFF,
+    noise=(0.0, 0.0),  # below the resolution of a frame
+    bias=(0.0, 0.05),  # our guess of the residual after calibration at rest
+    unit=(DEGREE / PERIOD, ACCELERATION),
+    gyroscope=False,
+    driver=_mounted,
+)

@@ -6,11 +6,13 @@ attitude is the estimator's business.
 """
 
 from dataclasses import dataclass
-from math import pi
+from math import pi, radians
 
 import numpy as np
 
-from windup.hal.joints import Array
+from windup.hal.geometry.gravity import STANDARD_GRAVITY
+from windup.hal.imu.kind import ImuKind
+from windup.hal.imu.mounting import Mounting
 from windup.hal.observation import ImuState
 from windup.hal.protocols.protocol2 import Span
 from windup.hal.registers import Register
@@ -19,8 +21,10 @@ MODEL_NUMBER = 0x7400
 """What the board answers to a ping."""
 GYRO = 2000.0 / 32800.0 * pi / 180.0
 """rad/s of one count."""
-ACCELERATION = 2.0 / 32768.0 * 9.80665
+ACCELERATION = 2.0 / 32768.0 * STANDARD_GRAVITY
 """m/s2 of one count."""
+IN_OP3 = Mounting(("-x", "-y", "z"))
+"""How the chip of its board is turned in the body of an OP3."""
 POWER = Register("dynamixel_power", 24, 1)
 """1: the servos of the bus have power."""
 POWER_UP_TIME = 0.5
@@ -28,7 +32,6 @@ POWER_UP_TIME = 0.5
 CUTOFF = 41.0
 """Of the low-pass filter of gyroscope and accelerometer (MPU9250), as the firmware sets it, Hz."""
 VOLTAGE = Register("present_voltage", 31, 1)
-VOLTAGE_UNIT = 0.1
 BUTTONS = ("mode", "start", "user", "reset")
 """Names on the back of the robot, from the lowest bit of register 30 up (`dxl_node_op3.cpp`).
 
@@ -44,12 +47,12 @@ class OpenCr:
     Attributes:
         bus: Name of its bus.
         id: Its id there.
-        signs: (3,) sign of each axis of the chip in the body frame.
+        mounting: How the chip is turned in the body; by default as in an OP3.
     """
 
     bus: str
     id: int = 200
-    signs: tuple[int, int, int] = (-1, -1, 1)
+    mounting: Mounting = IN_OP3
 
     @property
     def span(self) -> Span:
@@ -59,7 +62,7 @@ class OpenCr:
     @property
     def lag(self) -> float:
         """Delay of the sensor's own filter, taken as one of first order, s."""
-        return 1.0 / (2.0 * pi * CUTOFF)
+        return OPENCR.lag
 
     def buttons(self, data: bytes) -> tuple[str, ...]:
         """Return the names of the buttons that are down in the bytes of `span`."""
@@ -69,5 +72,17 @@ class OpenCr:
     def decode(self, data: bytes, age: float) -> ImuState:
         """Return the sample in the bytes of `span`, `age` s old, in the body frame."""
         counts = np.frombuffer(data, "<i2", count=6, offset=2).astype(np.float64)
-        signs: Array = np.array(self.signs, dtype=np.float64)
-        return ImuState(None, counts[:3] * signs * GYRO, counts[3:] * signs * ACCELERATION, age)
+        body = self.mounting.body
+        return ImuState(None, body(counts[:3]) * GYRO, body(counts[3:]) * ACCELERATION, age)
+
+
+OPENCR = ImuKind(
+    name="opencr",
+    wiring="board",
+    rate=1000.0,  # the firmware's loop over the chip
+    cutoff=CUTOFF,
+    noise=(radians(0.01), 300e-6 * STANDARD_GRAVITY),  # data sheet of the MPU9250, tables 1 and 2
+    bias=(radians(0.3), 0.05),  # our guess of the residual after calibration at rest
+    unit=(GYRO, ACCELERATION),
+    axes=IN_OP3.axes,
+)

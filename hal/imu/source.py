@@ -1,44 +1,46 @@
-"""An IMU on a port of its own."""
+"""An IMU with a connection of its own, beside the servo buses."""
 
 from typing import Protocol
 
+from windup.hal.backend import Clock
 from windup.hal.observation import ImuState
-from windup.hal.port.port import Port
+from windup.hal.port.replug import Opener
+
+
+class ImuConnection(Protocol):
+    """An IMU's connection while it is open, which may be unplugged and plugged in again."""
+
+    @property
+    def clock(self) -> Clock:
+        """The clock that it lives on."""
+        ...
+
+    def poll(self) -> None:
+        """Take in what has come. Waits for no sample, and raises nothing."""
+        ...
+
+    def close(self) -> None:
+        """Give the connection back."""
+        ...
 
 
 class ImuSource(Protocol):
     """What the backend needs of an IMU that does not sit on a servo bus.
 
     Attributes:
-        url: Its port.
-        baud: Bits a second of that port.
         lag: Delay of its own low-pass filter, s.
     """
-
-    @property
-    def url(self) -> str:
-        """Its port."""
-        ...
-
-    @property
-    def baud(self) -> int:
-        """Bits a second of that port."""
-        ...
 
     @property
     def lag(self) -> float:
         """Delay of its own low-pass filter, s."""
         ...
 
-    def attach(self, port: Port) -> None:
-        """Listen on `port` from now on; a sample begun on another port is forgotten."""
-        ...
-
-    def poll(self) -> None:
-        """Take in what has come; waits for nothing.
+    def connect(self, opener: Opener) -> ImuConnection:
+        """Open its connection; a serial port with `opener`.
 
         Raises:
-            PortError: The port went away.
+            PortError: It cannot be opened, or nothing answers there.
         """
         ...
 

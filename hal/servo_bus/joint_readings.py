@@ -5,11 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from windup.hal.coupling import Couplings
 from windup.hal.imu.source import ImuSource
 from windup.hal.joints import Array, Mask
 from windup.hal.observation import ImuState, JointState, Observation
 from windup.hal.servo_bus.bus_connection import BusConnection
+from windup.hal.servo_bus.coupling import Couplings
 from windup.hal.servo_bus.units import Units
 
 

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from windup.hal.coupling import Couplings
 from windup.hal.errors import HardwareError
 from windup.hal.heartbeat import Heartbeat
 from windup.hal.joints import Array, Joints, Mask
 from windup.hal.servo_bus.bus_connection import BusConnection
+from windup.hal.servo_bus.coupling import Couplings
 from windup.hal.torque_loss import SILENT, Loss
 from windup.hal.torque_state import TorqueState
 

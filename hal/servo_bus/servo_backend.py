@@ -10,18 +10,17 @@ from windup.hal.bus.bus import Bus
 from windup.hal.bus.transactions import TURNAROUND
 from windup.hal.clock import WallClock
 from windup.hal.command import JointCommand, shifted_goal
-from windup.hal.coupling import Coupling, Couplings
 from windup.hal.errors import HardwareError, PortError
 from windup.hal.heartbeat import Heartbeat, beating, no_heartbeat
-from windup.hal.imu.imu_link import ImuLink
 from windup.hal.imu.opencr import OpenCr
-from windup.hal.imu.source import ImuSource
+from windup.hal.imu.source import ImuConnection, ImuSource
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 from windup.hal.port.open_port import open_port
 from windup.hal.port.port import Port
 from windup.hal.servo_bus.bus_connection import BusConnection, BusPort
 from windup.hal.servo_bus.bus_readout import BusReadout
+from windup.hal.servo_bus.coupling import Coupling, Couplings
 from windup.hal.servo_bus.joint_readings import JointReadings
 from windup.hal.servo_bus.joint_torque import JointTorque
 from windup.hal.servo_bus.servo_alerts import ServoAlerts, count_errors
@@ -53,7 +52,7 @@ class ServoBackend:
         ports: Maps bus name to its port.
         supply: Supply voltage used to convert stiffness to P registers, V.
         board: The OpenCR, read with the servos of its bus.
-        imu: An IMU on its own port.
+        imu: An IMU with its own connection.
         couplings: Joints that are driven by two servos together.
         watchdog: Silence after which a Bus Watchdog freezes the pose, torque on, s; 0 for none.
         contacts: Number of contact sensors in observations; their forces are always 0.
@@ -94,7 +93,7 @@ class ServoBackend:
         self._ports, self._opener, self._watchdog = dict(ports), opener, watchdog
         self.clock: Clock = WallClock()
         self.links: list[BusConnection] = []
-        self._imu_link: ImuLink | None = None
+        self._imu_link: ImuConnection | None = None
         self._alerts = ServoAlerts(joints, self.mounts)
         self.button = StopButton()
         self._torque = JointTorque(joints, self._couplings)

@@ -12,9 +12,8 @@ from windup.hal.bus.setting_words import in_words
 from windup.hal.clock import WallClock
 from windup.hal.errors import UsageError
 from windup.hal.families import family_of
-from windup.hal.imu.imu_link import ImuLink
 from windup.hal.imu.opencr import POWER, POWER_UP_TIME, OpenCr
-from windup.hal.imu.source import ImuSource
+from windup.hal.imu.source import ImuConnection, ImuSource
 from windup.hal.joints import Joints, Mask
 from windup.hal.port.lock import EMULATED, wait_while_guarded
 from windup.hal.port.port import Port
@@ -66,21 +65,21 @@ def open_links(
     imu: ImuSource | None,
     watchdog: float,
     opener: Opener,
-) -> tuple[list[BusConnection], ImuLink | None, Clock]:
-    """Open all ports; return the buses, the link of the IMU if it has a port, and their clock.
+) -> tuple[list[BusConnection], ImuConnection | None, Clock]:
+    """Open all ports; return the buses, the connection of an IMU that has one, and their clock.
 
     Raises:
         PortError: A port cannot be opened; the others are closed again.
         UsageError: The ports do not share one clock.
     """
     links: list[BusConnection] = []
-    beside: ImuLink | None = None
+    beside: ImuConnection | None = None
     try:
         for name, build in lines.items():
             wait_while_guarded(ports[name].url)
             links.append(BusConnection(ports[name], opener, build, watchdog))
         if imu is not None:
-            beside = ImuLink(imu, opener)
+            beside = imu.connect(opener)
         clocks = [link.clock for link in (*links, beside) if link is not None]
         return links, beside, one_clock(clocks)
     except BaseException:

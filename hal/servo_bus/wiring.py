@@ -11,7 +11,6 @@ from windup.hal.bus.bus import Bus
 from windup.hal.bus.differs import Differs
 from windup.hal.bus.servo_settings import Setting, differences, limits
 from windup.hal.bus.status_level import make_answer
-from windup.hal.coupling import Couplings
 from windup.hal.errors import (
     ConfigError,
     CorruptAnswerError,
@@ -22,6 +21,7 @@ from windup.hal.errors import (
 from windup.hal.families import DYNAMIXEL_X, Family, family_of
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.joints import Joints
+from windup.hal.servo_bus.coupling import Couplings
 from windup.hal.servo_bus.units import Units
 from windup.hal.servos.servo_model import ServoMount
 

@@ -127,15 +127,7 @@ class TelemetryWriter:
         """Write one tick: what was seen, what the joints were told, and how long it took."""
         joints, imu, base = observation.joints, observation.imu, observation.base
         no3, no4 = self._none[3], self._none[4]
-        bus = self._bus
-        few: list[float] = [observation.time, wall.time(), tick, missed, seconds, *self.plans]
-        few += [imu.age if imu else np.nan, base.confidence if base else 0.0]
-        few += self._backend.clamps.values()
-        if bus is not None:
-            few += bus.clamps.values()
-            few += bus.bus_errors().values()
-            self._note_alerts(bus)
-        self._few[:] = few
+        self._few[:] = [*self._scalars(observation, seconds, tick, missed), *self._counters()]
         np.concatenate(
             (
                 self._few,
@@ -162,6 +154,23 @@ class TelemetryWriter:
             out=self._numbers,
         )
         self._publish()
+
+    def _scalars(
+        self, observation: Observation, seconds: float, tick: int, missed: int
+    ) -> tuple[float, ...]:
+        """Return times, tick numbers, plans, age of the IMU and confidence."""
+        imu, base = observation.imu, observation.base
+        age, confidence = imu.age if imu else np.nan, base.confidence if base else 0.0
+        return observation.time, wall.time(), tick, missed, seconds, *self.plans, age, confidence
+
+    def _counters(self) -> list[int]:
+        """Return all counters of clamps and bus errors, and note the alerts."""
+        counters = [*self._backend.clamps.values()]
+        if (bus := self._bus) is not None:
+            counters += bus.clamps.values()
+            counters += bus.bus_errors().values()
+            self._note_alerts(bus)
+        return counters
 
     def end(self, reason: str) -> None:
         """The run is over; the ring stays for whoever wants to know how it went."""

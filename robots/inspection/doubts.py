@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import mujoco
 import numpy as np
 
+from windup.hal.geometry.gravity import GRAVITY
 from windup.robots.description import RobotDescription
 from windup.robots.inspection.posture_doubts import posture_doubts
 from windup.robots.inspection.servo_doubts import servo_doubts
@@ -13,7 +14,7 @@ from windup.robots.inspection.stance import in_stance
 POINTS = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
 DEEP = 1e-3
 """Maximum penetration of bodies that only touch, m."""
-GRAVITY = (0.0, 0.0, -9.81)
+DOWN = (0.0, 0.0, -GRAVITY)
 
 
 def doubts(robot: RobotDescription) -> list[str]:
@@ -32,7 +33,7 @@ def doubts(robot: RobotDescription) -> list[str]:
 
 def _gravity(model: mujoco.MjModel) -> Iterator[str]:
     """Yield a warning if the gravity of the MJCF is not that of the earth."""
-    if np.abs(model.opt.gravity - GRAVITY).max() > 0.05:
+    if np.abs(model.opt.gravity - DOWN).max() > 0.05:
         given = " ".join(f"{value:g}" for value in model.opt.gravity)
         yield f"gravity is {given} m/s2 in the MJCF's <option>; omit it for 0 0 -9.81"
 

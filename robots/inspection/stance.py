@@ -8,7 +8,7 @@ from windup.robots.description import RobotDescription
 
 def in_stance(robot: RobotDescription) -> tuple[mujoco.MjModel, mujoco.MjData]:
     """Return the model, and data in the stance with kinematics and centres of mass computed."""
-    model = robot.spec().compile()
+    model = robot.model
     data = mujoco.MjData(model)
     for name, angle in zip(robot.joints.names, robot.stance, strict=True):
         data.joint(name).qpos[0] = angle

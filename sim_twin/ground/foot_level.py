@@ -23,7 +23,7 @@ class FootLevel:
     def __init__(self, robot: RobotDescription) -> None:
         self.contacts = robot.contacts
         self.sure = SURE * float(robot.spec().body(robot.base).pos[2])
-        self.model = robot.spec().compile()
+        self.model = robot.model
         self.data = mujoco.MjData(self.model)
         sites = [self.model.sensor(name).objid[0] for name in robot.contacts.names]
         self._sites = np.array(sites, dtype=np.intp)

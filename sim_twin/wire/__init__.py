@@ -1,12 +1,16 @@
 """Emulated servos on a bus; importing this lets pyserial open ports named ``twin://...``.
 
-The worlds are imported when one of the public names is first used.
+The worlds are imported when one of the public names is first used. An IMU on I2C is opened by the
+same URL, see `windup.hal.imu.i2c`.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
 import serial
+
+from windup.hal.imu.i2c import HANDLERS as I2C_HANDLERS
+from windup.hal.imu.i2c import I2cChip
 
 if TYPE_CHECKING:
     from windup.sim_twin.wire.world.address import Address, parse_address
@@ -17,6 +21,16 @@ if TYPE_CHECKING:
 HANDLERS = f"{__name__}.serve"
 if HANDLERS not in serial.protocol_handler_packages:
     serial.protocol_handler_packages.append(HANDLERS)
+
+
+def _open_i2c(url: str, address: int) -> I2cChip:
+    """Open an emulated chip; the import here loads the worlds."""
+    from windup.sim_twin.wire.serve.i2c import open_twin_i2c
+
+    return open_twin_i2c(url, address)
+
+
+I2C_HANDLERS["twin"] = _open_i2c
 
 PLACES: Final = {
     "Address": "address",

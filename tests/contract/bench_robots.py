@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from windup.hal.coupling import Coupling, Couplings
 from windup.hal.joints import Joint, Joints
+from windup.hal.servo_bus.coupling import Coupling, Couplings
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
 from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount

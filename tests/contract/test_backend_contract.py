@@ -8,7 +8,7 @@ import pytest
 from tests.contract.bench_robots import ROBOTS
 from tests.contract.probing import TICK, free, resolution, wired
 from windup.hal.backend import Backend
-from windup.hal.command import FIELDS, JointCommand, joint_torque
+from windup.hal.command import JointCommand, joint_torque
 from windup.hal.errors import UnsafeCommandError
 from windup.hal.guard import GuardedBackend, SafetyLimits
 from windup.hal.joints import Array
@@ -141,9 +141,8 @@ def test_torque_that_is_measured_pushes_towards_the_goal(backend: Backend) -> No
 
 def test_a_write_returns_what_the_joints_really_got(backend: Backend) -> None:
     joints, seen = backend.joints, backend.read().joints
-    asked = JointCommand.hold(joints, seen.position + 0.03)
-    asked.block[FIELDS.index("torque")] = 0.01 * np.minimum(joints.torque, 20.0)
-    asked.block[FIELDS.index("velocity")] = 0.05
+    torque = 0.01 * np.minimum(joints.torque, 20.0)
+    asked = JointCommand.of(joints, position=seen.position + 0.03, velocity=0.05, torque=torque)
     before = asked.block.copy()
     real = backend.write(asked)
     np.testing.assert_array_equal(asked.block, before)

@@ -139,9 +139,9 @@ def test_an_interrupted_run_has_measured_something() -> None:
 def test_what_the_guard_refuses_ends_the_run() -> None:
     class Broken(Counter):
         def step(self, observation: Observation, dt: float) -> JointCommand:
-            command = super().step(observation, dt)
-            command.block[0, 3] = np.nan
-            return command
+            block = super().step(observation, dt).block.copy()
+            block[0, 3] = np.nan
+            return JointCommand(block)
 
     with pytest.raises(UnsafeCommandError, match="'r_hip' for position nan; refused"):
         run(guard(), Broken())

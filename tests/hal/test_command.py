@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 
 from tests.small_world import JOINTS, N
 from windup.hal.command import FIELDS, JointCommand, joint_torque, shifted_goal
@@ -26,8 +27,7 @@ def test_torque_stays_within_the_joints_limits_on_both_sides() -> None:
 
 
 def test_the_rows_of_a_command_are_views_of_its_block() -> None:
-    asked = command()
-    asked.block[:] = np.arange(len(FIELDS))[:, None]
+    asked = JointCommand(np.repeat(np.arange(float(len(FIELDS)))[:, None], N, axis=1))
     for row, name in enumerate(FIELDS):
         np.testing.assert_array_equal(getattr(asked, name), np.full(N, row))
 
@@ -39,6 +39,23 @@ def test_hold_has_the_robots_gains_and_no_feed_forward() -> None:
     np.testing.assert_array_equal(asked.damping, JOINTS.damping)
     assert not asked.velocity.any()
     assert not asked.torque.any()
+
+
+def test_a_command_has_what_it_is_made_of_and_cannot_be_changed() -> None:
+    asked = JointCommand.of(JOINTS, position=0.1, velocity=0.2, torque=np.full(N, 0.3), damping=0.5)
+    for name, value in (("position", 0.1), ("velocity", 0.2), ("torque", 0.3), ("damping", 0.5)):
+        np.testing.assert_array_equal(getattr(asked, name), np.full(N, value))
+    np.testing.assert_array_equal(asked.stiffness, JOINTS.stiffness)
+    with pytest.raises(ValueError, match="read-only"):
+        asked.position[0] = 1.0
+
+
+def test_the_same_command_at_another_position_leaves_the_first_alone() -> None:
+    first = JointCommand.of(JOINTS, position=0.1, torque=0.3)
+    other = first.at(np.full(N, 0.7))
+    np.testing.assert_array_equal(other.position, np.full(N, 0.7))
+    np.testing.assert_array_equal(other.block[1:], first.block[1:])
+    np.testing.assert_array_equal(first.position, np.full(N, 0.1))
 
 
 def test_a_shifted_goal_gives_a_position_servo_the_feed_forward_terms() -> None:

@@ -1,4 +1,3 @@
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -31,10 +30,11 @@ def fake(guard: GuardedBackend) -> FakeBackend:
     return guard.backend
 
 
-def hold(change: Callable[[JointCommand], None] = lambda command: None) -> JointCommand:
-    command = JointCommand.hold(JOINTS, np.full(N, 0.5))
-    change(command)
-    return command
+def hold(name: str = "position", joint: int = 0, value: float = 0.5) -> JointCommand:
+    """Return a command within the limits, but for one value of one joint."""
+    block = JointCommand.hold(JOINTS, np.full(N, 0.5)).block.copy()
+    block[FIELDS.index(name), joint] = value
+    return JointCommand(block)
 
 
 def test_a_command_within_the_limits_passes_as_it_is() -> None:
@@ -62,8 +62,7 @@ def test_every_clamp_has_a_name_and_a_counter(
 ) -> None:
     guard = guarded()
     row = FIELDS.index(name)
-    command = hold()
-    command.block[row, joint] = value
+    command = hold(name, joint, value)
     for _ in range(3):
         real = guard.write(command)
     assert real.block[row, joint] == got
@@ -75,8 +74,7 @@ def test_every_clamp_has_a_name_and_a_counter(
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 def test_what_is_no_number_is_refused_and_not_sent(value: float) -> None:
     guard = guarded()
-    command = hold()
-    command.block[2, 4] = value
+    command = hold("torque", 4, value)
     with pytest.raises(UnsafeCommandError) as error:
         guard.write(command)
     assert str(error.value) == f"the controller asked joint 'r_knee' for torque {value}; refused"
@@ -87,8 +85,7 @@ def test_infinity_is_refused_at_a_joint_without_a_limit_too() -> None:
     free = Joints((Joint("hip", -1.0, 1.0, stiffness=1.0, damping=1.0),))
     backend = FakeBackend(joints=free)
     guard = GuardedBackend(backend, SafetyLimits.of(free))
-    command = JointCommand.hold(free, np.zeros(1))
-    command.block[FIELDS.index("torque")] = np.inf
+    command = JointCommand.of(free, position=0.0, torque=np.inf)
     with pytest.raises(UnsafeCommandError, match="asked joint 'hip' for torque inf; refused"):
         guard.write(command)
     assert backend.written == []

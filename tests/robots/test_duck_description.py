@@ -115,7 +115,7 @@ def _hold(robot: Robot, pose: str) -> PoseHolder:
 def test_it_plays_its_graphs_on_both_feet(graph: str) -> None:
     with Robot.open("duck", noise=0.5) as robot:
         lowest = [np.inf]
-        robot.watch = lambda seen: lowest.append(min(seen.contacts.min(), lowest[-1]))
+        robot.watch.append(lambda seen: lowest.append(min(seen.contacts.min(), lowest[-1])))
         robot.play(graph, 6.0)
         assert not robot.fallen
         assert lowest[-1] > robot.description.contacts.threshold

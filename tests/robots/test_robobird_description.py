@@ -112,7 +112,7 @@ def test_it_runs_with_a_flight_in_every_step() -> None:
     with Robot.open("robobird", noise=0.2) as robot:
         threshold = robot.description.contacts.threshold
         touched: list[np.ndarray] = []
-        robot.watch = lambda seen: touched.append(seen.contacts.reshape(2, 4).max(axis=1))
+        robot.watch.append(lambda seen: touched.append(seen.contacts.reshape(2, 4).max(axis=1)))
         report = robot.walk(steps=20, options=WalkOptions(gait="run"))
         assert report.done
     down = np.array(touched) > threshold

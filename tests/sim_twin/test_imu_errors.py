@@ -3,9 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from windup.hal.imu.opencr import OPENCR
 from windup.robots import RobotDescription, load_robot
 from windup.sim_twin.backend import TwinBackend
-from windup.sim_twin.imu_errors import OPENCR, ImuErrors
+from windup.sim_twin.imu_errors import ImuErrors
 from windup.sim_twin.twin import Twin
 
 REST = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 9.81])

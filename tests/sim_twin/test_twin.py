@@ -223,10 +223,9 @@ def test_a_twin_that_diverges_says_when_and_at_which_joint(
 ) -> None:
     monkeypatch.chdir(tmp_path)  # MuJoCo writes its log there
     twin = Twin(human)
-    command = JointCommand.hold(human.joints, human.stance)
-    elbow = human.joints.index("l_elbow")
-    command.block[:, elbow] = [0.1, 0.0, 0.0, 1e5, 0.0]
-    TwinBackend(twin).write(command)
+    block = JointCommand.hold(human.joints, human.stance).block.copy()
+    block[:, human.joints.index("l_elbow")] = [0.1, 0.0, 0.0, 1e5, 0.0]
+    TwinBackend(twin).write(JointCommand(block))
     with pytest.raises(DivergedError) as error:
         for _ in range(200):
             twin.step(1)

@@ -10,8 +10,8 @@ import pytest
 
 from windup.tools import cli
 from windup.tools.reproduce.laszlo import LASZLO
-from windup.tools.reproduce.laszlo.cycles import pitch_range, scatter
 from windup.tools.reproduce.laszlo.jobs import walk
+from windup.tools.reproduce.laszlo.phase import pitch_range, scatter
 from windup.tools.reproduce.laszlo.recorder import NAMES
 from windup.tools.reproduce.laszlo.tours import tour
 from windup.tools.reproduce.laszlo.work import VECTORS, work

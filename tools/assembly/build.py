@@ -7,11 +7,11 @@ import numpy as np
 
 from windup.control.estimation.estimator import BaseEstimator
 from windup.control.estimation.foot_load import FootLoad
-from windup.control.estimation.tilt_filter import GRAVITY, ImuNoise
+from windup.control.estimation.tilt_filter import ImuNoise
 from windup.control.kinematics.body import Body
 from windup.control.kinematics.soles import Soles
 from windup.control.limit_cycle.balancer import Balancer
-from windup.control.limit_cycle.planner import Planner, StepPlanner
+from windup.control.limit_cycle.planner import StepPlanner
 from windup.control.limit_cycle.step_memory import Memory
 from windup.control.limit_cycle.step_model import StepModel
 from windup.control.pose_graph.gait import Gait
@@ -22,6 +22,7 @@ from windup.control.regulation.footfalls import Footfalls
 from windup.control.regulation.variables import RegulationVariable, regulation_variables
 from windup.hal.controller import Predictor
 from windup.hal.errors import StateMissingError, UnknownNameError, UsageError
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.ranges import Range, read_number
 from windup.robots import RobotDescription
 from windup.tools.assembly.gaits import find_gait
@@ -37,11 +38,16 @@ TARGET = Range(-1_000.0, 1_000.0)
 def body_of(robot: RobotDescription) -> Body:
     """Return the kinematics of a robot."""
     soles = [foot.site for foot in robot.feet]
-    return Body(robot.spec().compile(), robot.base, robot.torso, soles)
+    return Body(robot.model, robot.base, robot.torso, soles)
 
 
 def build_estimator(
-    robot: RobotDescription, lag: float, *, switches: bool = True, attitude: bool = False
+    robot: RobotDescription,
+    lag: float,
+    *,
+    switches: bool = True,
+    attitude: bool = False,
+    apart: bool = False,
 ) -> BaseEstimator:
     """Return what estimates the base of `robot` from its sensors.
 
@@ -50,6 +56,7 @@ def build_estimator(
         lag: Delay of its IMU's own filter, s.
         switches: Its contact sensors exist; without them the soles' heights tell who stands.
         attitude: Its IMU tells its attitude and has no gyroscope.
+        apart: Its IMU is on no servo bus: it is not read with the joints.
 
     Raises:
         StateMissingError: The robot has no IMU or no feet, is fixed, or has passive joints.
@@ -59,7 +66,7 @@ def build_estimator(
         if robot.fixed or robot.passive:
             how = "it is fixed" if robot.fixed else f"{robot.passive[0]!r} is passive"
         raise StateMissingError(f"the base of {robot.name} cannot be estimated; {how}")
-    model = robot.spec().compile()
+    model = robot.model
     soles = Soles(model, [foot.body for foot in robot.feet], robot.contacts)
     weight = float(model.body_subtreemass[model.body(robot.base).id]) * GRAVITY
     load = FootLoad(soles, robot.contacts, weight, sensed=switches)
@@ -67,10 +74,9 @@ def build_estimator(
         load,
         model.site(robot.imu.site).pos.copy(),
         lag=lag,
-        # What is no gyroscope has no bias; and what is on no servo bus is not read with the joints.
-        noise=ImuNoise(start_bias=0.0, drift=0.0) if attitude else None,
+        noise=ImuNoise(start_bias=0.0, drift=0.0) if attitude else None,  # no gyroscope, no bias
         fused=attitude,
-        read=robot.drive.wire_delay if attitude else 0.0,
+        read=robot.drive.wire_delay if apart else 0.0,
     )
 
 
@@ -94,46 +100,24 @@ def build_walk(
     """
     check_walks(robot)
     gait = blended(robot, find_gait(robot, options.gait), options)
-    if not gait.graph.ends_step.any() or gait.file.balance is None:
-        raise UsageError(
-            f"gait {gait.name!r} has no steps to balance; "
-            f"play it with `windup play {robot.name} {gait.name}`"
-        )
-    balance = gait.file.balance
-    if options.sampling is not None:
-        balance = _resampled(balance, options.sampling)
+    balance = _balance(robot, gait, options.sampling)
     variables = regulation_variables(list(options.rv or balance.regulation))
     names = _perturbations(gait, balance, variables, options.rv is not None)
     torso_servo = _torso_servo(robot, gait, options.torso_servo)
     if torso_servo is not None:
         variables = [_on_the_pelvis(variable) for variable in variables]
     body = body_of(robot)
-    planner: Planner | None = None
     memory = memory_for(robot, options, variables, names)
     # Models learnt on level soles do not hold on tilted ones.
     one_rollout = memory is not None and memory.complete
-    if predictor is not None and not options.open_loop:
-        planner = StepPlanner(
-            gait=gait,
-            joints=robot.joints,
-            contacts=robot.contacts,
-            body=body,
-            regulation=variables,
-            perturbations=names,
-            model=_step_model(gait, balance, variables, names, options, memory),
-            predictor=predictor,
-            torso_servo=torso_servo,
-            horizon=balance.horizon,
-            latency=latency,
-        )
-    return Balancer(
+    walker = Balancer(
         gait=gait,
         joints=robot.joints,
         contacts=robot.contacts,
         body=body,
         regulation=variables,
         perturbations=names,
-        planner=planner,
+        planner=None,
         steering=steering_of(robot, gait, options, [] if one_rollout else variables),
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
@@ -141,6 +125,44 @@ def build_walk(
         footfalls=_footfalls(robot, body, balance, options),
         shaken=_shaken(balance, options, one_rollout),
     )
+    if predictor is not None and not options.open_loop:
+        model = _step_model(gait, balance, variables, names, options, memory)
+        walker.planner = _planner(walker, model, predictor, balance.horizon, latency)
+    return walker
+
+
+def _planner(
+    walker: Balancer, model: StepModel, predictor: Predictor, horizon: float, latency: float
+) -> StepPlanner:
+    """Return who plans the steps of `walker` in its own time."""
+    return StepPlanner(
+        gait=walker.gait,
+        joints=walker.joints,
+        contacts=walker.contacts,
+        body=walker.body,
+        regulation=walker.regulation,
+        perturbations=walker.perturbations,
+        model=model,
+        predictor=predictor,
+        torso_servo=walker.torso_servo,
+        horizon=horizon,
+        latency=latency,
+    )
+
+
+def _balance(robot: RobotDescription, gait: Gait, sampling: Sampling | None) -> Balance:
+    """Return how a gait is balanced, sampled as the user says.
+
+    Raises:
+        UsageError: It has no steps to balance.
+    """
+    balance = gait.file.balance
+    if not gait.graph.ends_step.any() or balance is None:
+        raise UsageError(
+            f"gait {gait.name!r} has no steps to balance; "
+            f"play it with `windup play {robot.name} {gait.name}`"
+        )
+    return balance if sampling is None else _resampled(balance, sampling)
 
 
 def _footfalls(

@@ -54,7 +54,7 @@ class Protection:
         from windup.control.falling.protection import FallWay
 
         robot = self.robot
-        legs = leg_joints(robot, robot.spec().compile())
+        legs = leg_joints(robot, robot.model)
         return tuple(
             FallWay(
                 way.toward,

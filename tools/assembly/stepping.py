@@ -70,7 +70,7 @@ def footing_of(robot: RobotDescription, stance: Array) -> Footing:
 def whole_body_of(robot: RobotDescription, delay: float = 0.0) -> WholeBody:
     """Return the whole-body control of a robot with torque joints; `delay` of its commands, s."""
     ends = [foot.site for foot in robot.feet]
-    dynamics = Dynamics(robot.spec().compile(), robot.base, ends, delay)
+    dynamics = Dynamics(robot.model, robot.base, ends, delay)
     limit = np.minimum(robot.joints.torque, find_stepping(robot).torque)
     return WholeBody(dynamics, limit, FRICTION)
 

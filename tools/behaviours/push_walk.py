@@ -32,7 +32,7 @@ def push_walking(
     """
     description, twin = robot.description, robot.twin
     touch = TouchWatch(description, twin.model, twin.data)
-    robot.watch = lambda _: touch.update()
+    robot.watch.append(look := lambda _: touch.update())
     begun: list[float] = []
 
     def disturb(robot: Robot) -> None:
@@ -41,7 +41,7 @@ def push_walking(
 
     steps = ceil(plan.end / QUICK) + MORE
     report = robot.walk(steps=steps, options=options, disturb=disturb)
-    robot.watch = None
+    robot.watch.remove(look)
     if to_the_end and robot.fallen and not robot.protect:
         stiff = PoseHolder(description.joints, description.stance, ramp=0.0)
         robot.run(stiff, LANDING, down=True)

@@ -83,11 +83,11 @@ def _walk(name: str, speed: float, seconds: float, tell: Connection) -> None:
         try:
             with Robot.open(name, port=ours.recv(), arm=True) as robot:
                 gaps = Gaps(tell, seconds)
-                robot.watch = gaps.update
+                robot.watch.append(gaps.update)
                 try:
-                    robot.walk(speed, steps=STEPS, on_step=gaps.end_in_time())
+                    robot.walk(speed, steps=STEPS, on_step=[gaps.end_in_time()])
                 finally:
-                    robot.watch = None
+                    robot.watch.clear()
                     gaps.tell("done" if gaps.over else robot.loop.reason)
         except (WindupError, KeyboardInterrupt) as error:
             console.print(f"windup: {error}", markup=False, soft_wrap=True)

@@ -12,17 +12,18 @@ import tyro
 from windup.control.kinematics.body import heading
 from windup.control.loop import Estimator
 from windup.hal.errors import UsageError
+from windup.hal.geometry.angles import wrapped
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState, Observation
 from windup.robots import load_robot
 from windup.sim_twin.backend import TwinBackend
-from windup.sim_twin.imu_errors import OPENCR, ImuErrors
+from windup.sim_twin.imu_errors import ImuErrors, imu_on_twin
 from windup.sim_twin.sensors import Sensors
 from windup.tools.assembly.build import build_estimator, build_walk
 from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.options.faults import with_faults
+from windup.tools.robot.port_urls import TWIN, check_port
 from windup.tools.robot.robot import Robot
-from windup.tools.robot.stack import TWIN, check_port
 from windup.tools.robot.twin_state_source import TwinStateSource
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
@@ -189,9 +190,10 @@ class Estimate(Command):
             referee = Referee(estimator, TwinStateSource(Sensors(robot.twin)), listen)
             robot.stack = replace(robot.stack, estimator=referee)
             return referee
-        errors = ImuErrors(OPENCR, robot.twin.timestep, self.seed)
+        felt = imu_on_twin(robot.description)
+        errors = ImuErrors(felt, robot.twin.timestep, self.seed)
         backend = TwinBackend(robot.twin, imu_errors=errors)
-        estimator = build_estimator(robot.description, OPENCR.lag, switches=self.switches)
+        estimator = build_estimator(robot.description, felt.lag, switches=self.switches)
         referee = Referee(estimator, None, listen)
         guarded = replace(robot.backend, backend=backend)
         robot.stack = replace(robot.stack, backend=guarded, estimator=referee)
@@ -216,7 +218,7 @@ class Estimate(Command):
 def _errors(base: BaseState, truth: BaseState) -> Array:
     """Return roll, pitch, yaw, velocity (3), height errors and the confidence."""
     angles = np.array([_angles(base.orientation), _angles(truth.orientation)])
-    turn = (angles[0] - angles[1] + np.pi) % (2.0 * np.pi) - np.pi
+    turn = wrapped(angles[0] - angles[1])
     velocity = base.linear_velocity - truth.linear_velocity
     height = base.position[2] - truth.position[2]
     return np.concatenate([turn, velocity, [height, base.confidence]])

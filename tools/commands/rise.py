@@ -113,10 +113,10 @@ def side_of(robot: Robot) -> Side | None:
     It holds the pose that it has, for as long as the estimate of its attitude takes.
     """
     seen: list[Observation] = []
-    watch, robot.watch = robot.watch, lambda observation: seen.append(observation)
+    robot.watch.append(look := seen.append)
     pose = robot.backend.read().joints.position
     robot.run(PoseHolder(robot.description.joints, pose, ramp=0.0), LOOK, down=True, needs_imu=True)
-    robot.watch = watch
+    robot.watch.remove(look)
     if not robot.fallen:
         return None
     forward, _ = lean(seen[-1])

@@ -27,7 +27,7 @@ class Last:
 
     def __init__(self, robot: Robot) -> None:
         self.position = robot.backend.read().joints.position
-        robot.watch = self._look
+        robot.watch.append(self._look)
 
     def _look(self, observation: Observation) -> None:
         self.position = observation.joints.position

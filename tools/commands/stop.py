@@ -10,7 +10,8 @@ from windup.hal.joints import Mask
 from windup.hal.torque_state import TorqueState
 from windup.robots import RobotDescription, load_robot
 from windup.tools.options.faults import with_faults
-from windup.tools.robot.stack import check_port, torque_off
+from windup.tools.robot.port_urls import check_port
+from windup.tools.robot.stack import torque_off
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
 

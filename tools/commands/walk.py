@@ -10,11 +10,14 @@ from typing import Any, Literal
 import numpy as np
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
+from windup.control.pose_graph.gait_file import Sampling
 from windup.hal.errors import UsageError
+from windup.hal.geometry.up_axis import uprightness
 from windup.robots import load_robot
 from windup.tools.assembly.build import build_walk
 from windup.tools.assembly.stepping import find_stepping
 from windup.tools.assembly.walk_options import WalkOptions
+from windup.tools.command_line.typed import as_typed
 from windup.tools.commands.plot import Trace, plot_walk
 from windup.tools.measures.walk_text import format_summary
 from windup.tools.options.common import Common
@@ -62,7 +65,7 @@ class Walk(TwinOptions, Common):
     """Name of the gait, or the path of a gait file of your own."""
     rv: tuple[str, ...] | None = None
     """Regulation variables, such as: up, or up.forward swing_com.lateral."""
-    sampling: Literal["sp", "fl", "lf", "full"] | None = None
+    sampling: Sampling | None = None
     """How the step model is sampled."""
     model: Literal["full", "frozen", "library"] = "full"
     """Sample the step model every step, or only when regulation drifts (frozen), or look it up by
@@ -116,14 +119,15 @@ class Walk(TwinOptions, Common):
             known_ground=self.known_ground,
         ) as robot:
             trace = Trace(robot.description.contacts)
-            robot.watch = trace.add if self.plot and show else None
+            if self.plot and show:
+                robot.watch.append(trace.add)
             with _progress(show and not self.realtime) as progress:
                 report = self._walk(robot, progress)
         if show:
             console.print(str(report), markup=False, soft_wrap=True)
         if self.learn is not None:
             with NOTES.losing():
-                keep_learnt(self.learn, report)
+                keep_learnt(self.learn, report, as_typed(self, ("learn", "json", "plot")))
         if self.plot is not None and show:
             with NOTES.losing():
                 plot_walk(self.plot, report, trace)
@@ -143,7 +147,7 @@ class Walk(TwinOptions, Common):
             return robot.walk(
                 steps=self._most,
                 options=self._options(),
-                on_step=_update(progress, bar, robot),
+                on_step=[_update(progress, bar, robot)],
                 disturb=self.disturb(),
                 stand=self.stand,
             )
@@ -214,7 +218,7 @@ def _update(progress: Progress, bar: Any, robot: Robot) -> Callable[[int, float]
     def update(steps: int, speed: float) -> None:
         assert robot.base is not None, "a walk has a base state"
         _, x, y, _ = robot.base.orientation
-        lean = np.degrees(np.arccos(np.clip(1.0 - 2.0 * (x * x + y * y), -1.0, 1.0)))
+        lean = np.degrees(np.arccos(np.clip(uprightness(x, y), -1.0, 1.0)))
         progress.update(
             bar, completed=steps, speed=f"{speed:5.2f} m/s", lean=f"lean {lean:4.1f} deg"
         )

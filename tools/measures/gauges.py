@@ -6,11 +6,11 @@ from itertools import pairwise
 import numpy as np
 
 from windup.hal.contacts import ContactSensors
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Mask
 from windup.hal.observation import Observation
 
 SHORTEST_FLIGHT = 0.02  # s; shorter ones are contact chatter
-GRAVITY = 9.81
 
 
 @dataclass

@@ -1,6 +1,6 @@
 """Decides when a walk ends: after its steps, at its goal, and at rest if required."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from windup.control.limit_cycle.balancer import Balancer
@@ -21,13 +21,13 @@ class WalkEnd:
     Attributes:
         walker: The walking controller.
         steps: Number of steps to walk, or within which to reach the goal.
-        on_step: Called at the end of each step.
+        on_step: All are called at the end of each step.
         rest: Whether the robot must come to rest first.
     """
 
     walker: Balancer
     steps: int
-    on_step: OnStep | None = None
+    on_step: Sequence[OnStep] = ()
     rest: bool = False
     _seen: int = field(default=0, init=False)
 
@@ -43,8 +43,8 @@ class WalkEnd:
         if walker.steps <= self._seen:
             return None
         self._seen = walker.steps
-        if self.on_step is not None:
-            self.on_step(self._seen, walker.records[-1].speed)
+        for look in self.on_step:
+            look(self._seen, walker.records[-1].speed)
         return self._over()
 
     def _over(self) -> str | None:

@@ -11,8 +11,9 @@ from windup.robots import load_robot
 from windup.sim_twin.wire.world.address import SCHEME
 from windup.tools.options.faults import with_faults
 from windup.tools.robot.doubt_once import doubt_once
+from windup.tools.robot.port_urls import check_port
 from windup.tools.robot.robot import Robot
-from windup.tools.robot.stack import State, check_port
+from windup.tools.robot.stack import State
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.quantities import Noise, Rate, Seed, Seeds
 

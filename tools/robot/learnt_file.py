@@ -28,8 +28,13 @@ def check_learning(options: WalkOptions, *, alone: bool) -> None:
     check_writable(options.learn)
 
 
-def keep_learnt(path: Path, report: WalkReport) -> None:
+def keep_learnt(path: Path, report: WalkReport, command: str) -> None:
     """Write the step models of a walk that has gone well into a file.
+
+    Args:
+        path: The file.
+        report: Of the walk.
+        command: Which walk it was, as typed.
 
     Raises:
         OutputError: It cannot be written.
@@ -37,8 +42,11 @@ def keep_learnt(path: Path, report: WalkReport) -> None:
     walker = report.walker
     planner = walker.planner
     if report.done and isinstance(planner, StepPlanner):
-        assert isinstance(planner.model.memory, LearntModels), "see `memory_for`"
+        learnt, robot = planner.model.memory, report.robot
+        assert isinstance(learnt, LearntModels), "see `memory_for`"
         names = [variable.name for variable in walker.regulation]
-        gait = gait_path(report.robot.description, report.options.gait)
+        gait = gait_hash(gait_path(robot.description, report.options.gait))
+        learnt.commands.append(command)
+        file = learnt.file(names, list(walker.perturbations), gait, round(1.0 / robot.period, 6))
         with writing(path):
-            planner.model.memory.write(path, names, walker.perturbations, gait_hash(gait))
+            path.write_text(file.text())

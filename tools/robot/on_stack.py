@@ -2,13 +2,13 @@
 
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from windup.hal.errors import UsageError
+from windup.hal.geometry.up_axis import uprightness
 from windup.hal.guard import GuardedBackend
 from windup.hal.observation import BaseState
 from windup.hal.ranges import numbers_checked
 from windup.robots import RobotDescription
+from windup.robots.fallen import has_fallen
 from windup.sim_twin.push import Push
 from windup.sim_twin.twin import Twin
 from windup.tools.robot.stack import Stack
@@ -40,10 +40,9 @@ class OnStack:
             return self.stack.twin.fallen
         if self.base is None or self.description.fixed:
             return False
-        fall = self.description.fall
         _, x, y, _ = self.base.orientation
-        tilted = 1.0 - 2.0 * (x * x + y * y) < np.cos(fall.tilt)
-        return bool(self.base.position[2] < fall.height or tilted)
+        height = self.base.position[2]
+        return bool(has_fallen(self.description.fall, height, uprightness(x, y)))
 
     @property
     def twin(self) -> Twin:

@@ -4,7 +4,7 @@ with Robot.open("op3") as robot:              # its twin
     report = robot.walk(speed=0.2, steps=40)
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from importlib import import_module
@@ -24,6 +24,7 @@ from windup.sim_twin.ground.clearance import FootClearance
 from windup.sim_twin.rollouts import RolloutPredictor
 from windup.sim_twin.wire.world.clocks import RealClock
 from windup.tools.assembly.build import build_walk
+from windup.tools.assembly.catching import supervisor_for
 from windup.tools.assembly.gaits import find_gait
 from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.measures.gauges import Gauges
@@ -32,7 +33,7 @@ from windup.tools.measures.walk_end import OnStep, WalkEnd
 from windup.tools.robot.doubt_once import doubt_once
 from windup.tools.robot.plan_process import ProcessPlanner, plan_aside
 from windup.tools.robot.session import Session
-from windup.tools.robot.stack import State, twin_stack, wire_stack
+from windup.tools.robot.stack import State, open_stack
 from windup.tools.robot.walk_report import WalkReport
 from windup.tools.stopping.interrupts import RunInterruptedError
 from windup.tools.terminal.quantities import Count, Delay, Noise, Rate, Seconds, Seed, Speed
@@ -109,34 +110,15 @@ class Robot(Session):
         doubt_once(description)
         wired = description.wire_rate_hz if port is not None else None
         steps = description.physics_steps(rate or wired)
-        if port is None:
-            stack = twin_stack(
-                description,
-                state=state or "true",
-                paced=realtime,
-                delay=delay,
-                noise=noise,
-                seed=seed,
-                world=world,
-            )
-        else:
-            stack = wire_stack(
-                description,
-                port,
-                state=state,
-                arm=arm,
-                noise=noise,
-                seed=seed,
-                around=world,
-            )
+        stack = open_stack(
+            description, port, state=state, arm=arm, paced=realtime, delay=delay, noise=noise,
+            seed=seed, world=world,
+        )  # fmt: skip
+        ground = world.ground if world is not None and known_ground else None
         return cls(
             description=description,
             stack=stack,
-            predictor=RolloutPredictor(
-                description,
-                delay=stack.delay,
-                ground=world.ground if world is not None and known_ground else None,
-            ),
+            predictor=RolloutPredictor(description, delay=stack.delay, ground=ground),
             period=steps * description.timestep,
             noise=noise,
             seed=seed,
@@ -190,7 +172,7 @@ class Robot(Session):
         speed: Speed | None = None,
         steps: Count = 40,
         options: WalkOptions | None = None,
-        on_step: OnStep | None = None,
+        on_step: Sequence[OnStep] = (),
         disturb: Callable[["Robot"], None] | None = None,
         stand: Seconds = 0.0,
     ) -> WalkReport:
@@ -200,7 +182,7 @@ class Robot(Session):
             speed: m/s; the gait's default if None.
             steps: How many.
             options: Everything else; `speed` wins.
-            on_step: Called at the end of each step with its number and its speed, m/s.
+            on_step: All are called at the end of each step with its number and its speed, m/s.
             disturb: Called before the first step, to arrange pushes on a twin.
             stand: Then come to rest and stand for so long, s.
 
@@ -213,47 +195,54 @@ class Robot(Session):
         if speed is not None:
             options = replace(options, speed=speed)
         self.predictor.stopwatch = Stopwatch()
-        stopwatch = None if self.paced else self.predictor.stopwatch
+        # A plan takes its time on a robot; an emulated one waits for it as long.
+        wait = self.description.model_latency if self.stack.wired else 0.0
+        walker = build_walk(self.description, options, self.predictor, latency=wait)
+        supervisor = supervisor_for(self.description, walker, options.catch)
+        end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
+        report = WalkReport(
+            self, walker, options, steps, self.predictor.stopwatch, self.seed,
+            Gauges(self.description.contacts), supervisor=supervisor,
+        )  # fmt: skip
         with ExitStack() as stack:
-            # A plan takes its time on a robot; an emulated one waits for it as long.
-            wait = self.description.model_latency if self.stack.wired else 0.0
-            walker = build_walk(self.description, options, self.predictor, latency=wait)
-            supervisor = None
-            if options.catch is not None:
-                from windup.tools.assembly.supervise import build_supervisor
-
-                supervisor = build_supervisor(self.description, walker, options.catch)
-            end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
-            report = WalkReport(
-                self, walker, options, steps, self.predictor.stopwatch, self.seed,
-                Gauges(self.description.contacts), supervisor=supervisor,
-            )  # fmt: skip
             try:
                 if self.paced and walker.planner is not None:
                     aside = plan_aside(self.description, options, self.predictor, self.period)
                     walker.planner = self._when_ready(stack.enter_context(aside))
-                self.start_at(walker.gait.file.start, needs_imu=True)
-                report.feet = self._feet()
-                if disturb is not None:
-                    disturb(self)
-                report.begin()
-                walking = supervisor or walker
-                until = self._looking(end, report)
-                walked = self.run(walking, until=until, rollouts=stopwatch, needs_imu=True)
-                if stand > 0.0 and walked.reason == "done":
-                    walked.reason = self.stand(stand).reason
-                    self.loop = walked
+                self._walk(report, end, disturb, stand)
             except RunInterruptedError as stopped:
                 report.loop = self.loop
                 stopped.report = report
                 raise
             finally:
-                self.slowness.plans += walker.begun
-                self.slowness.late += walker.late
-                self.slowness.library = options.model == "library"
+                self.slowness.count_plans(walker.begun, walker.late, options.model == "library")
         report.loop = self.loop
         report.note_place()
         return report
+
+    def _walk(
+        self,
+        report: WalkReport,
+        end: Until,
+        disturb: Callable[["Robot"], None] | None,
+        stand: float,
+    ) -> None:
+        """Go to the start pose, walk until the end, and stand for so long, s."""
+        walker = report.walker
+        self.start_at(walker.gait.file.start, needs_imu=True)
+        report.feet = self._feet()
+        if disturb is not None:
+            disturb(self)
+        report.begin()
+        walked = self.run(
+            report.supervisor or walker,
+            until=self._looking(end, report),
+            rollouts=None if self.paced else self.predictor.stopwatch,
+            needs_imu=True,
+        )
+        if stand > 0.0 and walked.reason == "done":
+            walked.reason = self.stand(stand).reason
+            self.loop = walked
 
     def _when_ready(self, planner: ProcessPlanner) -> ProcessPlanner:
         """Wait for a planner; meanwhile joints hold what they were told last, or where they are."""

@@ -25,10 +25,10 @@ from windup.sim_twin.backend import TwinClock
 from windup.sim_twin.wire.world.clocks import VirtualClock
 from windup.tools.assembly.protect import Protection
 from windup.tools.robot.armed import Armed
+from windup.tools.robot.run_end import RunEnd
 from windup.tools.robot.stack import look_with
-from windup.tools.robot.stopping import INTERRUPTED, LAY
+from windup.tools.robot.stopping import INTERRUPTED
 from windup.tools.stopping.interrupts import (
-    Asked,
     RunInterruptedError,
     counted_signals,
     note_interruption,
@@ -50,7 +50,7 @@ class Session(Armed):
         period: Period of the control loop, s.
         paced: Its time is real time.
         protect: A fall that cannot be prevented is softened, where the robot's file says how.
-        watch: Called with every observation, for whoever draws or logs.
+        watch: All are called with every observation: whoever draws, logs or looks on.
         telemetry: Where everybody else can read how it goes, once it runs.
         imu: Judges the IMU, where the base state is estimated from it.
         slowness: Ticks and plans that came late in all runs.
@@ -59,7 +59,7 @@ class Session(Armed):
     period: float = field(kw_only=True)
     paced: bool = False
     protect: bool = True
-    watch: Watch | None = field(default=None, init=False)
+    watch: list[Watch] = field(default_factory=list, init=False)
     telemetry: TelemetryWriter | None = field(default=None, init=False)
     imu: ImuWatch = field(default_factory=ImuWatch, init=False)
     slowness: Slowness = field(init=False)
@@ -150,12 +150,10 @@ class Session(Armed):
             FirstMotionError: A joint did not follow in the first motion; the robot is limp.
             WindupError: From the guard, the backend or the controller; the stop policy has run.
         """
-        approach = None
-        if self.start is not None:
-            controller = approach = self.start.before(controller, down)
+        approach = None if self.start is None else self.start.before(controller, down)
         protected = None
         if self.protect and self._protection.possible and not down:
-            controller = protected = self._protection.around(controller)
+            protected = self._protection.around(approach or controller)
         wishes = stop_requests(self.backend.backend, keys=self.stack.real)
         with (
             counted_signals(self.stack.wired) as asked,
@@ -166,36 +164,15 @@ class Session(Armed):
             estimator = self._estimator(needs_imu)
             self._get_ready(down, asked)
             self.loop = LoopReport()
-            begin = opened = self.backend.clock.now()
-
-            def end(observation: Observation) -> str | None:
-                nonlocal begin
-                self.base = observation.base
-                if self.watch is not None:
-                    self.watch(observation)
-                if (by := wanted()) is not None:
-                    asked.add(by)
-                if by := self._running.asked:
-                    asked.add(by)
-                if asked():
-                    return INTERRUPTED
-                if protected is not None and protected.active:
-                    return self._landed() if protected.finished else None
-                if self.fallen and not down:
-                    return "fell" if self.loop.ticks else LAY
-                if approach is not None and approach.active:
-                    begin = observation.time
-                    self.loop.first_motion = begin - opened
-                    return None
-                if until is not None and (reason := until(observation)) is not None:
-                    return reason
-                over = seconds is not None and observation.time >= begin + seconds - 1e-9
-                return "done" if over else None
-
+            end = RunEnd(
+                asked=asked, wishes=[wanted, lambda: self._running.asked],
+                fallen=lambda: self.fallen, loop=self.loop, opened=self.backend.clock.now(),
+                seconds=seconds, until=until, down=down, approach=approach, protected=protected,
+            )  # fmt: skip
             if asked():
                 self._stop_before(asked)
             else:
-                self._run(controller, end, rollouts, asked, estimator)
+                self._run(protected or approach or controller, end, rollouts, estimator)
         if self.loop.reason == INTERRUPTED:
             raise RunInterruptedError(self.loop, asked.by)
         return self.loop
@@ -215,34 +192,18 @@ class Session(Armed):
             gate.admit(self.backend.peek)
         return gate
 
-    def _landed(self) -> str:
-        """Return why a run ends whose fall is over."""
-        return "fell" if self.fallen else "fall protection triggered, but the robot did not fall"
-
     def _run(
         self,
         controller: Controller,
-        end: Until,
+        end: RunEnd,
         rollouts: Stopwatch | None,
-        asked: Asked,
         estimator: Estimator | None,
     ) -> None:
         """Run the loop; stop the robot if it ends by an error or a wish."""
+        asked = end.asked
         self._publish()
         try:
-            with punctual() if self.paced else nullcontext():
-                if isinstance(self.backend.clock, TwinClock):
-                    self.backend.clock.align()
-                run_loop(
-                    self.backend,
-                    controller,
-                    period=self.period,
-                    until=end,
-                    estimator=estimator,
-                    rollouts=rollouts,
-                    report=self.loop,
-                    recorder=self.telemetry,
-                )
+            self._loop(controller, end, rollouts, estimator)
             if self.loop.reason == INTERRUPTED:
                 if self.stack.wired:
                     note_interruption(asked.by)
@@ -268,6 +229,35 @@ class Session(Armed):
             self.slowness.missed += self.loop.missed
             if self.telemetry is not None:
                 self.telemetry.end(self.loop.reason)
+
+    def _loop(
+        self,
+        controller: Controller,
+        end: Until,
+        rollouts: Stopwatch | None,
+        estimator: Estimator | None,
+    ) -> None:
+        """Run the loop, with whoever looks on."""
+
+        def until(observation: Observation) -> str | None:
+            self.base = observation.base
+            for look in self.watch[:]:  # one may take itself off
+                look(observation)
+            return end(observation)
+
+        with punctual() if self.paced else nullcontext():
+            if isinstance(self.backend.clock, TwinClock):
+                self.backend.clock.align()
+            run_loop(
+                self.backend,
+                controller,
+                period=self.period,
+                until=until,
+                estimator=estimator,
+                rollouts=rollouts,
+                report=self.loop,
+                recorder=self.telemetry,
+            )
 
     def _record_last(self) -> None:
         """Publish what was seen in the tick that ended the run, too."""

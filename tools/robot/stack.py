@@ -2,33 +2,30 @@
 
 import logging
 from dataclasses import dataclass
-from itertools import count
-from pathlib import Path
 from typing import Literal
 
 import windup.sim_twin.wire as wire
 from windup.control.loop import Estimator
 from windup.hal.errors import UsageError
 from windup.hal.guard import GuardedBackend, HealthWatch, SafetyLimits
-from windup.hal.imu.bno08x_rvc import Bno08xRvc
 from windup.hal.imu.opencr import OpenCr
+from windup.hal.imu.source import ImuSource
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
 from windup.hal.torque_state import TorqueState
 from windup.robots import RobotDescription
 from windup.sim_twin.backend import TwinBackend
 from windup.sim_twin.environment import Environment
-from windup.sim_twin.imu_errors import OPENCR, ImuErrors
+from windup.sim_twin.imu_errors import ImuErrors, imu_on_twin
 from windup.sim_twin.sensors import Sensors
 from windup.sim_twin.twin import Twin
 from windup.tools.assembly.build import build_estimator
 from windup.tools.assembly.shape import can_estimate
+from windup.tools.robot.emulated import forget_world, in_a_world, twin_behind
 from windup.tools.robot.noisy_start import begin_noisily
+from windup.tools.robot.port_urls import IMU, TWIN, has_own_connection, port_urls
 from windup.tools.robot.twin_state_source import TwinStateSource
 
 State = Literal["true", "estimated"]
-TWIN = "twin://"
-IMU = "imu"  # name of the port of an IMU that is on no servo bus
-_worlds = count()
 
 
 @dataclass(frozen=True)
@@ -67,6 +64,36 @@ class Stack:
             wire.drop_world(self.world)
 
 
+def open_stack(
+    robot: RobotDescription,
+    port: str | None,
+    *,
+    state: State | None,
+    arm: bool,
+    paced: bool,
+    delay: float | None,
+    noise: float,
+    seed: int,
+    world: Environment | None,
+) -> Stack:
+    """Return a stack on the robot's twin, or on a port where one is given; see those.
+
+    Raises:
+        WindupError: It cannot be.
+    """
+    if port is not None:
+        return wire_stack(robot, port, state=state, arm=arm, noise=noise, seed=seed, around=world)
+    return twin_stack(
+        robot,
+        state=state or "true",
+        paced=paced,
+        delay=delay,
+        noise=noise,
+        seed=seed,
+        world=world,
+    )
+
+
 def twin_stack(
     robot: RobotDescription,
     *,
@@ -88,8 +115,9 @@ def twin_stack(
     twin = Twin(robot, delay=delay, world=world)
     twin.reset(noise=noise, seed=seed)
     true = state == "true"
-    errors = None if true else ImuErrors(OPENCR, twin.timestep, seed)
-    estimator = None if true else build_estimator(robot, OPENCR.lag)
+    felt = imu_on_twin(robot)
+    errors = None if true else ImuErrors(felt, twin.timestep, seed)
+    estimator = None if true else build_estimator(robot, felt.lag)
     backend = _guarded(TwinBackend(twin, paced=paced, true_base=true, imu_errors=errors), robot)
     delay = robot.drive.command_delay if delay is None else delay
     return Stack(backend, twin, estimator, delay + robot.drive.sensor_delay)
@@ -124,30 +152,27 @@ def wire_stack(
     given, emulated = port, port.startswith(TWIN)
     world = ""
     if emulated:
-        port, world = _in_a_world(robot, port, around)
+        port, world = in_a_world(robot, port, around)
     elif around is not None:
         raise UsageError("only a twin has another ground or plant; leave --port away")
     servos = servo_backend(robot, port)
     backend = _guarded(servos, robot, given)
     try:
         backend.connect()
-        twin = _twin_behind(world) if emulated else None
-        sensor = servos.board or servos.imu
-        estimator = _estimator(robot, twin, state, 0.0 if sensor is None else sensor.lag)
+        twin = twin_behind(world) if emulated else None
+        estimator = _estimator(robot, twin, state)
         if twin is not None:
             begin_noisily(world, twin, noise, seed)
         backend.configure()
     except BaseException:
         backend.disconnect()
-        _forget_world(world, given)
+        forget_world(world, given)
         raise
     delay = robot.drive.wire_delay
     return Stack(backend, twin, estimator, delay, True, arm or emulated, world, given)
 
 
-def _estimator(
-    robot: RobotDescription, twin: Twin | None, state: State | None, lag: float
-) -> Estimator | None:
+def _estimator(robot: RobotDescription, twin: Twin | None, state: State | None) -> Estimator | None:
     """Return what fills in the base state behind a port; no servo bus carries foot switches."""
     if state is None and not can_estimate(robot):
         if not robot.fixed:
@@ -156,8 +181,14 @@ def _estimator(
             )
         return None
     if state != "true":
-        apart = not _imu_on_the_bus(robot)
-        return build_estimator(robot, lag, switches=False, attitude=apart)
+        kind = robot.imu_kind
+        return build_estimator(
+            robot,
+            0.0 if kind is None else kind.lag,
+            switches=False,
+            attitude=kind is not None and not kind.gyroscope,
+            apart=has_own_connection(kind),
+        )
     if twin is None:
         raise UsageError("--state true needs a twin; a robot has `--state estimated`")
     return TwinStateSource(Sensors(twin))
@@ -167,14 +198,14 @@ def torque_off(robot: RobotDescription, port: str) -> TorqueState:
     """Switch all torque of `robot` off, whatever state it is in; return what was read back."""
     given, world = port, ""
     if port.startswith(TWIN):
-        port, world = _in_a_world(robot, port)
+        port, world = in_a_world(robot, port)
     backend = servo_backend(robot, port)
     try:
         backend.connect()
         return backend.set_torque(False)
     finally:
         backend.disconnect()
-        _forget_world(world, given)
+        forget_world(world, given)
 
 
 def servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
@@ -187,97 +218,27 @@ def servo_backend(robot: RobotDescription, port: str) -> ServoBackend:
     if len(mounts) < len(robot.joints):
         raise UsageError(f"{robot.name} has no servos on a wire; leave --port away")
     bauds = {bus.name: bus.baud for bus in robot.buses}
-    urls = _urls(robot, port)
-    imu = urls.pop(IMU, None)
+    urls = port_urls(robot, port)
+    board, imu = _imu(robot, urls.pop(IMU, None))
     return ServoBackend(
         robot.joints,
         mounts,
         {name: BusPort(url, bauds[name]) for name, url in urls.items()},
         supply=robot.drive.supply,
-        board=OpenCr(robot.buses[0].name) if _imu_on_the_bus(robot) else None,
-        imu=Bno08xRvc(imu) if imu is not None else None,
+        board=board,
+        imu=imu,
         contacts=len(robot.contacts.names),
     )
 
 
-def check_port(robot: RobotDescription, port: str) -> None:
-    """Raise what is wrong with a port of `robot`, before it is opened.
-
-    Raises:
-        UsageError: It does not fit the robot, or a number in a twin:// URL cannot be.
-    """
-    if any(servo is None for servo in robot.servos):
-        raise UsageError(f"{robot.name} has no servos on a wire; leave --port away")
-    for url in _urls(robot, port).values():
-        if url.startswith(TWIN):
-            wire.parse_address(url)
-
-
-def _imu_on_the_bus(robot: RobotDescription) -> bool:
-    """An OP3's IMU hangs on the servo bus; other robots have a BNO08x on a port of its own."""
-    return robot.imu is not None and robot.buses[0].protocol == "dynamixel2"
-
-
-def _urls(robot: RobotDescription, port: str) -> dict[str, str]:
-    """Return the URL of each bus, and of the IMU where it has a port of its own.
-
-    Raises:
-        UsageError: The robot has no bus, a bus has no URL, or a name is no bus of the robot.
-    """
-    names = [bus.name for bus in robot.buses]
-    if not names:
-        raise UsageError(f"{robot.name} has no servos on a bus; leave --port away for its twin")
-    apart = robot.imu is not None and not _imu_on_the_bus(robot)
-    first, equals, _ = port.partition("=")
-    if equals and first in names:
-        given = dict(part.partition("=")[::2] for part in port.split(","))
-        if set(given) - {IMU} != set(names):
-            raise UsageError(f"--port names {', '.join(given)}; the buses are {', '.join(names)}")
-        return given
-    if equals and first.isidentifier():
-        wanted = " or ".join(f"--port {name}=URL" for name in names)
-        raise UsageError(f"{robot.name} has no bus {first!r}; give {wanted}")
-    if port.startswith(TWIN):
-        also = [*names, IMU] if apart else names
-        if len(also) == 1:
-            return {names[0]: port}
-        return {name: f"{port}{'&' if '?' in port else '?'}bus={name}" for name in also}
-    if len(names) > 1:
-        wanted = ",".join(f"{name}=URL" for name in names)
-        raise UsageError(f"{robot.name} has several buses; give --port {wanted}")
-    return {names[0]: port}
-
-
-def _in_a_world(
-    robot: RobotDescription, port: str, around: Environment | None = None
-) -> tuple[str, str]:
-    """Return a twin:// URL that names its world, and the name if it is ours to forget.
-
-    Raises:
-        UsageError: It names another robot, or a world that has its ground and plant already.
-    """
-    address = wire.parse_address(port)
-    if address.robot != robot.name and Path(address.robot).resolve() != robot.folder.resolve():
-        raise UsageError(f"the port is a twin of {address.robot!r}, the robot is {robot.name!r}")
-    if address.world and around is not None:
-        raise UsageError(f"world {address.world!r} may be others' too; leave world= away")
-    if address.world:
-        return port, address.world
-    name = f"{robot.name}-{next(_worlds)}"
-    if around is not None:
-        wire.put_world(name, wire.build_world(address, around), address.clock)
-    return f"{port}{'&' if '?' in port else '?'}world={name}", name
-
-
-def _forget_world(world: str, port: str) -> None:
-    """Forget a world that was made for `port`, which names none of its own."""
-    if world and not wire.parse_address(port).world:
-        wire.drop_world(world)
-
-
-def _twin_behind(world: str) -> Twin | None:
-    owned = wire.find_world(world).owned
-    return next((item for item in owned if isinstance(item, Twin)), None)
+def _imu(robot: RobotDescription, url: str | None) -> tuple[OpenCr | None, ImuSource | None]:
+    """Return the driver of the robot's IMU: a board's, or one with a connection at `url`."""
+    kind = robot.imu_kind
+    if kind is None or not has_own_connection(kind):
+        return (None if kind is None else OpenCr(robot.buses[0].name, mounting=kind.mounting)), None
+    if url is None or kind.driver is None:
+        return None, None
+    return None, kind.driver(url, kind.mounting)
 
 
 def _guarded(

@@ -46,7 +46,7 @@ class Start:
 
     def __init__(self, robot: RobotDescription, stack: Stack) -> None:
         self.robot, self.stack, self.backend = robot, stack, stack.backend
-        model, safety = robot.spec().compile(), robot.safety
+        model, safety = robot.model, robot.safety
         share = spread(safety.first_stiffness, leg_joints(robot, model))
         feet = [foot.body for foot in robot.feet]
         known = not (robot.fixed or robot.passive)

@@ -28,7 +28,7 @@ def harmless_swing(robot: RobotDescription) -> Swing:
     Raises:
         UsageError: No joint can move by a degree.
     """
-    model = robot.spec().compile()
+    model = robot.model
     feet = [model.body(foot.body).id for foot in robot.feet]
     bearing = {body for foot in feet for body in _up_to_the_world(model, foot)}
     bodies = [int(model.joint(name).bodyid[0]) for name in robot.joints.names]

@@ -68,6 +68,10 @@ class Slowness:
             remedy = "a lower --rate" if self.library else "`--model library` or a lower --rate"
         return f"{who} is too slow for {self.rate_hz:g} Hz: try {remedy}"
 
+    def count_plans(self, plans: int, late: int, library: bool) -> None:
+        """Count the plans of a walk; did they come from learnt step models?"""
+        self.plans, self.late, self.library = self.plans + plans, self.late + late, library
+
     def merge(self, other: "Slowness") -> None:
         """Add the counts of another run."""
         self.ticks, self.missed = self.ticks + other.ticks, self.missed + other.missed

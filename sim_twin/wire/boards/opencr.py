@@ -11,9 +11,12 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from windup.hal.geometry.gravity import STANDARD_GRAVITY
+from windup.hal.imu.mounting import Mounting
+from windup.hal.imu.opencr import IN_OP3
 from windup.hal.joints import Array
 from windup.sim_twin.wire.device import Device
-from windup.sim_twin.wire.imu.imu import GRAVITY, ImuSource
+from windup.sim_twin.wire.imu.imu import ImuSource
 from windup.sim_twin.wire.servos.register_file import (
     BAD_ACCESS,
     BAD_INSTRUCTION,
@@ -25,8 +28,7 @@ from windup.sim_twin.wire.servos.register_file import (
 from windup.sim_twin.wire.servos.x_series import BAUD_RATES
 
 GYRO_UNIT = math.radians(2000.0 / 32800.0)  # rad/s per count
-ACCELERATION_UNIT = 2.0 / 32768.0 * GRAVITY  # m/s2 per count
-BODY_TO_CHIP = np.array([-1.0, -1.0, 1.0])  # axis signs of gyro and accelerometer
+ACCELERATION_UNIT = 2.0 / 32768.0 * STANDARD_GRAVITY  # m/s2 per count
 MODE_BUTTON, START_BUTTON, USER_BUTTON = 0x01, 0x02, 0x04
 PRESENT = (30, 49)
 
@@ -65,6 +67,7 @@ class OpenCr:
         baud: Baud rate.
         supply: Battery voltage, V.
         powered: Whether the servos are powered from the start; on the robot they are not.
+        mounting: Orientation of its chip in the body.
 
     Attributes:
         buttons: Bit mask of the pressed buttons.
@@ -79,8 +82,10 @@ class OpenCr:
         baud: int = 1_000_000,
         supply: float = 12.0,
         powered: bool = False,
+        mounting: Mounting = IN_OP3,
     ) -> None:
         self.imu, self.servos, self.supply = imu, tuple(servos), supply
+        self._chip = mounting.chip
         self.buttons = 0
         self.dead: list[Device] = []
         self.on_power: Callable[[bool], None] | None = None
@@ -151,8 +156,8 @@ class OpenCr:
     def sample(self) -> None:
         """Sample the IMU for the next `read`."""
         motion = self._motion
-        motion[0:3] = self.imu.angular_velocity * BODY_TO_CHIP / GYRO_UNIT
-        motion[3:6] = self.imu.acceleration * BODY_TO_CHIP / ACCELERATION_UNIT
+        motion[0:3] = self._chip(self.imu.angular_velocity) / GYRO_UNIT
+        motion[3:6] = self._chip(self.imu.acceleration) / ACCELERATION_UNIT
         motion[6:9] = 10.0 * np.degrees(roll_pitch_yaw(self.imu.orientation))
 
     def read(self, address: int, count: int, now: float) -> tuple[int, bytes]:

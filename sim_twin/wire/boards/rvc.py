@@ -13,17 +13,18 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Final
 
+from windup.hal.geometry.gravity import STANDARD_GRAVITY
 from windup.hal.joints import Array
 from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.bus.heard import Heard
 from windup.sim_twin.wire.device import Device
-from windup.sim_twin.wire.imu.imu import GRAVITY, ImuSource
+from windup.sim_twin.wire.imu.imu import ImuSource
 
 HEADER: Final = b"\xaa\xaa"
 BAUD: Final = 115_200
 PERIOD: Final = 0.01  # s
 ANGLE_UNIT = math.radians(0.01)  # rad
-ACCELERATION_UNIT = 1e-3 * GRAVITY  # m/s2
+ACCELERATION_UNIT = 1e-3 * STANDARD_GRAVITY  # m/s2
 BUFFER = 4096  # capacity of the host driver's receive buffer, bytes
 _BODY = struct.Struct("<B6h3x")
 

@@ -15,6 +15,7 @@ from windup.sim_twin.wire.bus.heard import Heard
 from windup.sim_twin.wire.bus.inbox import Burst, Inbox
 from windup.sim_twin.wire.bus.timing import Timing
 from windup.sim_twin.wire.device import Device
+from windup.sim_twin.wire.imu.bno055 import Bno055Registers
 from windup.sim_twin.wire.imu.imu_faults import FaultyImu
 from windup.sim_twin.wire.schedule import Schedule
 
@@ -100,6 +101,7 @@ class Bus:
         spoken: Protocol version of the frame being executed; devices with another version do not
             receive it. None: all devices have the same version.
         imu: IMU that a board on the bus reports, or that sends on the bus by itself.
+        chip: The IMU's registers where this is an I2C bus, which carries no servo bytes.
         tap: Called with the direction (">" from the host), the baud rate and each burst.
     """
 
@@ -120,6 +122,7 @@ class Bus:
         self.plugged, self.plugs = True, 0
         self.spoken: int | None = None
         self.imu: FaultyImu | None = None
+        self.chip: Bno055Registers | None = None
         self.tap: Callable[[str, int, Burst], None] | None = None
         self._dice = random.Random(0)
         self._baud = baud

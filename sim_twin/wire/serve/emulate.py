@@ -49,7 +49,6 @@ class Emulator:
 
     Attributes:
         outlets: The buses with their links.
-        slipped: Total time by which simulated time was delayed because the machine was too slow, s.
     """
 
     def __init__(
@@ -60,7 +59,6 @@ class Emulator:
     ) -> None:
         self.world = world
         self.outlets: list[Outlet] = []
-        self.slipped = 0.0
         self._wake_read, self._wake_write = os.pipe()
         self._running = True
         self._watcher = Watcher(world, journal, events)
@@ -159,10 +157,7 @@ class Emulator:
         Catching up would leave no time to receive, and the servos would run too fast.
         """
         late = now - self.world.physics_time
-        if late < SLIP:
-            return 0.0
-        self.slipped += late
-        return late
+        return 0.0 if late < SLIP else late
 
     def _wait(self, seconds: float, start: float) -> None:
         """Wait for bytes from a program for up to `seconds`, then receive them."""
@@ -203,6 +198,8 @@ def emulate(
 ) -> None:
     """Serve the world of an address, with one link for each bus, until `Emulator.stop`.
 
+    An IMU on I2C has no plug: other programs open only I2C buses of the kernel.
+
     Args:
         address: Address of the world.
         pty: Path of the pseudo-terminal; with several buses, the bus name is appended to it.
@@ -215,9 +212,10 @@ def emulate(
         raise UsageError("an emulated bus needs a --pty PATH or a --tcp PORT, one of them")
     emulator = Emulator(build_world(address), journal, events)
     with contextlib.closing(emulator):
-        for k, bus in enumerate(emulator.world.buses):
+        serial = [name for name, bus in emulator.world.buses.items() if bus.chip is None]
+        for k, bus in enumerate(serial):
             if pty is not None:
-                alone = len(emulator.world.buses) == 1
+                alone = len(serial) == 1
                 emulator.plug(bus, partial(Pty, pty if alone else Path(f"{pty}-{bus}")))
             elif tcp is not None:
                 emulator.plug(bus, partial(Tcp, tcp + k if tcp else free_port()))

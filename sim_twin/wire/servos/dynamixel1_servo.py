@@ -68,7 +68,6 @@ class Dynamixel1Servo(ByteServo):
         per_rad = servo.counts_per_rev / (2.0 * math.pi)
         loop = MotorLoop(servo, shaft, supply, per_rad, servo.middle)
         self._unit = model.speed_unit
-        self._pulls = False
         super().__init__(model.name, model.table(), loop, identifier, baud, **registers)
 
     @property

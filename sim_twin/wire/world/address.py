@@ -45,8 +45,8 @@ class Address:
             default.
         physics: Of a robot: "mujoco", its twin, or "inertia", where each servo drives a separate
             inertia.
-        imu: A BNO08x in UART-RVC mode on a port of its own, bus "imu": "rvc" or "none"; "auto": a
-            robot has one unless its servo bus has a board with an IMU.
+        imu: IMU on its own port, bus "imu": "auto", the one in the robot's file; "rvc", a BNO08x in
+            UART-RVC mode; or "none".
     """
 
     robot: str

@@ -4,8 +4,6 @@ import math
 from dataclasses import replace
 
 from windup.hal.errors import UsageError
-from windup.hal.imu.bno08x_rvc import Bno08xRvc
-from windup.hal.imu.opencr import OpenCr as Board
 from windup.hal.servos.servo_model import ServoMount
 from windup.robots import RobotDescription, load_robot
 from windup.sim_twin.environment import Environment
@@ -64,16 +62,10 @@ def robot_world(address: Address, around: Environment | None = None) -> BusWorld
     return world
 
 
-def _has_board(robot: RobotDescription) -> bool:
-    """Return whether the robot's IMU is on an OpenCR board on its first bus."""
-    return robot.imu is not None and robot.buses[0].protocol == "dynamixel2"
-
-
 def _motion(robot: RobotDescription, twin: Twin | None) -> ImuSource:
     """Return the motion that the robot's IMU measures: its twin's, or rest without a twin."""
-    if twin is None or robot.imu is None:
-        return RestingImu()
-    return TwinImu(twin, Board(robot.buses[0].name).lag if _has_board(robot) else Bno08xRvc.lag)
+    kind = robot.imu_kind
+    return RestingImu() if twin is None or kind is None else TwinImu(twin, kind.lag)
 
 
 def _add_buses(
@@ -84,17 +76,20 @@ def _add_buses(
     supply: float,
 ) -> None:
     """Add the robot's buses with their servos and board, and the port of a separate IMU."""
-    address, first, board = shop.address, robot.buses[0], _has_board(robot)
+    address, first, kind = shop.address, robot.buses[0], robot.imu_kind
     felt = FaultyImu(source, shop.schedule)
-    if board:
-        servos, on = hung[first.name], address.power == "on"
-        servos.append(OpenCr(felt, [*servos], address.baud or first.baud, supply, powered=on))
+    board = kind is not None and kind.wiring == "board"
+    if kind is not None and board:
+        servos, on, baud = hung[first.name], address.power == "on", address.baud or first.baud
+        servos.append(OpenCr(felt, [*servos], baud, supply, powered=on, mounting=kind.mounting))
     for bus in robot.buses:
         shop.bus(bus.name, hung[bus.name], make_language(bus.protocol), address.baud or bus.baud)
     if board:
         shop.buses[first.name].imu = felt
-    if address.imu == "rvc" or (address.imu == "auto" and robot.imu is not None and not board):
+    if address.imu == "rvc":
         shop.imu(source)
+    elif address.imu == "auto" and kind is not None and not board:
+        shop.imu(source, kind)
 
 
 def _hang_servos(

@@ -1,12 +1,16 @@
 """Builds the buses of one world, with the objects that they share."""
 
+from windup.hal.imu.bno08x_rvc import BNO08X_RVC
+from windup.hal.imu.kind import ImuKind
+from windup.hal.imu.mounting import STRAIGHT
 from windup.sim_twin.wire.boards.rvc import BAUD as RVC_BAUD
 from windup.sim_twin.wire.boards.rvc import Mute, start_rvc
 from windup.sim_twin.wire.bus.bus import Bus, Language
 from windup.sim_twin.wire.bus.timing import Timing
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.faults.faults import Faults
-from windup.sim_twin.wire.imu.imu import ImuSource
+from windup.sim_twin.wire.imu.bno055 import Bno055Registers
+from windup.sim_twin.wire.imu.imu import ImuSource, MountedImu
 from windup.sim_twin.wire.imu.imu_faults import FaultyImu
 from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.world.address import Address
@@ -39,11 +43,16 @@ class Workshop:
         self.buses[name] = bus
         return bus
 
-    def imu(self, source: ImuSource) -> None:
-        """Add the port of an IMU that streams by itself."""
+    def imu(self, source: ImuSource, kind: ImuKind = BNO08X_RVC) -> None:
+        """Add the port of an IMU that streams by itself, or the I2C bus of one that is polled."""
         bus = self.bus(IMU, [], Mute(), RVC_BAUD)
+        if kind.mounting.axes != STRAIGHT:
+            source = MountedImu(source, kind.mounting)
         bus.imu = FaultyImu(source, self.schedule)
-        start_rvc(bus, bus.imu)
+        if kind.wiring == "i2c":
+            bus.chip = Bno055Registers(bus.imu, self.schedule)
+        else:
+            start_rvc(bus, bus.imu)
 
     def world(self, physics: Physics, supply: float, owned: tuple[object, ...] = ()) -> BusWorld:
         """Return the world with the buses added so far."""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from windup.control.estimation.posture import Posture, PostureSense
-from windup.control.estimation.tilt_filter import GRAVITY
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
 from windup.hal.observation import ImuState, JointState, Observation
 from windup.robots import RobotDescription

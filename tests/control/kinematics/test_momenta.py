@@ -2,12 +2,12 @@ import numpy as np
 import pytest
 
 from windup.control.kinematics.momenta import (
-    GRAVITY,
     Momenta,
     capture_point,
     centre_of_pressure,
     desired_cp,
 )
+from windup.hal.geometry.gravity import GRAVITY
 
 STILL = Momenta(3.0, np.array([0.1, -0.2, 0.25]), np.zeros(3), np.zeros(3))
 

@@ -58,10 +58,27 @@ def test_the_rest_of_a_step_has_models_of_its_own() -> None:
 
 
 def test_what_is_written_is_read_again(tmp_path: Path) -> None:
-    learnt(0.0, 0.1).write(tmp_path / "walk.models.json", *NAMES)
+    path = tmp_path / "walk.models.json"
+    models = learnt(0.0, 0.1)
+    models.commands.append("windup walk op3 --speed 0.1")
+    path.write_text(models.file(*NAMES, rate_hz=125.0).text())
     again = LearntModels(complete=True)
-    again.read(tmp_path / "walk.models.json", *NAMES)
+    again.read(path, *NAMES)
     assert again.recall(0, np.array([0.09, 0.0])) == pytest.approx(1.1 * J)
+    assert again.file(*NAMES, rate_hz=125.0) == models.file(*NAMES, rate_hz=125.0)
+
+
+def test_a_file_has_one_model_a_line_and_says_how_it_was_made() -> None:
+    models = learnt(0.0, 0.1, 0.2)
+    models.commands.append("windup walk op3 --speed 0.1")
+    lines = models.file(*NAMES, rate_hz=125.0).text().splitlines()
+    assert sum(line.startswith(' {"phase":0,') for line in lines) == 3
+    assert lines[1:4] == [
+        '"gait": "0123456789abcdef",',
+        '"commands": ["windup walk op3 --speed 0.1"],',
+        '"rate_hz": 125.0,',
+    ]
+    assert json.loads("".join(lines))["models"][2]["start"] == [0.2, 0.0]
 
 
 @pytest.mark.parametrize(

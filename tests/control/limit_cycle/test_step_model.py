@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from windup.control.limit_cycle.step_model import Sampling, StepModel
+from windup.control.limit_cycle.step_model import StepModel
+from windup.control.pose_graph.gait_file import Sampling
 from windup.hal.joints import Array, Mask
 
 NOMINAL = np.array([0.3, -0.2])

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from windup.control.kinematics.body import heading
-from windup.control.regulation.variables import GRAVITY, StepEnd, regulation_variables
+from windup.control.regulation.variables import StepEnd, regulation_variables
 from windup.hal.controller import Outcomes
 from windup.hal.errors import UnknownNameError
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
 
 

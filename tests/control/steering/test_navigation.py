@@ -5,7 +5,6 @@ from math import cos, pi, radians, sin
 import numpy as np
 import pytest
 
-from windup.control.steering.course import wrapped
 from windup.control.steering.guide import Guide, Place
 from windup.control.steering.navigation import (
     Agility,
@@ -16,6 +15,7 @@ from windup.control.steering.navigation import (
     square,
 )
 from windup.hal.errors import UsageError
+from windup.hal.geometry.angles import wrapped
 from windup.hal.joints import Array
 from windup.tools.assembly.route import read_path
 

@@ -3,9 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from windup.control.kinematics.momenta import GRAVITY
 from windup.control.whole_body.dynamics import Dynamics
 from windup.control.whole_body.whole_body import FASTEST, Objectives, Weights, WholeBody
+from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.observation import BaseState, JointState, Observation
 from windup.robots import load_robot
 

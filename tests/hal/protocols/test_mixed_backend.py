@@ -8,9 +8,9 @@ import pytest
 from tests.hal.fake_bus1 import AX, MX, SCS, STS
 from tests.hal.mixed_robot import Wires, mount, robot, ticks
 from windup.hal.command import JointCommand
-from windup.hal.coupling import Coupling
 from windup.hal.errors import ConfigError, HardwareError
 from windup.hal.protocols.protocol1 import Instruction
+from windup.hal.servo_bus.coupling import Coupling
 from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoModel
 
@@ -101,8 +101,8 @@ def test_an_ax_has_its_stiffness_in_slopes_of_powers_of_two() -> None:
     backend = robot(wires, [mount(AX, "body", 1), mount(MX, "body", 2)], supply=12.0)
     backend.connect()
     backend.configure()
-    command = JointCommand.hold(backend.joints, np.zeros(2))
-    command.stiffness[:] = AX.stiffness(60, 12.0), MX.stiffness(60, 12.0)
+    stiffness = np.array([AX.stiffness(60, 12.0), MX.stiffness(60, 12.0)])
+    command = JointCommand.of(backend.joints, position=0.0, stiffness=stiffness)
     real = backend.write(command)
     assert wires["body"].show(1, "compliance_slopes") == 16 * 257
     assert wires["body"].show(2, "position_p_gain") == 60
@@ -115,9 +115,8 @@ def test_feed_forward_counts_on_the_stiffness_that_the_slopes_really_make() -> N
     backend.connect()
     backend.configure()
     backend.set_torque(True)
-    command = JointCommand.hold(backend.joints, np.zeros(1))
-    command.stiffness[:] = AX.stiffness(50, 12.0)  # the next slope makes 64 of it
-    command.torque[:] = 0.3
+    stiffness = AX.stiffness(50, 12.0)  # the next slope makes 64 of it
+    command = JointCommand.of(backend.joints, position=0.0, torque=0.3, stiffness=stiffness)
     real = backend.write(command)
     assert real.stiffness[0] == pytest.approx(AX.stiffness(64, 12.0))
     count = 2 * pi / AX.counts_per_rev

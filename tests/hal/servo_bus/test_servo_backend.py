@@ -67,8 +67,8 @@ def test_write_returns_what_the_servos_make_of_it() -> None:
 
 def test_feed_forward_shifts_the_goal() -> None:
     robot = Robot().up()
-    command = JointCommand.hold(robot.backend.joints, np.zeros(4))
-    command.torque[0] = 1.8876
+    torque = np.array([1.8876, 0.0, 0.0, 0.0])
+    command = JointCommand.of(robot.backend.joints, position=0.0, torque=torque)
     robot.backend.write(command)
     assert robot.serial.get(1, 116, 4) == round(2048 + 0.1 / COUNT)
 
@@ -88,8 +88,7 @@ def test_gains_are_sent_only_when_they_change() -> None:
     before = len(robot.serial.requests)
     robot.backend.write(hold)
     assert len(robot.serial.requests) == before + 1
-    softer = JointCommand(hold.block.copy())
-    softer.stiffness[:] /= 2
+    softer = JointCommand.of(robot.backend.joints, position=0.0, stiffness=hold.stiffness / 2)
     robot.backend.write(softer)
     assert len(robot.serial.requests) == before + 3
     assert robot.serial.get(1, 84, 2) == 400

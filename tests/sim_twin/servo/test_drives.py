@@ -35,9 +35,7 @@ def test_stiffness_is_rounded_to_p_registers_and_damping_is_the_motors_own(
     op3: RobotDescription,
 ) -> None:
     servos, twin = drive(op3)
-    command = hold(op3)
-    command.block[3] = 10.0
-    command.block[4] = 0.0
+    command = JointCommand.of(op3.joints, position=op3.stance, stiffness=10.0, damping=0.0)
     real = servos.write(command, twin.data.ctrl)
     servo = op3.servos[0]
     assert servo is not None
@@ -50,9 +48,7 @@ def test_stiffness_is_rounded_to_p_registers_and_damping_is_the_motors_own(
 
 def test_feed_forward_becomes_a_shifted_goal(op3: RobotDescription) -> None:
     servos, twin = drive(op3)
-    command = hold(op3)
-    command.block[1] = 0.5
-    command.block[2] = -0.3
+    command = JointCommand.of(op3.joints, position=op3.stance, velocity=0.5, torque=-0.3)
     real = servos.write(command, twin.data.ctrl)
     assert np.abs(real.position - shifted_goal(command)).max() <= COUNT / 2
     assert np.abs(real.position - command.position).max() > 3 * COUNT
@@ -65,8 +61,8 @@ def test_gains_are_sent_only_when_they_change(op3: RobotDescription) -> None:
     for position in (0.0, 0.1, 0.2):
         servos.write(hold(op3, op3.stance + position), twin.data.ctrl)
     assert servos.sent_gains == 1
-    command = hold(op3)
-    command.block[3, 4] *= 0.5
+    softer = op3.joints.stiffness * np.where(np.arange(len(op3.joints)) == 4, 0.5, 1.0)
+    command = JointCommand.of(op3.joints, position=op3.stance, stiffness=softer)
     servos.write(command, twin.data.ctrl)
     assert servos.sent_gains == 2
 
@@ -113,8 +109,8 @@ def test_rollouts_are_as_stiff_as_the_twin_at_any_supply(
 
 def test_ideal_joints_do_exactly_what_they_are_told(human: RobotDescription) -> None:
     backend = TwinBackend(Twin(human))
-    command = hold(human)
-    command.block[:] = np.random.default_rng(0).uniform(0.1, 1.0, command.block.shape)
+    shape = hold(human).block.shape
+    command = JointCommand(np.random.default_rng(0).uniform(0.1, 1.0, shape))
     np.testing.assert_array_equal(backend.write(command).block, command.block)
 
 
@@ -135,11 +131,15 @@ def test_the_humans_torque_law_holds_at_every_physics_step(human: RobotDescripti
 
     twin.on_step = check
     for _ in range(20):
-        command = hold(human, human.stance + rng.normal(0.0, 0.1, len(human.joints)))
-        command.block[1] = rng.normal(0.0, 0.5, len(human.joints))
-        command.block[2] = rng.normal(0.0, 5.0, len(human.joints))
-        command.block[3] *= rng.uniform(0.5, 1.0)
-        command.block[4] *= rng.uniform(0.5, 1.0)
+        n, joints = len(human.joints), human.joints
+        command = JointCommand.of(
+            joints,
+            position=human.stance + rng.normal(0.0, 0.1, n),
+            velocity=rng.normal(0.0, 0.5, n),
+            torque=rng.normal(0.0, 5.0, n),
+            stiffness=joints.stiffness * rng.uniform(0.5, 1.0),
+            damping=joints.damping * rng.uniform(0.5, 1.0),
+        )
         backend.write(command)
         twin.step(8)
     assert len(worst) == 160

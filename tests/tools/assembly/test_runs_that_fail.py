@@ -32,8 +32,9 @@ class Trouble:
 
 class NotANumber(Trouble):
     def trouble(self, command: JointCommand) -> JointCommand:
-        command.block[0, 3] = np.nan
-        return command
+        block = command.block.copy()
+        block[0, 3] = np.nan
+        return JointCommand(block)
 
 
 class Crash(Trouble):
@@ -91,9 +92,7 @@ def test_nan_in_mid_walk_is_status_1(shell: Windup, monkeypatch: pytest.MonkeyPa
 
         def broken(observation: Observation, dt: float) -> JointCommand:
             command = step(observation, dt)
-            if observation.time > 0.5:
-                command.block[0, 0] = np.nan
-            return command
+            return command.at(np.full(20, np.nan)) if observation.time > 0.5 else command
 
         walker.step = broken  # type: ignore[method-assign]
         return walker
@@ -133,7 +132,7 @@ def test_a_stop_that_fails_in_a_diverged_twin_does_not_hide_why(
             if observation.time > 0.1:
                 robot.twin.data.qvel[8] = np.nan
 
-        robot.watch = watch
+        robot.watch.append(watch)
         with pytest.raises(DivergedError, match=r"the twin diverged at 0\.10\d s"):
             robot.stand()
         assert robot.loop.reason.startswith("the twin diverged at 0.10")
@@ -149,7 +148,7 @@ def test_an_interrupted_walk_reports_what_was_measured() -> None:
             if observation.time > 1.2:
                 raise KeyboardInterrupt
 
-        robot.watch = watch
+        robot.watch.append(watch)
         with pytest.raises(RunInterruptedError) as stopped_by:
             robot.walk(steps=40)
         result = stopped_by.value.report.result()
@@ -167,7 +166,7 @@ def test_a_walk_interrupted_before_its_first_step_has_all_its_keys() -> None:
         def watch(observation: Observation) -> None:
             raise KeyboardInterrupt
 
-        robot.watch = watch
+        robot.watch.append(watch)
         with pytest.raises(RunInterruptedError) as stopped_by:
             robot.walk(steps=40)
         result = stopped_by.value.report.result()

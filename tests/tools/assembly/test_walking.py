@@ -1,3 +1,4 @@
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -211,7 +212,27 @@ def test_a_graph_without_an_end_is_played_for_five_seconds() -> None:
         def watch(observation: object) -> None:
             assert robot.twin.time < 6.0, "it plays for ever"
 
-        robot.watch = watch
+        robot.watch.append(watch)
         report = robot.play("squat")
         assert report.sim_time == pytest.approx(5.0, abs=0.02)
         assert not robot.fallen
+
+
+def test_several_look_on_and_one_may_take_itself_off() -> None:
+    seen: list[str] = []
+    steps: list[tuple[int, int]] = []
+    with Robot.open("op3") as robot:
+
+        def once(observation: object) -> None:
+            seen.append("once")
+            robot.watch.remove(once)
+
+        robot.watch += [once, lambda _: seen.append("always")]
+
+        def noting(who: int) -> Callable[[int, float], None]:
+            return lambda number, speed: steps.append((who, number))
+
+        open_loop = WalkOptions(open_loop=True)
+        robot.walk(steps=2, options=open_loop, on_step=[noting(1), noting(2)])
+    assert seen[:3] == ["once", "always", "always"] and "once" not in seen[1:]
+    assert steps == [(1, 1), (2, 1), (1, 2), (2, 2)]

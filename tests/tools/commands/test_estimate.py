@@ -36,7 +36,7 @@ def test_an_estimate_over_its_limits_fails(monkeypatch: pytest.MonkeyPatch) -> N
 def test_op3_walks_on_its_own_sensors(
     switches: bool, rate: float | None, delay: float | None
 ) -> None:
-    from windup.sim_twin.imu_errors import OPENCR
+    from windup.hal.imu.opencr import OPENCR
     from windup.tools.assembly.build import build_estimator
 
     with Robot.open("op3", rate=rate, delay=delay, noise=0.2, state="estimated") as robot:

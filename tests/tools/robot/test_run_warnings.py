@@ -106,7 +106,7 @@ def test_late_plans_are_counted_though_the_walk_fails() -> None:
             if robot.twin.time > 0.5:
                 raise ZeroDivisionError("somebody's own watch")
 
-        robot.watch = watch
+        robot.watch.append(watch)
         with pytest.raises(Exception, match="somebody's own watch"):
             robot.walk(steps=5, options=WalkOptions())
         assert robot.slowness.plans >= 1 and robot.slowness.ticks > 100

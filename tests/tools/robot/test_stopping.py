@@ -135,7 +135,7 @@ def test_ctrl_c_in_a_stop_keeps_torque_off_afterwards(
 
 def test_ctrl_c_stops_a_run_in_another_thread(bus: ServoBus) -> None:
     robot, begun = bus.robot(), Event()
-    robot.watch = lambda observation: begun.set()
+    robot.watch.append(lambda observation: begun.set())
     with ThreadPoolExecutor() as executor:
         run = executor.submit(robot.stand, 3600.0)
         assert begun.wait(20.0)
@@ -155,7 +155,7 @@ def test_whatever_a_callback_raises_stops_the_robot(
     def watch(observation: Observation) -> None:
         raise error
 
-    robot.watch = watch
+    robot.watch.append(watch)
     with pytest.raises(error):
         robot.stand(1.0)
     assert error.__name__ in robot.loop.reason
@@ -168,7 +168,7 @@ def test_a_run_in_a_run_is_refused_and_stops_the_robot(bus: ServoBus) -> None:
     def watch(observation: Observation) -> None:
         robot.stand(0.2)
 
-    robot.watch = watch
+    robot.watch.append(watch)
     with pytest.raises(UsageError, match="in a run already"):
         robot.stand(1.0)
     assert not driving(bus)
@@ -176,7 +176,7 @@ def test_a_run_in_a_run_is_refused_and_stops_the_robot(bus: ServoBus) -> None:
 
 def test_a_run_beside_a_run_is_refused(bus: ServoBus) -> None:
     robot, begun = bus.robot(), Event()
-    robot.watch = lambda observation: begun.set()
+    robot.watch.append(lambda observation: begun.set())
 
     def run() -> None:
         with pytest.raises(KeyboardInterrupt):
@@ -194,7 +194,7 @@ def test_a_run_beside_a_run_is_refused(bus: ServoBus) -> None:
 
 def test_a_run_that_stops_the_robot_itself_ends(bus: ServoBus) -> None:
     robot = bus.robot()
-    robot.watch = lambda observation: robot.stop()
+    robot.watch.append(lambda observation: robot.stop())
     with pytest.raises(RunInterruptedError, match=r"robot\.stop\(\)"):
         robot.stand(3600.0)
     assert not robot.armed and not driving(bus)
@@ -219,7 +219,7 @@ def test_a_forked_child_leaves_its_parents_robot_alone(bus: ServoBus) -> None:
 
 def test_a_stop_in_the_first_motion_goes_limp(bus: ServoBus) -> None:
     robot: Robot = bus.robot()
-    robot.watch = lambda observation: robot.stop()
+    robot.watch.append(lambda observation: robot.stop())
     began = bus.clock.now()
     with pytest.raises(RunInterruptedError):
         robot.stand(3600.0)

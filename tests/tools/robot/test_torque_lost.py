@@ -38,7 +38,7 @@ def stands_until(bus: ServoBus, robot: Robot, error: type[WindupError], text: st
     def watch(observation: Observation) -> None:
         seen[0] = observation.time
 
-    robot.watch = watch
+    robot.watch.append(watch)
     with pytest.raises(error, match=text):
         robot.stand(5.0)
     return bus.clock.now() - seen[0]

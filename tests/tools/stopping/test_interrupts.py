@@ -100,10 +100,10 @@ def interrupted(robot: Robot, at: float = 2.2, times: int = 1) -> None:
 
     def watch(observation: Observation) -> None:
         if observation.time > at:
-            robot.watch = None
+            robot.watch.clear()
             press(times=times)
 
-    robot.watch = watch
+    robot.watch.append(watch)
 
 
 def test_ctrl_c_stops_the_robot_then_raises_with_the_report() -> None:
@@ -151,7 +151,7 @@ def test_a_run_in_another_thread_is_ended_by_stop() -> None:
         ended: list[BaseException] = []
 
         def run() -> None:
-            robot.watch = lambda observation: began.set()
+            robot.watch.append(lambda observation: began.set())
             try:
                 robot.stand(1e6)
             except KeyboardInterrupt as error:

@@ -42,7 +42,7 @@ def pressing(bus: ServoBus, after: float) -> Callable[[Observation], None]:
 
 def test_a_button_ends_a_run_and_the_torque_goes_off() -> None:
     with ServoBus("op3") as bus, bus.robot() as robot:
-        robot.watch = pressing(bus, 0.5)
+        robot.watch.append(pressing(bus, 0.5))
         with pytest.raises(KeyboardInterrupt, match="stopped by the user button"):
             robot.stand(2.0)
         assert robot.loop.reason == "interrupted" and not robot.armed
@@ -104,7 +104,7 @@ def test_a_key_of_the_terminal_ends_a_run_on_a_real_port_and_the_lines_say_so(
         os.write(ours, b" ")
 
     with ServoBus("duck") as bus, bus.robot() as robot:
-        robot.watch = press
+        robot.watch.append(press)
         with pytest.raises(KeyboardInterrupt, match="stopped by the space bar"):
             robot.stand(60.0)
         assert not robot.armed

@@ -10,7 +10,6 @@ from windup.hal.observation import Observation
 from windup.tools.benches.safety.begin import Begin
 from windup.tools.benches.safety.moment import Activity
 from windup.tools.robot.robot import Robot
-from windup.tools.robot.session import Watch
 
 BY_ITSELF = "its walk ended by itself"
 FOR_EVER = 3600.0
@@ -24,25 +23,14 @@ Body = Callable[[Robot, Activity, Begin], None]
 def move(robot: Robot, activity: Activity, begin: Begin) -> None:
     """Stand, walk, or perform the closing crouch."""
     if activity == "walking":
-        robot.walk(steps=1000, on_step=lambda number, _: begin.now("walking"))
+        robot.walk(steps=1000, on_step=[lambda number, _: begin.now("walking")])
         raise WindupError(f"{BY_ITSELF}: {robot.loop.reason}")
     robot.stand(WARM_UP)
-    robot.watch = _beginning(activity, begin, robot.watch)
+    robot.watch.insert(0, lambda _: begin.now(activity))
     if activity == "closing crouch":
         robot.rest()
     else:
         robot.stand(FOR_EVER)
-
-
-def _beginning(activity: Activity, begin: Begin, watch: Watch | None) -> Watch:
-    """Return a watch that reports the beginning at the first tick, and then calls `watch`."""
-
-    def look(observation: Observation) -> None:
-        begin.now(activity)
-        if watch is not None:
-            watch(observation)
-
-    return look
 
 
 def _goes_on(robot: Robot, activity: Activity, begin: Begin) -> None:
@@ -89,7 +77,7 @@ def _nobody_reads(robot: Robot, activity: Activity, begin: Begin) -> None:
         if begin.due():
             os.write(writing, b"step\n")
 
-    robot.watch = watch
+    robot.watch.append(watch)
     move(robot, activity, begin)
 
 

@@ -38,7 +38,7 @@ class Broken:
         """
         joints = np.arange(len(robot.joints))
         if fault in IN_THE_FILE:
-            joints = np.flatnonzero(leg_joints(robot, robot.spec().compile()))
+            joints = np.flatnonzero(leg_joints(robot, robot.model))
         row = int(rng.integers(len(joints)))
         first, following = int(joints[row]), int(joints[(row + 1) % len(joints)])
         if fault != "swap":

@@ -86,7 +86,7 @@ def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Array]:
 
     The ankles are adjusted, as when a limp robot is put down by hand.
     """
-    model = robot.spec().compile()
+    model = robot.model
     data = mujoco.MjData(model)
     base, sites = model.body(robot.base).id, [model.site(foot.site).id for foot in robot.feet]
     feet = [foot.body for foot in robot.feet]
@@ -126,7 +126,7 @@ def _ankles(robot: RobotDescription) -> Array:
 
 def _leaning_back(robot: RobotDescription, pose: Array) -> Array:
     """Return the base orientation (4,) in which a robot sits on its seat and heels."""
-    model = robot.spec().compile()
+    model = robot.model
     sense = PostureSense(model, [foot.body for foot in robot.feet])
 
     def seat(lean: float) -> float:

@@ -79,7 +79,7 @@ def try_start(start: Start) -> dict[str, Any]:
         if broken is not None:
             _break(bus.world, broken)
         moved = _Moved(robot.twin, [] if broken is None else list(broken.joints))
-        robot.watch = moved.update
+        robot.watch.append(moved.update)
         row |= _run(robot, start.kind)
         row["moved"] = moved.most
         if broken is not None:

@@ -1,9 +1,11 @@
 """Section V: the inverted pendulum keeps walking, or halts, in any direction."""
 
+from math import degrees, radians
 from typing import Any
 
 import numpy as np
 
+from windup.hal.geometry.angles import wrapped
 from windup.tools.reproduce.kenwright.jobs import stride
 from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
 
@@ -46,19 +48,30 @@ def _split(results: Results) -> tuple[list[Result], list[Result], list[Result]]:
 
 def _off(leg: dict[str, Any]) -> float:
     """Return how far the measured heading is from the ordered one, degrees."""
-    away = (leg["measured_heading"] - leg["heading"] + 180.0) % 360.0 - 180.0
-    return float(abs(away))
+    return abs(degrees(wrapped(radians(leg["measured_heading"] - leg["heading"]))))
 
 
 def claims(results: Results) -> list[Claim]:
     """Judge walking, its direction, its halt, and other ground."""
     level, turning, rough = _split(results)
+    return [
+        *_straight(level),
+        _halts(level + turning),
+        _turning(turning),
+        Claim(
+            "uneven terrain: slopes and stairs",
+            f"{_good(rough)} of {len(rough)} walks on 4 degrees up and down and over 1 cm stay up",
+            "all",
+            _good(rough) == len(rough),
+        ),
+    ]
+
+
+def _straight(level: list[Result]) -> list[Claim]:
+    """Judge speed and direction of walks straight on."""
     legs = [leg for run in level for leg in run["legs"] if leg["measured_speed"] is not None]
     speeds = [leg["measured_speed"] for leg in legs]
     off = [_off(leg) for leg in legs]
-    late = [run["legs"][1] for run in turning if run["legs"][1]["measured_speed"] is not None]
-    new = [_off(leg) for leg in late]
-    faced = [abs(run["turned_deg"] - TURN) for run in turning]
     return [
         Claim(
             "a persistent stable walk in any direction",
@@ -74,27 +87,30 @@ def claims(results: Results) -> list[Claim]:
             f"{ASTRAY:g} degrees or less",
             all(away <= ASTRAY for away in off) if off else None,
         ),
-        Claim(
-            "it halts whenever it should",
-            f"{_good(level + turning)} of {len(level + turning)} stand still on both feet at the "
-            "end",
-            "all",
-            _good(level + turning) == len(level + turning),
-        ),
-        Claim(
-            "a new direction is taken on the way, and the feet turn with the body",
-            f"{max(new, default=np.nan):.0f} degrees off the new direction at most; the body ends "
-            f"{max(faced, default=np.nan):.0f} degrees off at most",
-            f"{ASTRAY:g} degrees or less",
-            all(away <= ASTRAY for away in new + faced) if new else None,
-        ),
-        Claim(
-            "uneven terrain: slopes and stairs",
-            f"{_good(rough)} of {len(rough)} walks on 4 degrees up and down and over 1 cm stay up",
-            "all",
-            _good(rough) == len(rough),
-        ),
     ]
+
+
+def _halts(runs: list[Result]) -> Claim:
+    return Claim(
+        "it halts whenever it should",
+        f"{_good(runs)} of {len(runs)} stand still on both feet at the end",
+        "all",
+        _good(runs) == len(runs),
+    )
+
+
+def _turning(runs: list[Result]) -> Claim:
+    """Judge walks that change their direction on the way."""
+    late = [run["legs"][1] for run in runs if run["legs"][1]["measured_speed"] is not None]
+    new = [_off(leg) for leg in late]
+    faced = [abs(run["turned_deg"] - TURN) for run in runs]
+    return Claim(
+        "a new direction is taken on the way, and the feet turn with the body",
+        f"{max(new, default=np.nan):.0f} degrees off the new direction at most; the body ends "
+        f"{max(faced, default=np.nan):.0f} degrees off at most",
+        f"{ASTRAY:g} degrees or less",
+        all(away <= ASTRAY for away in new + faced) if new else None,
+    )
 
 
 def _good(runs: list[Result]) -> int:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from windup.control.limit_cycle.balancer import Balancer
 from windup.hal.errors import DivergedError
 from windup.hal.observation import Observation
 from windup.tools.assembly.build import body_of, build_walk
@@ -51,18 +52,8 @@ def run_tour(
         asked = replace(asked, to=(to[0], to[1]))
     with Robot.open(robot, seed=seed, noise=NOISE) as machine:
         walker = build_walk(machine.description, asked, machine.predictor)
-        recorder = Recorder(body_of(machine.description), walker, traced=True)
-        gauges = Gauges(machine.description.contacts)
-        names, bend = machine.description.joints.names, list[float]()
-        bending = names.index(BEND) if BEND in names else 0
-
-        def watch(observation: Observation) -> None:
-            recorder.add(observation)
-            gauges.update(observation)
-            if len(recorder.trace) > len(bend):  # as often as it keeps a sample
-                bend.append(float(observation.joints.position[bending]))
-
-        machine.watch = watch
+        seen = _Seen(machine, walker)
+        machine.watch.append(seen.add)
         machine.start_at(walker.gait.file.start)
         try:
             machine.run(walker, until=WalkEnd(walker, steps))
@@ -75,8 +66,31 @@ def run_tour(
             "fell": reason == "fell",
             "arrived": reason == "done",
             "time": machine.loop.sim_time,
-            "flights": gauges.flights,
-            "flight_time": gauges.flight_time,
-            "bend": np.round(bend, 4).tolist(),
-            **recorder.result(),
+            **seen.result(),
+        }
+
+
+class _Seen:
+    """What is kept of a walk: its steps, its motion, its flights, and how a human bends over."""
+
+    def __init__(self, machine: Robot, walker: Balancer) -> None:
+        robot = machine.description
+        self._recorder = Recorder(body_of(robot), walker, traced=True)
+        self._gauges, self._bend = Gauges(robot.contacts), list[float]()
+        self._bending = robot.joints.names.index(BEND) if BEND in robot.joints.names else 0
+
+    def add(self, observation: Observation) -> None:
+        """Take note of a tick."""
+        self._recorder.add(observation)
+        self._gauges.update(observation)
+        if len(self._recorder.trace) > len(self._bend):  # as often as it keeps a sample
+            self._bend.append(float(observation.joints.position[self._bending]))
+
+    def result(self) -> Result:
+        """Return all of it."""
+        return {
+            "flights": self._gauges.flights,
+            "flight_time": self._gauges.flight_time,
+            "bend": np.round(self._bend, 4).tolist(),
+            **self._recorder.result(),
         }

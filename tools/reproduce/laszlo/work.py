@@ -154,7 +154,7 @@ class Probe:
 
 def _walk(robot: Robot, walker: Balancer, steps: int, *, traced: bool) -> Result:
     recorder = Recorder(body_of(robot.description), walker, traced)
-    robot.watch = recorder.add
+    robot.watch.append(recorder.add)
     robot.start_at(walker.gait.file.start)
     try:
         robot.run(walker, until=lambda _: "done" if walker.steps >= steps else None)

@@ -34,19 +34,16 @@ def jobs(quick: bool) -> list[Job]:
 
 def claims(results: Results) -> list[Claim]:
     """Judge steps, standing, and series."""
+    return [*_stepping(results), *_standing(results), *_beyond(results)]
+
+
+def _stepping(results: Results) -> list[Claim]:
+    """Judge the steps that answer one impact, and several."""
     runs = cell(_push(FORCE, "momentum", False), results)
     series = cell(_series(False), results)
-    stood = [
-        run
-        for force in FORCES
-        for run in cell(_push(force, "momentum", False), results)
-        if run["survived"] and run["steps"] == 0
-    ]
     stepped = [run for run in runs if run["steps"] > 0]
-    least = [run["force"] for run in stood]
     ahead = [np.cos(np.radians(run["directions"][0])) for run in stepped]
     both = max(ahead, default=0.0) > 0.5 and min(ahead, default=0.0) < -0.5
-    alone = cell(_push(FORCE, "feet", False), results)
     return [
         Claim(
             f"an impact of {FORCE:g} N for 0.1 s is sustained by steps in various directions",
@@ -61,6 +58,20 @@ def claims(results: Results) -> list[Claim]:
             "all stay up",
             all(run["survived"] for run in series),
         ),
+    ]
+
+
+def _standing(results: Results) -> list[Claim]:
+    """Judge when no step is taken, and what standing bears without any."""
+    stood = [
+        run
+        for force in FORCES
+        for run in cell(_push(force, "momentum", False), results)
+        if run["survived"] and run["steps"] == 0
+    ]
+    least = [run["force"] for run in stood]
+    alone = cell(_push(FORCE, "feet", False), results)
+    return [
         Claim(
             "the supervisor can opt not to step and use standing balance",
             f"{len(stood)} pushes of up to {max(least, default=0.0):g} N are stood without a step",
@@ -75,7 +86,6 @@ def claims(results: Results) -> list[Claim]:
             all(run["survived"] for run in alone),
             own=True,
         ),
-        *_beyond(results),
     ]
 
 

@@ -5,12 +5,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tests.sim_twin.wire.wire_host1 import open_host1
+from windup.hal.geometry.gravity import STANDARD_GRAVITY
 from windup.hal.imu.bno08x_rvc import decode
 from windup.hal.imu.quaternion import euler_zxy
 from windup.sim_twin.twin import Twin
 from windup.sim_twin.wire import drop_world
 from windup.sim_twin.wire.boards.rvc import encode_rvc
-from windup.sim_twin.wire.imu.imu import GRAVITY
 
 EXAMPLE = "AA AA DE 01 00 92 FF 25 08 8D FE EC FF D1 03 00 00 00 E7"  # of the data sheet
 
@@ -24,7 +24,7 @@ def turned(yaw: float, pitch: float, roll: float) -> np.ndarray:
 class Example:
     silent = False
     angular_velocity = np.zeros(3)
-    acceleration = np.array([-0.371, -0.020, 0.977]) * GRAVITY
+    acceleration = np.array([-0.371, -0.020, 0.977]) * STANDARD_GRAVITY
     orientation = turned(0.01, -1.10, 20.85)
 
 

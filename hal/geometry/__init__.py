@@ -1,0 +1,1 @@
+"""Angles, the up axis, gravity and the smooth step, shared by all rooms."""

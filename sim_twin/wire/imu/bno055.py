@@ -1,0 +1,87 @@
+"""An emulated Bosch BNO055 on I2C: registers, and a new sample every 10 ms.
+
+Addresses, units, reset values and times are those of the data sheet BST-BNO055-DS000-14. Only the
+mode "IMU" is emulated: in other modes, and during a change of mode, the data registers keep their
+values.
+"""
+
+import errno
+import math
+from typing import Final
+
+import numpy as np
+
+from windup.hal.joints import Array
+from windup.sim_twin.wire.imu.imu import ImuSource
+from windup.sim_twin.wire.schedule import Schedule
+
+PERIOD: Final = 0.01  # s
+CHIP_ID, DATA, UNIT_SEL, OPR_MODE = 0x00, 0x08, 0x3B, 0x3D
+RESET: Final = {CHIP_ID: 0xA0, 0x01: 0xFB, 0x02: 0x32, 0x03: 0x0F, UNIT_SEL: 0x80, OPR_MODE: 0x10}
+IMU_MODE = 0x08
+SWITCH: Final = 0.007  # s, from the mode "config" to another one
+WRITABLE = (0x07, UNIT_SEL, OPR_MODE)
+PER_M_S2, PER_RAD_S, PER_DEGREE_S, PER_ONE = 100.0, 900.0, 16.0, 16_384.0
+
+
+class Bno055Registers:
+    """The registers of the chip.
+
+    Args:
+        imu: Source of the motion, in the frame of the chip.
+        schedule: Schedule of its world.
+    """
+
+    def __init__(self, imu: ImuSource, schedule: Schedule) -> None:
+        self._imu, self._schedule = imu, schedule
+        self._memory = bytearray(0x80)
+        for register, value in RESET.items():
+            self._memory[register] = value
+        self._measures_from = math.inf
+        schedule.at(schedule.now + PERIOD, self._sample)
+
+    def read(self, register: int, count: int) -> bytes:
+        """Return `count` registers from one on.
+
+        Raises:
+            OSError: The chip is silent.
+        """
+        self._answer()
+        return bytes(self._memory[register : register + count])
+
+    def write(self, register: int, value: int) -> None:
+        """Set a register; read-only ones keep their value.
+
+        Raises:
+            OSError: The chip is silent.
+        """
+        self._answer()
+        if register in WRITABLE:
+            self._memory[register] = value
+        if register == OPR_MODE:
+            measures = value & 0x0F == IMU_MODE
+            self._measures_from = self._schedule.now + SWITCH if measures else math.inf
+
+    def _answer(self) -> None:
+        if self._imu.silent:
+            raise OSError(errno.EREMOTEIO, "Remote I/O error")
+
+    def _sample(self) -> None:
+        now = self._schedule.now
+        if now >= self._measures_from and not self._imu.silent:
+            self._memory[DATA : DATA + 32] = self._data()
+        self._schedule.at(now + PERIOD, self._sample)
+
+    def _data(self) -> bytes:
+        """Return the registers from DATA on; magnetic field and Euler angles are 0."""
+        rate = PER_RAD_S if self._memory[UNIT_SEL] & 0x02 else math.degrees(PER_DEGREE_S)
+        none: Array = np.zeros(3)
+        rows = [
+            self._imu.acceleration * PER_M_S2,
+            none,
+            self._imu.angular_velocity * rate,
+            none,
+            self._imu.orientation * PER_ONE,
+        ]
+        counts = np.clip(np.rint(np.concatenate(rows)), -32768, 32767)
+        return counts.astype("<i2").tobytes()

@@ -1,0 +1,61 @@
+"""``twin://`` as an I2C bus, with the chip of an emulated robot's IMU."""
+
+from windup.hal.errors import UsageError
+from windup.sim_twin.wire.imu.bno055 import Bno055Registers
+from windup.sim_twin.wire.world.address import parse_address
+from windup.sim_twin.wire.world.clocks import WireClock
+from windup.sim_twin.wire.world.worlds import enter, leave
+
+CLOCK_RATE = 400_000.0
+"""Bits a second of the bus."""
+OVERHEAD = 4
+"""Bytes of a read besides its data: address, register, address again, start and stop."""
+
+
+class TwinI2c:
+    """A chip on the I2C bus of a world; see `windup.hal.imu.i2c.I2cChip`.
+
+    Args:
+        url: URL of the IMU's port in the world.
+
+    Raises:
+        UsageError: The IMU there is not on I2C.
+    """
+
+    def __init__(self, url: str) -> None:
+        self._running = enter(parse_address(url))
+        chip = self._running.world.bus(parse_address(url).bus).chip
+        if chip is None:
+            leave(self._running)
+            raise UsageError(f"{url}: there is no chip on I2C in this world")
+        self._chip: Bno055Registers = chip
+        self._open = True
+
+    @property
+    def clock(self) -> WireClock:
+        """The world's clock."""
+        return self._running.clock
+
+    def read(self, register: int, count: int) -> bytes:
+        """Return registers, after the time that they take on the bus."""
+        self._pass(count)
+        return self._chip.read(register, count)
+
+    def write(self, register: int, value: int) -> None:
+        """Set a register."""
+        self._pass(1)
+        self._chip.write(register, value)
+
+    def close(self) -> None:
+        """Leave the world."""
+        if self._open:
+            self._open = False
+            leave(self._running)
+
+    def _pass(self, count: int) -> None:
+        self.clock.wait_until(self.clock.now() + 9.0 * (count + OVERHEAD) / CLOCK_RATE)
+
+
+def open_twin_i2c(url: str, address: int) -> TwinI2c:
+    """Open the IMU's chip in a world, whatever its `address` on the bus."""
+    return TwinI2c(url)
