@@ -38,7 +38,7 @@ class Sway:
             self.path.append(float(observation.base.position[1]))
         phase = 2.0 * np.pi * (observation.time - self.start) / PERIOD
         goal = self.stance + AMPLITUDE * np.sin(phase) * self.direction
-        return JointCommand.hold(self.joints, goal)
+        return JointCommand.of(self.joints, position=goal)
 
 
 def main() -> tuple[float, bool]:
