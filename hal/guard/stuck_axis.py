@@ -12,7 +12,7 @@ from windup.hal.guard.finding import AGAIN, Saying
 FAST = 0.7
 """Minimum rate that counts as stuck, rad/s: a body at rest repeats zero."""
 PERSIST = 0.1
-"""Minimum time for which a rate is repeated, s; at 1 degree/s per count a walk reaches 0.03 s."""
+"""Minimum time for which a rate is repeated, s."""
 SAMPLES = 8
 """Minimum number of samples that repeat a rate: on a loaded host few arrive within `PERSIST`."""
 
