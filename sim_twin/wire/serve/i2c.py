@@ -23,8 +23,9 @@ class TwinI2c:
     """
 
     def __init__(self, url: str) -> None:
-        self._running = enter(parse_address(url))
-        chip = self._running.world.bus(parse_address(url).bus).chip
+        address = parse_address(url)
+        self._running = enter(address)
+        chip = self._running.world.bus(address.bus).chip
         if chip is None:
             leave(self._running)
             raise UsageError(f"{url}: there is no chip on I2C in this world")
