@@ -25,8 +25,9 @@ class TwinI2c:
     """
 
     def __init__(self, url: str) -> None:
-        self._running = enter(parse_address(url))
-        self._bus = self._running.world.bus(parse_address(url).bus)
+        address = parse_address(url)
+        self._running = enter(address)
+        self._bus = self._running.world.bus(address.bus)
         chip = self._bus.chip
         if chip is None:
             leave(self._running)
