@@ -17,6 +17,9 @@ SHORTEST = 4
 """Shorter pieces between two gaps say nothing."""
 IN_SEVERAL_FILES: Final = {
     "unknown key …; did you mean …": "hal/config.py says what, hal/errors.py the near word",
+    "gait … has … perturbations for … regulation variables; give as many (for …)": (
+        "control/regulation/variables.py counts, tools/assembly/build.py names the gait"
+    ),
 }
 """Messages whose pieces stand in different files, each with the reason."""
 
