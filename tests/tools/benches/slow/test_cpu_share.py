@@ -41,6 +41,6 @@ def test_version_1_has_files_of_its_own(groups: Path, monkeypatch: pytest.Monkey
 def test_who_may_not_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "VERSION_1", tmp_path / "none")
     monkeypatch.setattr(module, "VERSION_2", tmp_path / "none either")
-    with pytest.raises(UsageError, match="No such file or directory; run this bench as root"):
-        with cpu_share(0.35):
-            raise AssertionError("not reached")
+    wrong = pytest.raises(UsageError, match="No such file or directory; run this bench as root")
+    with wrong, cpu_share(0.35):
+        raise AssertionError("not reached")
