@@ -193,8 +193,11 @@ class ServoBus:
         try:
             self.close()
         finally:
-            for path in self._recorded:
-                path.unlink(missing_ok=True)
+            self._remove_recorded()
+
+    def _remove_recorded(self) -> None:
+        for path in self._recorded:
+            path.unlink(missing_ok=True)
 
     def close(self) -> None:
         """Disconnect robots, close ports of SDKs, end traces, and forget the world.
@@ -230,7 +233,7 @@ class ServoBus:
     ) -> None:
         with ExitStack() as stack:
             if error is not None:
-                stack.callback(self.drop_golden)
+                stack.callback(self._remove_recorded)
             self._ending().__exit__(kind, error, trace)
 
     def _url(self, bus: str) -> str:
