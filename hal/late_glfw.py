@@ -1,7 +1,8 @@
 """Delays the loading of glfw until a window is opened; has to be imported before MuJoCo.
 
 MuJoCo imports glfw, which starts a process to query the version of its library. That is a tenth of
-the time of `from windup import Robot`.
+the time of `from windup import Robot`. This stands in hal because robots and control both import
+MuJoCo, and hal is all that both may import.
 """
 
 import sys
@@ -18,10 +19,14 @@ class LateModule(ModuleType):
     """
 
     def __getattr__(self, name: str) -> Any:
-        """Load the module, and return the attribute."""
+        """Load the module, and return the attribute; a module that failed is tried again."""
         object.__setattr__(self, "__class__", ModuleType)
         assert self.__spec__ is not None and self.__spec__.loader is not None
-        self.__spec__.loader.exec_module(self)
+        try:
+            self.__spec__.loader.exec_module(self)
+        except BaseException:
+            object.__setattr__(self, "__class__", LateModule)
+            raise
         return getattr(self, name)
 
 

@@ -12,14 +12,12 @@ import numpy as np
 
 from windup.hal.joints import Array
 from windup.robots import mjcf
-from windup.robots.mistake import Mistake
+from windup.robots.mistake import SLACK, Mistake
 from windup.robots.records import CouplingEntry, RobotFile
 
 JOINT = mujoco.mjtObj.mjOBJ_JOINT
 KIND = mujoco.mjtEq.mjEQ_JOINT
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
-SLACK = 1e-6
-"""Tolerance of ranges for rounding, rad."""
 
 
 def add_couplings(spec: mujoco.MjSpec, couplings: Iterable[CouplingEntry]) -> None:

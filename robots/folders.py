@@ -8,6 +8,7 @@ from typing import Generic, TypeVar
 
 FOLDER = Path(__file__).parent
 FILE = "robot.toml"
+GAITS = "gaits"
 Made = TypeVar("Made")
 Stamp = tuple[tuple[int, int, int], ...]
 
@@ -26,7 +27,7 @@ def robot_names() -> tuple[str, ...]:
 
 def gait_files(folder: Path) -> dict[str, Path]:
     """Return the paths of the gait files in a robot's folder by name."""
-    return {path.stem: path for path in sorted((folder / "gaits").glob("*.toml"))}
+    return {path.stem: path for path in sorted((folder / GAITS).glob("*.toml"))}
 
 
 class Loaded(Generic[Made]):

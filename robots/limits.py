@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from windup.hal.families import family_of
 from windup.hal.servos import servo_model
+from windup.hal.servos.servo_model import ServoMount
 from windup.robots import mjcf
 from windup.robots.records import JointEntry
 
@@ -44,8 +45,8 @@ def travel_mistakes(entry: JointEntry) -> Iterator[str]:
             )
         return
     zero = servo.middle if entry.zero is None else entry.zero
-    counts = entry.sign * entry.ratio * servo.counts_per_rev / (2.0 * pi)
-    ends = sorted(zero + counts * angle for angle in (entry.lower, entry.upper))
+    mount = ServoMount(servo, entry.bus or "", entry.id or 0, entry.sign, zero, entry.ratio)
+    ends = sorted(zero + mount.counts_per_rad * angle for angle in (entry.lower, entry.upper))
     if ends[0] >= 0.0 and ends[1] <= servo.last_count:
         return
     long = ends[1] - ends[0] > servo.last_count

@@ -63,6 +63,16 @@ def write_shape(folder: Path, shape: Shape, *, extra: str = "") -> Path:
     return folder
 
 
+def add_table(folder: Path) -> None:
+    """Add a heavy table to the MJCF of a robot, ahead of it and before it in the file."""
+    mjcf = folder / "model.xml"
+    table = (
+        '<body name="table" pos="2 0 0.1"><geom type="box" size="0.2 0.2 0.1" mass="9" '
+        'contype="0" conaffinity="0"/></body>\n<body name="trunk"'
+    )
+    mjcf.write_text(mjcf.read_text().replace('<body name="trunk"', table))
+
+
 def joint_names(shape: Shape) -> list[str]:
     """Return the names of the joints, in MJCF order."""
     return [f"{limb.name}_{k}" for limb in shape.limbs for k in range(limb.joints)]

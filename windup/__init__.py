@@ -73,7 +73,7 @@ def __getattr__(name: str) -> Any:
         AttributeError: There is no such name.
     """
     if name == "__version__":
-        return _version()
+        return import_module("windup.tools.command_line.version").installed_version()
     if name not in PLACES:
         raise AttributeError(f"module 'windup' has no attribute {name!r}")
     return getattr(import_module(PLACES[name]), name)
@@ -81,13 +81,3 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return [*__all__, "__version__"]
-
-
-def _version() -> str:
-    """Return the version that is installed; "unknown" where only the files lie there."""
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version("windup-robotics")
-    except PackageNotFoundError:
-        return "unknown"

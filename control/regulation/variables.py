@@ -5,7 +5,7 @@ step. Each variable has a forward and a lateral component in the frame of the hi
 components are positive toward the foot that has just swung, so that one target serves both sides.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -145,3 +145,18 @@ def regulation_variables(names: list[str]) -> list[RegulationVariable]:
             for a in ([axis] if axis else AXES)
         ]
     return chosen
+
+
+def unmatched(perturbations: Sequence[str], variables: Sequence[RegulationVariable]) -> str:
+    """Return a message if there are not as many perturbations as variables; else "".
+
+    >>> unmatched(["hip"], regulation_variables(["up"]))
+    '1 perturbations for 2 regulation variables; give as many (for up.forward, up.lateral)'
+    """
+    if len(perturbations) == len(variables):
+        return ""
+    names = ", ".join(variable.name for variable in variables)
+    return (
+        f"{len(perturbations)} perturbations for {len(variables)} regulation variables; "
+        f"give as many (for {names})"
+    )

@@ -20,7 +20,10 @@ def in_words(found: Sequence[Differs]) -> list[str]:
         for differs in found
         for limit in differs.limits
     ]
-    lines = ("servo settings are changed", changes), ("servos protect themselves oddly", limits)
+    lines = (
+        ("servo settings are changed", changes),
+        ("protection limits differ from the factory's", limits),
+    )
     return [f"{head}: {_grouped(pairs, len(found))}" for head, pairs in lines if pairs]
 
 

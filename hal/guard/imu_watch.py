@@ -73,6 +73,7 @@ class ImuWatch:
         self._pose: Array = np.zeros(0)
         self.gyro.restart()
         self._axis.restart()
+        self._stuck: Verdict | None = None
 
     def _judge(
         self, observation: Observation, imu: ImuState | None, dt: float
@@ -93,12 +94,13 @@ class ImuWatch:
                 self.gyro.compare(sample, self._sample, now)
             self._sample, self._taken = sample, self._heard
             self._changed, self._pose = now, joints.position
-            if (stuck := self._axis.update(sample, now)) is not None:
-                return stuck, True
+            self._stuck = self._axis.update(sample, now)
         elif same > FROZEN and np.abs(joints.position - self._pose).max() > MOVED:
             return (STUCK, same, FROZEN), True
         elif same > RIGID:
             return (STUCK, same, RIGID), False
+        if self._stuck is not None:
+            return self._stuck, True
         return self.gyro.judge(sample, now, dt, joints.velocity), True
 
     def _note(self, found: Finding) -> None:

@@ -64,9 +64,11 @@ class Presence:
         worst = int(np.argmax(age))
         name = self._backend.joints.names[worst]
         others = int((age > max_age).sum()) - 1
-        who = f"joint {name!r} has" if not others else f"joint {name!r} and {others} more have"
+        silent = "has not answered for"
+        if others:
+            silent = f"and {others} more have not answered for"
         doubts = self._watched.doubtful_joints if self._watched is not None else {}
         return StaleStateError(
-            f"{who} not answered for {age[worst]:.2f} s (limit {max_age:.2f} s); "
+            f"joint {name!r} {silent} {age[worst]:.2f} s (limit {max_age:.2f} s); "
             f"{doubts.get(name, SILENT)}"
         )

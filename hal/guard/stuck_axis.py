@@ -12,7 +12,7 @@ from windup.hal.guard.finding import AGAIN, Saying
 FAST = 0.7
 """Minimum rate that counts as stuck, rad/s: a body at rest repeats zero."""
 PERSIST = 0.1
-"""Minimum time for which a rate is repeated, s; at 1 degree/s per count a walk reaches 0.03 s."""
+"""Minimum time for which a rate is repeated, s."""
 SAMPLES = 8
 """Minimum number of samples that repeat a rate: on a loaded host few arrive within `PERSIST`."""
 
@@ -37,6 +37,7 @@ class StuckAxis:
 
         The first three values are the angular rates, rad/s.
         """
+        stuck = None
         for axis in range(3):
             rate = sample[axis]
             if not self._last or rate != self._last[axis] or abs(rate) < FAST:
@@ -44,6 +45,6 @@ class StuckAxis:
                 continue
             self._count[axis] += 1
             if self._count[axis] >= SAMPLES and now - self._since[axis] >= PERSIST:
-                return ONE_AXIS, abs(rate), FAST
+                stuck = ONE_AXIS, abs(rate), FAST
         self._last = sample
-        return None
+        return stuck

@@ -6,8 +6,9 @@ servo currents disturb. Registers 0x08 to 0x27 hold, each little-endian::
 
     acceleration x y z | magnetic field x y z | angular rate x y z | Euler angles | w x y z
 
-They are one read: 0.8 ms at 400 kHz, 3.2 ms at 100 kHz. The chip stretches the I2C clock, which the
-I2C hardware of a Raspberry Pi up to model 4 does not support: use a bus of the `i2c-gpio` overlay.
+They are one read: 0.8 ms at 400 kHz, 3.2 ms at 100 kHz. The chip stretches the I2C clock, which
+the I2C hardware of Raspberry Pis mishandles (learn.adafruit.com, "Raspberry Pi I2C clock stretching
+fixes"): use a bus of the `i2c-gpio` overlay.
 """
 
 import contextlib
@@ -29,6 +30,11 @@ from windup.hal.port.replug import RETRY, Opener
 ADDRESS = 0x28
 """I2C address of the chip; 0x29 if its pin COM3 is high (section 4.6)."""
 CHIP_ID, PAGE_ID, DATA, UNIT_SEL, OPR_MODE = 0x00, 0x07, 0x08, 0x3B, 0x3D
+AXIS_MAP_CONFIG, AXIS_MAP_SIGN = 0x41, 0x42
+STRAIGHT_AXES = 0x24, 0x00
+"""Reset values of AXIS_MAP_CONFIG and AXIS_MAP_SIGN: the chip's own axes (section 3.4). Another
+program may have left others, which survive a change of mode; `mounting` counts from the chip's own.
+"""
 BNO055_ID = 0xA0
 CONFIG, IMU_MODE = 0x00, 0x08
 """Values of OPR_MODE; its upper four bits are unused (table 3-5)."""
@@ -46,7 +52,7 @@ PERIOD = 0.01
 TO_CONFIG, TO_IMU = 0.019, 0.007
 """Duration of a change of mode, s (table 3-6)."""
 START_UP = 0.65
-"""Time from power on until the chip answers, s (table 0-2)."""
+"""How long a chip that was powered on or reset is waited for, s (table 0-2)."""
 STEPS = 6
 """Maximum number of changes of mode until the chip measures."""
 FASTEST = 36.0
@@ -174,8 +180,8 @@ class Bno055Link:
             if self.clock.now() > end:
                 what = "nothing answers" if found is None else f"a chip with id 0x{found:02X} is"
                 raise PortError(
-                    f"{self._imu.url}: {what} where a BNO055 should be; `i2cdetect -y 1` shows the "
-                    "addresses that answer"
+                    f"{self._imu.url}: {what} where a BNO055 should be; check its power and wires; "
+                    "`i2cdetect -y N` shows which addresses answer on /dev/i2c-N"
                 )
             self.clock.wait_until(self.clock.now() + PERIOD)
 
@@ -208,17 +214,24 @@ class Bno055Link:
         if setting.done or now < setting.due:
             return setting.done
         mode = chip.read(OPR_MODE, 1)[0] & 0x0F
-        if mode == IMU_MODE and chip.read(UNIT_SEL, 1)[0] == UNITS:
+        if mode == IMU_MODE and self._is_set():
             setting.done = True
         elif mode == CONFIG:
             chip.write(PAGE_ID, 0)
             chip.write(UNIT_SEL, UNITS)
+            chip.write(AXIS_MAP_CONFIG, STRAIGHT_AXES[0])
+            chip.write(AXIS_MAP_SIGN, STRAIGHT_AXES[1])
             chip.write(OPR_MODE, IMU_MODE)
             setting.due = now + TO_IMU
         else:
             chip.write(OPR_MODE, CONFIG)
             setting.due = now + TO_CONFIG
         return setting.done
+
+    def _is_set(self) -> bool:
+        """Return whether the chip has our units and its own axes."""
+        axes = tuple(self._chip.read(AXIS_MAP_CONFIG, 2))
+        return axes == STRAIGHT_AXES and self._chip.read(UNIT_SEL, 1)[0] == UNITS
 
 
 BNO055 = ImuKind(

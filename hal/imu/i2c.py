@@ -4,6 +4,8 @@ A URL is the bus's device file, and the chip's address where it has several:
 ``/dev/i2c-1`` or ``/dev/i2c-1?address=0x29``.
 """
 
+import contextlib
+import fcntl
 import os
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -14,6 +16,10 @@ from windup.hal.errors import PortError, UsageError
 
 LONGEST = 32
 """Maximum number of bytes of one read (SMBus 2.0, section 5.5.7)."""
+I2C_RETRIES, I2C_TIMEOUT = 0x0701, 0x0702
+"""Requests of ioctl (linux/i2c-dev.h)."""
+TIMEOUT = 2
+"""Time-out of a transfer, in units of 10 ms: a wire that is held low must not stop the loop."""
 
 
 class I2cChip(Protocol):
@@ -87,6 +93,8 @@ def _address(url: str, query: str, usual: int) -> int:
 class KernelChip:
     """A chip on a bus of the Linux kernel, by `smbus2`.
 
+    It sets the time-out of the bus, for all programs that use it, where the bus allows that.
+
     Args:
         path: Device file of the bus.
         address: Of the chip.
@@ -102,9 +110,13 @@ class KernelChip:
         self.clock: Clock = WallClock()
         self._address = address
         try:
-            self._bus: Any = SMBus(path)
+            bus: Any = SMBus(path)
         except OSError as error:
             raise PortError(_explain(path, error)) from None
+        self._bus = bus
+        with contextlib.suppress(OSError):
+            fcntl.ioctl(bus.fd, I2C_RETRIES, 0)
+            fcntl.ioctl(bus.fd, I2C_TIMEOUT, TIMEOUT)
 
     def read(self, register: int, count: int) -> bytes:
         """See `I2cChip`."""
@@ -123,7 +135,7 @@ def _explain(path: str, error: OSError) -> str:
     if isinstance(error, FileNotFoundError):
         there = sorted(name for name in os.listdir("/dev") if name.startswith("i2c-"))
         listed = ", ".join(f"/dev/{name}" for name in there) or "none"
-        return f"no I2C bus {path}; buses there are: {listed} (raspi-config enables the first)"
+        return f"no I2C bus {path}; buses there are: {listed}"
     if isinstance(error, PermissionError):
         return f"no permission for {path}; `sudo usermod -aG i2c $USER`, then log in again"
     return f"{path} cannot be opened: {error.strerror or error}"

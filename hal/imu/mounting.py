@@ -1,7 +1,6 @@
 """Orientation of an IMU in the body, in quarter turns."""
 
 from functools import cached_property
-from math import sqrt
 
 import numpy as np
 
@@ -60,22 +59,8 @@ class Mounting:
     @cached_property
     def quaternion(self) -> Array:
         """(4,) wxyz, IMU to body."""
-        m = self._matrix
-        outer = np.array(
-            [
-                [1.0 + m[0, 0] + m[1, 1] + m[2, 2], *_skew(m)],
-                [m[2, 1] - m[1, 2], 1.0 + m[0, 0] - m[1, 1] - m[2, 2], *(m[0, 1:] + m[1:, 0])],
-                [m[0, 2] - m[2, 0], m[0, 1] + m[1, 0], 1.0 - m[0, 0] + m[1, 1] - m[2, 2],
-                 m[1, 2] + m[2, 1]],
-                [m[1, 0] - m[0, 1], m[0, 2] + m[2, 0], m[1, 2] + m[2, 1],
-                 1.0 - m[0, 0] - m[1, 1] + m[2, 2]],
-            ]
-        )  # fmt: skip
-        # Four times the outer product of the quaternion with itself: its largest row is exact.
-        row = int(np.argmax(np.diag(outer)))
-        return np.asarray(outer[row] / (2.0 * sqrt(outer[row, row])))
+        if self.axes == STRAIGHT:
+            return np.array([1.0, 0.0, 0.0, 0.0])
+        from scipy.spatial.transform import Rotation  # slow to import, and rarely needed
 
-
-def _skew(m: Array) -> tuple[float, float, float]:
-    """Return 4 w times the vector part of the quaternion of a rotation matrix (3, 3)."""
-    return float(m[2, 1] - m[1, 2]), float(m[0, 2] - m[2, 0]), float(m[1, 0] - m[0, 1])
+        return np.asarray(Rotation.from_matrix(self._matrix).as_quat(scalar_first=True))

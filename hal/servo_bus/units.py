@@ -39,7 +39,7 @@ class Units:
         sign = np.array([mount.sign for mount in mounts], dtype=np.float64)
         ratio = np.array([mount.ratio for mount in mounts])
         per_turn = np.array([mount.model.counts_per_rev for mount in mounts])
-        self.counts_per_rad: Array = sign * ratio * per_turn / (2.0 * pi)
+        self.counts_per_rad: Array = np.array([mount.counts_per_rad for mount in mounts])
         self.zero: Array = np.array([mount.zero for mount in mounts], dtype=np.float64)
         self.first: Array = np.array([mount.first_count for mount in mounts], dtype=np.float64)
         self.last: Array = np.array([mount.last_count for mount in mounts], dtype=np.float64)

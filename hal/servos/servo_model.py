@@ -184,6 +184,11 @@ class ServoMount:
     extended: bool = False
 
     @property
+    def counts_per_rad(self) -> float:
+        """Counts per rad of the joint, signed."""
+        return self.sign * self.ratio * self.model.counts_per_rev / (2.0 * pi)
+
+    @property
     def first_count(self) -> int:
         """Smallest goal position, counts."""
         return -EXTENDED_COUNTS if self.extended else 0

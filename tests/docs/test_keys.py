@@ -16,10 +16,15 @@ from windup.robots.records import RobotFile, Shares
 
 TABLE = re.compile(r"<!-- keys: ([\w.]+)\.(\w+) -->\n\n((?:\|.*\n)+)")
 ROW = re.compile(r"^\| `(\w+)` \| (.*?) \|", flags=re.MULTILINE)
+FIELDS = re.compile(r"<!-- fields: ([\w.]+)\.(\w+) -->\n\n\|.*\n\|.*\n((?:\|.*\n)+)")
 IN_A_ROW = {Shares, Level}
 """Records that are so small that the row of their key explains them."""
 FOUND = {
     f"{module}.{name}": rows for page in PAGES for module, name, rows in TABLE.findall(read(page))
+}
+
+FIELDS_OF = {
+    f"{module}.{name}": rows for page in PAGES for module, name, rows in FIELDS.findall(read(page))
 }
 
 
@@ -57,6 +62,20 @@ def test_a_default_that_is_a_number_is_the_record_s(path: str) -> None:
             assert float(said) == known[key], key
         elif not said:
             assert known[key] is None, f"{key} has a default"
+
+
+@pytest.mark.parametrize("path", FIELDS_OF)
+def test_a_table_of_fields_has_each_once_and_no_other(path: str) -> None:
+    named = re.findall(r"`(\w+)`", " ".join(row.split("|")[1] for row in _rows(path)))
+    assert sorted(named) == sorted(field.name for field in dataclasses.fields(record(path)))
+
+
+def test_the_fields_of_a_servo_family_have_a_table() -> None:
+    assert "windup.hal.families.family.Family" in FIELDS_OF
+
+
+def _rows(path: str) -> list[str]:
+    return FIELDS_OF[path].splitlines()
 
 
 def nested(kind: Any, seen: set[Any]) -> set[Any]:

@@ -15,6 +15,7 @@ from windup.tools import cli
 PYTHON = [block for block in all_blocks("python") if not block.text.startswith("--8<--")]
 RUNS = [block for block in PYTHON if not block.note.startswith("not run")]
 SHELL = all_blocks("sh")
+RESULTS = ROOT / "docs/results.md"
 PLUGIN = "windup.tools.testing.pytest_plugin"
 
 
@@ -31,11 +32,12 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 @pytest.mark.parametrize("block", RUNS, ids=lambda block: block.place)
 def test_python_runs(block: Block, pytester: pytest.Pytester) -> None:
-    if "\ndef test_" not in block.text:
+    tests = re.findall(r"^def test_", block.text, re.M)
+    if not tests:
         exec(compile(block.text, block.place, "exec"), {"__name__": block.place})
         return
     pytester.makepyfile(block.text)
-    pytester.runpytest("-p", PLUGIN).assert_outcomes(passed=block.text.count("\ndef test_"))
+    pytester.runpytest("-p", PLUGIN).assert_outcomes(passed=len(tests))
 
 
 def test_python_that_does_not_run_says_why() -> None:
@@ -60,13 +62,40 @@ def test_command_lines_are_understood(
 @pytest.mark.parametrize(
     "block", [block for block in SHELL if block.note == "run"], ids=lambda block: block.place
 )
-def test_command_lines_that_run_succeed(block: Block) -> None:
+def test_command_lines_that_run_succeed(block: Block, capsys: pytest.CaptureFixture[str]) -> None:
     for words in command_lines(block):
         assert cli.run(words[1:]) == 0, words
+    shown = output_shown(block)
+    assert not shown or told(capsys.readouterr().err) == told(shown)
+
+
+def test_the_output_of_the_first_walk_is_shown() -> None:
+    assert any(output_shown(block) for block in SHELL if block.note == "run")
+
+
+def output_shown(block: Block) -> str:
+    """Return the text block that follows a block on its page; "" if another one does."""
+    page, _, number = block.place.rpartition(":")
+    following = blocks(ROOT / page)[int(number) :][:1]
+    return following[0].text if following and following[0].language == "text" else ""
+
+
+def told(output: str) -> str:
+    """Return the output of a command in one line, without what differs between computers."""
+    return re.sub(r", [\d.]+ x real time", "", " ".join(output.split()))
+
+
+def test_the_default_walk_of_the_results_is_that_of_today(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    row = re.search(r"^\| OP3, by default \| (.*) \| `(.*)` \|$", read(RESULTS), re.M)
+    assert row is not None
+    assert cli.run(shlex.split(row[2])[1:]) == 0
+    assert told(capsys.readouterr().err) == f"op3 walked {row[1]}"
 
 
 def test_every_result_has_a_command_that_is_understood() -> None:
-    lines = re.findall(r"`(windup [^`]+)`", read(ROOT / "docs/results.md"))
+    lines = re.findall(r"`(windup [^`]+)`", read(RESULTS))
     assert len(lines) > 20
     for line in lines:
         cli.parse(shlex.split(line)[1:]).check()
@@ -74,5 +103,6 @@ def test_every_result_has_a_command_that_is_understood() -> None:
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_no_command_line_hides_in_a_block_that_is_not_checked(page: Path) -> None:
-    hidden = [b.place for b in blocks(page) if b.language in ("", "text") and "\nwindup " in b.text]
+    unchecked = [block for block in blocks(page) if block.language in ("", "text")]
+    hidden = [block.place for block in unchecked if re.search(r"^windup ", block.text, re.M)]
     assert not hidden

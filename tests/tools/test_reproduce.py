@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from windup.tools import cli
+from windup.tools.command_line.version import installed_version
 from windup.tools.reproduce.laszlo import LASZLO
 from windup.tools.reproduce.laszlo.jobs import walk
 from windup.tools.reproduce.laszlo.phase import pitch_range, scatter
@@ -67,6 +68,7 @@ def test_a_report_is_one_page_with_its_pictures_and_computed_verdicts(tmp_path: 
     page = (tmp_path / "out" / "report.html").read_text()
     assert "data:image/png;base64," in page
     assert "squares &lt; 5" in page
+    assert f"Windup {installed_version()}, MuJoCo " in page
     assert "http" not in page  # nothing is fetched
     assert (tmp_path / "out" / "figure-1.1.png").stat().st_size > 1000
     record = json.loads((tmp_path / "out" / "report.json").read_text())

@@ -19,7 +19,11 @@ from windup.control.pose_graph.gait_file import Balance, Sampling
 from windup.control.pose_graph.torso_servo import TorsoServo
 from windup.control.regulation.disturbance_detector import DisturbanceDetector
 from windup.control.regulation.footfalls import Footfalls
-from windup.control.regulation.variables import RegulationVariable, regulation_variables
+from windup.control.regulation.variables import (
+    RegulationVariable,
+    regulation_variables,
+    unmatched,
+)
 from windup.hal.controller import Predictor
 from windup.hal.errors import StateMissingError, UnknownNameError, UsageError
 from windup.hal.geometry.gravity import GRAVITY
@@ -207,11 +211,8 @@ def _perturbations(
             for axis in ("forward", "lateral")
         }
         names = [free[v.axis].pop(0) for v in variables if free[v.axis]]
-    if len(names) != len(variables):
-        raise UsageError(
-            f"gait {gait.name!r} has {len(names)} perturbations for {len(variables)} regulation "
-            f"variables ({', '.join(v.name for v in variables)}); give as many"
-        )
+    if wrong := unmatched(names, variables):
+        raise UsageError(f"gait {gait.name!r} has {wrong}")
     return names
 
 

@@ -12,6 +12,8 @@ from typing import Any, Final, NamedTuple
 
 from windup.tools.testing import PLUGIN
 
+BASE: Final = "import numpy"
+
 
 class Way(NamedTuple):
     """A way to start.
@@ -24,10 +26,9 @@ class Way(NamedTuple):
 
     arguments: tuple[str, ...]
     most: float
-    base: str = "import numpy"
+    base: str = BASE
 
 
-BASE: Final = "import numpy"
 WITHOUT: Final = "pytest without the plugin"
 CLI: Final = "from windup.tools.cli import main; main([{!r}])"
 PYTEST: Final = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "test_nothing.py")
@@ -43,13 +44,12 @@ WAYS: Final[dict[str, Way]] = {
 """The ways to start, each in a new interpreter."""
 
 
-def measure_startup(robot: str, times: int = 20) -> dict[str, Any]:
+def measure_startup(times: int = 20) -> dict[str, Any]:
     """Return the ratio of each way to start, and whether all are within their limits.
 
     The rounds are interleaved, and the shortest time of each way counts: noise only adds.
 
     Args:
-        robot: Not used.
         times: Number of rounds.
     """
     best = dict.fromkeys(WAYS, float("inf"))

@@ -34,12 +34,11 @@ PATIENCE = 5.0  # s; a busy machine may delay the emulator
 BITS = 10  # per byte on the wire: one start, eight data, one stop
 
 
-def measure_bus(name: str, maker: Maker = "dynamixel2") -> dict[str, Any]:
+def measure_bus(maker: Maker = "dynamixel2") -> dict[str, Any]:
     """Return the processor time of a cycle relative to other packages, and its time to the wire's.
 
     Args:
-        name: Ignored: the bus is a bench of 20 servos.
-        maker: The maker of the servos and the protocol.
+        maker: The maker of the bench's 20 servos, and the protocol.
     """
     vendor = None if maker == "dynamixel2" else maker
     memory, over_pty = bench_memory(vendor=vendor), bench_pty(vendor=vendor)

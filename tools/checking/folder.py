@@ -40,11 +40,11 @@ def inspect_folder(folder: Path) -> Inspection:
     findings.errors += reading.mistakes
     if not (folder / FILE).exists():
         findings.notes.append(f"`windup new robot NAME` writes a {FILE} to begin with")
-    if robot is None and (reading.file is None or reading.model is None):
-        findings.notes.append(
-            f"joints, servos, feet and poses are checked once {FILE} and the MJCF can be read"
-        )
     if robot is None:
+        if reading.file is None or reading.model is None:
+            findings.notes.append(
+                f"joints, servos, feet and poses are checked once {FILE} and the MJCF can be read"
+            )
         findings.notes.append(
             f"gaits are checked against joints and feet once the errors in {FILE} are gone"
         )

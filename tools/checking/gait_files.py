@@ -6,16 +6,15 @@ from windup.control.limit_cycle.learnt_models import LearntModels
 from windup.control.pose_graph.gait_file import GaitFile
 from windup.control.pose_graph.gait_hash import gait_hash
 from windup.control.pose_graph.gait_mistakes import gait_mistakes
-from windup.control.regulation.variables import regulation_variables
+from windup.control.regulation.variables import regulation_variables, unmatched
 from windup.hal.config import read_toml
 from windup.hal.errors import ConfigError, suggest
 from windup.hal.joints import Array
 from windup.robots import RobotDescription
+from windup.robots.folders import GAITS, gait_files
 from windup.robots.inspection.reading import decode, relative
 from windup.tools.assembly.step_models import SUFFIX
 from windup.tools.checking.findings import Findings
-
-GAITS = "gaits"
 
 
 def check_gaits(folder: Path, robot: RobotDescription | None, findings: Findings) -> None:
@@ -26,7 +25,7 @@ def check_gaits(folder: Path, robot: RobotDescription | None, findings: Findings
         robot: The robot; None if its files are invalid: then only the keys are checked.
         findings: The findings to add to.
     """
-    for path in sorted((folder / GAITS).glob("*.toml")):
+    for path in gait_files(folder).values():
         try:
             data = read_toml(path)
         except ConfigError as error:
@@ -65,13 +64,9 @@ def _of_the_walk(path: Path, file: GaitFile) -> list[str]:
     """Return the mistakes for which `windup walk` would refuse a gait with a `[balance]`."""
     if file.balance is None or not file.balance.regulation:
         return []
-    regulated = len(regulation_variables(file.balance.regulation))
-    moved = len(file.balance.perturbations)
-    if regulated == moved:
-        return []
-    return [
-        f"{path}: balance: {moved} perturbations for {regulated} regulation variables; give as many"
-    ]
+    variables = regulation_variables(file.balance.regulation)
+    wrong = unmatched(file.balance.perturbations, variables)
+    return [f"{path}: balance: {wrong}"] if wrong else []
 
 
 def _of_the_models(path: Path, file: GaitFile) -> list[str]:

@@ -10,12 +10,11 @@ from windup.control.stride.stride_file import Stride
 from windup.hal.config import read_toml
 from windup.hal.errors import ConfigError, suggest
 from windup.robots import RobotDescription
-from windup.robots.folders import FILE
+from windup.robots.folders import FILE, GAITS
 from windup.robots.inspection.reading import decode, relative
 from windup.tools.assembly.stepping import FOOTPRINTS, STEPPING, WAYS
 from windup.tools.behaviours.striding import FILE as STRIDE
 from windup.tools.checking.findings import Findings
-from windup.tools.checking.gait_files import GAITS
 from windup.tools.command_line.near_word import near_word
 
 TABLES: Final = (STEPPING, STRIDE, FOOTPRINTS)

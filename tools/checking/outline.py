@@ -54,7 +54,8 @@ def outline_of(robot: RobotDescription) -> Outline:
     """Return the outline of a robot in its stance."""
     model, data = in_stance(robot)
     soles = {foot.name: sole_outline(sole_points(model, data, foot)) for foot in robot.feet}
-    return _outline(model, data, {name: sole for name, sole in soles.items() if len(sole)})
+    found = {name: sole for name, sole in soles.items() if len(sole)}
+    return _outline(model, data, found, root_of(model, robot))
 
 
 def outline_of_model(model: mujoco.MjModel) -> Outline:
@@ -62,7 +63,17 @@ def outline_of_model(model: mujoco.MjModel) -> Outline:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
-    return _outline(model, data, {})
+    return _outline(model, data, {}, root_of(model))
+
+
+def root_of(model: mujoco.MjModel, robot: RobotDescription | None = None) -> int:
+    """Return the body that carries all others of a robot, without a table or a wall beside it.
+
+    It is the robot's base; of a bare MJCF, the body below the world that carries its first joint.
+    """
+    if robot is not None:
+        return int(model.body(robot.base).id)
+    return int(model.body_rootid[model.jnt_bodyid[0]]) if model.njnt else 0
 
 
 def sole_outline(points: Array) -> Array:
@@ -92,11 +103,12 @@ def _steepness(edge: Array) -> float:
     return abs(float(edge[2])) / (float(np.linalg.norm(edge)) or 1.0)
 
 
-def _outline(model: mujoco.MjModel, data: mujoco.MjData, soles: dict[str, Array]) -> Outline:
+def _outline(
+    model: mujoco.MjModel, data: mujoco.MjData, soles: dict[str, Array], root: int
+) -> Outline:
     hinges = np.flatnonzero(model.jnt_type == mjcf.HINGE)
     edges = _edges(model, data)
     low = np.concatenate([*soles.values()]) if soles else edges.reshape(-1, 3)
-    moving = 1 if model.nbody > 1 else 0
     return Outline(
         edges=edges,
         links=_links(model, data),
@@ -104,7 +116,7 @@ def _outline(model: mujoco.MjModel, data: mujoco.MjData, soles: dict[str, Array]
         anchors=data.xanchor[hinges].copy(),
         axes=data.xaxis[hinges].copy(),
         soles=soles,
-        com=data.subtree_com[moving].copy(),
+        com=data.subtree_com[root].copy(),
         floor=float(low[:, 2].min()) if len(low) else 0.0,
     )
 

@@ -32,9 +32,8 @@ def travel_rows(robot: RobotDescription) -> list[dict[str, Any]]:
         row |= {"joint": joint.name, "torque": joint.torque}
         row |= {"lower_deg": float(np.degrees(ends[0])), "upper_deg": float(np.degrees(ends[1]))}
         if mount is not None:
-            scale = mount.sign * mount.ratio * mount.model.counts_per_rev / (2.0 * np.pi)
             row |= {"servo": mount.model.name, "bus": mount.bus, "id": mount.id}
-            row["counts"] = [round(mount.zero + scale * end) for end in ends]
+            row["counts"] = [round(mount.zero + mount.counts_per_rad * end) for end in ends]
             row["travel"] = [mount.first_count, mount.last_count]
         rows.append(row)
     return rows

@@ -47,13 +47,20 @@ def options(command: Any) -> set[str]:
 def _wanted(missing: str) -> str:
     """Return what to give, from the parser's line about a missing argument.
 
+    Of a long explanation it has the first sentence.
+
     >>> _wanted("URL The port: /dev/ttyUSB0, usb:SERIAL")
     'give URL (the port: /dev/ttyUSB0, usb:SERIAL)'
+    >>> _wanted("{robot,gait, controller} What to write. Nothing is overwritten")
+    'give one of robot, gait, controller (what to write)'
     """
-    found = re.match(r"((?:--[\w-]+ )?[A-Z]+) (.*)", missing)
+    found = re.match(r"((?:--[\w-]+ )?(?:[A-Z]+|\{[^}]*\})) (.*)", missing)
     if found is None:
         return f"give {missing}"
-    name, about = found.groups()
+    name, about = found[1], re.split(r"\.\s", found[2])[0]
+    if "{" in name:
+        option, _, choices = name.rstrip("}").partition("{")
+        name = f"{option}one of " + re.sub(r",\s*", ", ", choices)
     return f"give {name} ({about[:1].lower()}{about[1:]})"
 
 

@@ -7,9 +7,10 @@ from typing import Annotated, Any
 import mujoco
 import tyro
 
+from windup.robots import RobotDescription
 from windup.robots.description import folder_of
 from windup.tools.checking.folder import Inspection, inspect_folder
-from windup.tools.checking.outline import outline_of, outline_of_model
+from windup.tools.checking.outline import outline_of, outline_of_model, root_of
 from windup.tools.checking.picture import draw_robot
 from windup.tools.checking.travel import travel_rows, travel_table
 from windup.tools.terminal.command import Command
@@ -78,11 +79,11 @@ def _record(seen: Inspection) -> dict[str, Any]:
         "warnings": seen.findings.doubts,
         "notes": seen.findings.notes,
         "joints": [] if robot is None else travel_rows(robot),
-        "mass": None if model is None else mass_of(model),
+        "mass": None if model is None else mass_of(model, robot),
         "gaits": [] if robot is None else sorted(robot.gaits()),
     }
 
 
-def mass_of(model: mujoco.MjModel) -> float:
-    """Return the total mass of a model, kg."""
-    return float(model.body_mass.sum())
+def mass_of(model: mujoco.MjModel, robot: RobotDescription | None) -> float:
+    """Return the mass of a robot, or of the first one in a bare MJCF, kg."""
+    return float(model.body_subtreemass[root_of(model, robot)])

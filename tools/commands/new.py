@@ -40,7 +40,8 @@ class New(Command):
     name: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="NAME")]
     """Its name, or its path FOLDER/NAME."""
     robot: str = "op3"
-    """The robot of a gait or a controller, by name or folder; a gait goes into that folder."""
+    """The robot of a gait or a controller, by name or folder; a gait goes into the
+    folder of a robot of your own, else into the present one."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 

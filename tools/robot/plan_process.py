@@ -176,11 +176,11 @@ def plan_aside(
 
 
 def _start(descriptor: int) -> subprocess.Popen[bytes]:
-    """Start the worker with our own packages first, whatever the caller's path is."""
+    """Start the worker with our own packages first, and not those of the working folder."""
     home = str(Path(__file__).parents[3])
     path = os.pathsep.join([home, *filter(None, [os.environ.get("PYTHONPATH")])])
     return subprocess.Popen(
-        [sys.executable, "-c", PROGRAM, str(descriptor)],
+        [sys.executable, "-P", "-c", PROGRAM, str(descriptor)],
         pass_fds=(descriptor,),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,

@@ -27,7 +27,8 @@ def port_urls(robot: RobotDescription, port: str) -> dict[str, str]:
     """Return the URL of each bus, and of the IMU where it has a connection of its own.
 
     Raises:
-        UsageError: The robot has no bus, a bus has no URL, or a name is no bus of the robot.
+        UsageError: The robot has no bus, a bus has no URL, or a name is no bus of the robot
+            and not that of an IMU with a connection of its own.
     """
     names = [bus.name for bus in robot.buses]
     if not names:
@@ -36,7 +37,7 @@ def port_urls(robot: RobotDescription, port: str) -> dict[str, str]:
     first, equals, _ = port.partition("=")
     if equals and first in names:
         given = dict(part.partition("=")[::2] for part in port.split(","))
-        if set(given) - {IMU} != set(names):
+        if set(given) - ({IMU} if apart else set()) != set(names):
             raise UsageError(f"--port names {', '.join(given)}; the buses are {', '.join(names)}")
         return given
     if equals and first.isidentifier():

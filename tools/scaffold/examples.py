@@ -7,7 +7,7 @@ from typing import Final
 
 from windup.hal.joints import Joint
 from windup.robots import RobotDescription
-from windup.robots.folders import FILE
+from windup.robots.folders import FILE, GAITS
 from windup.tools.scaffold.joint_choice import harmless_swing
 from windup.tools.schemas.files import schema_line
 
@@ -26,7 +26,7 @@ def robot_files(folder: Path) -> Files:
     return {
         folder / FILE: f"{schema_line('robot')}\n{named[FILE]}",
         folder / "model.xml": named["model.xml"],
-        folder / "gaits" / f"{GAIT}.toml": f"{schema_line('gait')}\n{named[f'{GAIT}.toml']}",
+        folder / GAITS / f"{GAIT}.toml": f"{schema_line('gait')}\n{named[f'{GAIT}.toml']}",
     }
 
 

@@ -9,7 +9,7 @@ from typing import Final
 
 from windup.hal.errors import UsageError
 from windup.robots import robot_names
-from windup.tools.checking.gait_files import GAITS
+from windup.robots.folders import GAITS
 from windup.tools.terminal.writing import check_folder, writing
 
 WORD: Final = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")

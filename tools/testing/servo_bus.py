@@ -9,6 +9,9 @@ A bench of servos does not need MuJoCo, which is imported when a robot is used.
 """
 
 import math
+from collections.abc import Callable
+from contextlib import ExitStack
+from functools import partial
 from itertools import count
 from pathlib import Path
 from types import TracebackType
@@ -183,20 +186,25 @@ class ServoBus:
     def close(self) -> None:
         """Disconnect robots, close ports of SDKs, end traces, and forget the world.
 
+        All of it is done whatever fails; the first error is raised, and later ones are its notes.
+
         Raises:
             TraceError: Not all that a trace holds has happened.
         """
-        try:
-            for robot in self._robots:
-                robot.stack.close()
-            for port in self._sdk_ports:
-                port.closePort()
-            for tap in self._taps:
-                tap.close()
-        finally:
-            self._robots, self._sdk_ports, self._taps = [], [], []
-            drop_world(self._name)
-        check_played(self.world)
+        self._ending().close()
+
+    def _ending(self) -> ExitStack:
+        """Return what there is to close, the last first; a second time there is nothing left."""
+        stack = ExitStack()
+        stack.push(_closing(partial(check_played, self.world)))
+        stack.callback(drop_world, self._name)
+        close = [robot.stack.close for robot in self._robots]
+        close += [port.closePort for port in self._sdk_ports]
+        close += [tap.close for tap in self._taps]
+        for each in reversed(close):
+            stack.push(_closing(each))
+        self._robots, self._sdk_ports, self._taps = [], [], []
+        return stack
 
     def __enter__(self) -> Self:
         return self
@@ -207,10 +215,25 @@ class ServoBus:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if error is None:
-            self.close()
-        else:
-            drop_world(self._name)
+        self._ending().__exit__(kind, error, trace)
 
     def _url(self, bus: str) -> str:
         return f"{self.url}&bus={bus}" if bus else self.url
+
+
+def _closing(close: Callable[[], object]) -> Callable[..., None]:
+    """Return a function for an `ExitStack` that closes, and hides no error that came before."""
+
+    def leave(
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        try:
+            close()
+        except Exception as second:
+            if error is None:
+                raise
+            error.add_note(f"closing has failed too: {second}")
+
+    return leave

@@ -10,6 +10,7 @@ import select
 import subprocess
 import sys
 from collections.abc import Callable
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, Self, Unpack
@@ -115,23 +116,26 @@ class ServoPty:
         """End the process and remove its paths; a second call has no effect."""
         stdin, stdout = self._process.stdin, self._process.stdout
         assert stdin is not None and stdout is not None
-        stdin.close()
-        try:
-            self._process.wait(END)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
-        stdout.close()
-        if self._folder is not None:
-            self._folder.cleanup()
+        with ExitStack() as stack:
+            if self._folder is not None:
+                stack.callback(self._folder.cleanup)
+            stack.callback(stdout.close)
+            with suppress(BrokenPipeError):  # an order that the dead process has not read
+                stdin.close()
+            try:
+                self._process.wait(END)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
 
     def _ask(self, order: dict[str, Any]) -> dict[str, Any]:
-        """Send an order and return the answer."""
+        """Send an order and return the answer; see `_hear`."""
         stdin = self._process.stdin
         if stdin is None or stdin.closed:
             raise UsageError("these servos are closed; nothing can be asked of them any more")
-        stdin.write(json.dumps(order) + "\n")
-        stdin.flush()
+        with suppress(BrokenPipeError):  # the answer says that the process has ended
+            stdin.write(json.dumps(order) + "\n")
+            stdin.flush()
         return self._hear()
 
     def _hear(self) -> dict[str, Any]:
@@ -146,11 +150,20 @@ class ServoPty:
         ready, _, _ = select.select([stdout], [], [], PATIENCE)
         line = stdout.readline() if ready else ""
         if not line:
-            raise PortError("the process that emulates these servos has ended; see its last words")
+            with suppress(subprocess.TimeoutExpired):
+                self._process.wait(END if ready else 0.0)  # it ends soon after its output
+            raise PortError(f"the process that emulates these servos {self._silence()}")
         answer: dict[str, Any] = json.loads(line)
         if "error" in answer:
             raise UsageError(answer["error"])
         return answer
+
+    def _silence(self) -> str:
+        """Return why there is no answer."""
+        status = self._process.poll()
+        if status is None:
+            return f"runs, and has not answered for {PATIENCE:g} s; is the machine busy?"
+        return f"has ended (exit status {status}); see its last words"
 
     def __enter__(self) -> Self:
         return self

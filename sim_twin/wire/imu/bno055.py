@@ -2,7 +2,8 @@
 
 Addresses, units, reset values and times are those of the data sheet BST-BNO055-DS000-14. Only the
 mode "IMU" is emulated: in other modes, and during a change of mode, the data registers keep their
-values.
+values. Units and axes are taken in the mode "config" alone; axes other than the chip's own are
+kept but turn nothing. The host powers the chip: a brown-out of the servos does not reach it.
 """
 
 import errno
@@ -17,10 +18,13 @@ from windup.sim_twin.wire.schedule import Schedule
 
 PERIOD: Final = 0.01  # s
 CHIP_ID, DATA, UNIT_SEL, OPR_MODE = 0x00, 0x08, 0x3B, 0x3D
-RESET: Final = {CHIP_ID: 0xA0, 0x01: 0xFB, 0x02: 0x32, 0x03: 0x0F, UNIT_SEL: 0x80, OPR_MODE: 0x10}
-IMU_MODE = 0x08
+AXES: Final = {0x41: 0x24, 0x42: 0x00}
+VERSIONS: Final = {CHIP_ID: 0xA0, 0x01: 0xFB, 0x02: 0x32, 0x03: 0x0F}
+RESET: Final = {**VERSIONS, UNIT_SEL: 0x80, OPR_MODE: 0x10, **AXES}
+CONFIG, IMU_MODE = 0x00, 0x08
 SWITCH: Final = 0.007  # s, from the mode "config" to another one
-WRITABLE = (0x07, UNIT_SEL, OPR_MODE)
+ALWAYS, IN_CONFIG = (0x07, OPR_MODE), (UNIT_SEL, *AXES)
+"""Registers that can be written in every mode, and in the mode "config" alone."""
 PER_M_S2, PER_RAD_S, PER_DEGREE_S, PER_ONE = 100.0, 900.0, 16.0, 16_384.0
 
 
@@ -50,13 +54,14 @@ class Bno055Registers:
         return bytes(self._memory[register : register + count])
 
     def write(self, register: int, value: int) -> None:
-        """Set a register; read-only ones keep their value.
+        """Set a register; one that cannot be written now keeps its value.
 
         Raises:
             OSError: The chip is silent.
         """
         self._answer()
-        if register in WRITABLE:
+        configuring = self._memory[OPR_MODE] & 0x0F == CONFIG
+        if register in ALWAYS or (configuring and register in IN_CONFIG):
             self._memory[register] = value
         if register == OPR_MODE:
             measures = value & 0x0F == IMU_MODE

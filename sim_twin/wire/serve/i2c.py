@@ -1,5 +1,7 @@
 """``twin://`` as an I2C bus, with the chip of an emulated robot's IMU."""
 
+import errno
+
 from windup.hal.errors import UsageError
 from windup.sim_twin.wire.imu.bno055 import Bno055Registers
 from windup.sim_twin.wire.world.address import parse_address
@@ -23,8 +25,10 @@ class TwinI2c:
     """
 
     def __init__(self, url: str) -> None:
-        self._running = enter(parse_address(url))
-        chip = self._running.world.bus(parse_address(url).bus).chip
+        address = parse_address(url)
+        self._running = enter(address)
+        self._bus = self._running.world.bus(address.bus)
+        chip = self._bus.chip
         if chip is None:
             leave(self._running)
             raise UsageError(f"{url}: there is no chip on I2C in this world")
@@ -38,12 +42,12 @@ class TwinI2c:
 
     def read(self, register: int, count: int) -> bytes:
         """Return registers, after the time that they take on the bus."""
-        self._pass(count)
+        self._transfer(count)
         return self._chip.read(register, count)
 
     def write(self, register: int, value: int) -> None:
         """Set a register."""
-        self._pass(1)
+        self._transfer(1)
         self._chip.write(register, value)
 
     def close(self) -> None:
@@ -52,7 +56,14 @@ class TwinI2c:
             self._open = False
             leave(self._running)
 
-    def _pass(self, count: int) -> None:
+    def _transfer(self, count: int) -> None:
+        """Let the time of a transfer pass.
+
+        Raises:
+            OSError: The bus is unplugged.
+        """
+        if not self._bus.plugged:
+            raise OSError(errno.ENXIO, "No such device or address")
         self.clock.wait_until(self.clock.now() + 9.0 * (count + OVERHEAD) / CLOCK_RATE)
 
 

@@ -118,8 +118,10 @@ class Recorder(Tap):
 
     def close(self) -> None:
         """Detach from the buses and close the file."""
-        super().close()
-        self._file.close()
+        try:
+            super().close()
+        finally:
+            self._file.close()
 
 
 class Checker(Tap):

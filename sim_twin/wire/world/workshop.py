@@ -46,13 +46,14 @@ class Workshop:
     def imu(self, source: ImuSource, kind: ImuKind = BNO08X_RVC) -> None:
         """Add the port of an IMU that streams by itself, or the I2C bus of one that is polled."""
         bus = self.bus(IMU, [], Mute(), RVC_BAUD)
-        if kind.mounting.axes != STRAIGHT:
-            source = MountedImu(source, kind.mounting)
         bus.imu = FaultyImu(source, self.schedule)
+        felt: ImuSource = bus.imu
+        if kind.mounting.axes != STRAIGHT:
+            felt = MountedImu(felt, kind.mounting)
         if kind.wiring == "i2c":
-            bus.chip = Bno055Registers(bus.imu, self.schedule)
+            bus.chip = Bno055Registers(felt, self.schedule)
         else:
-            start_rvc(bus, bus.imu)
+            start_rvc(bus, felt)
 
     def world(self, physics: Physics, supply: float, owned: tuple[object, ...] = ()) -> BusWorld:
         """Return the world with the buses added so far."""

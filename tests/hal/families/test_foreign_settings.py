@@ -165,9 +165,8 @@ def test_limits_of_its_owner_are_left_and_shown(caplog: pytest.LogCaptureFixture
     backend = robot(wires, [mount(sts, "body", 1), mount(sts, "body", 2)])
     backend.connect()
     backend.configure()
-    assert (
-        "servos protect themselves oddly: overload_torque 25 (usual: 80) at j1" in caplog.messages
-    )
+    said = "protection limits differ from the factory's: overload_torque 25 (usual: 80) at j1"
+    assert said in caplog.messages
     assert wires["body"].show(2, "overload_torque") == 25
 
 
@@ -190,7 +189,7 @@ def test_a_temperature_limit_other_than_the_makers_is_shown(
     robot.serial.put(3, 31, 100, 1)
     robot.backend.configure()
     assert caplog.messages[-1] == (
-        "servos protect themselves oddly: temperature_limit 30 (usual: 80) at j1; "
+        "protection limits differ from the factory's: temperature_limit 30 (usual: 80) at j1; "
         "temperature_limit 100 (usual: 80) at j2"
     )
 

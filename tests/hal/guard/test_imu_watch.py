@@ -177,6 +177,15 @@ def test_a_gyroscope_that_stays_at_one_rate_while_the_body_turns_as_fast_is_stuc
     assert str(first[1]) == "the IMU is stuck about one axis, at 3.0 rad/s (stop above 0.7)"
 
 
+def test_a_stuck_axis_is_one_fault_also_between_two_samples() -> None:
+    watch = ImuWatch()
+    for observation in falling(3.0):
+        watch.update(observation)
+        watch.update(replace(observation, time=observation.time + 0.5 * DT))
+    (warning,) = watch.warnings
+    assert warning.count == 1
+
+
 @pytest.mark.parametrize("rate", [None, 0.0])
 def test_rates_that_change_or_are_low_are_not_stuck(rate: float | None) -> None:
     assert found(ImuWatch(), falling(rate)) is None

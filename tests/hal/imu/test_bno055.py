@@ -1,5 +1,6 @@
 import struct
 from collections.abc import Sequence
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -7,12 +8,15 @@ import pytest
 from tests.hal.fake_bus import VirtualClock
 from windup.hal.errors import PortError, UsageError
 from windup.hal.imu.bno055 import (
+    AXIS_MAP_CONFIG,
+    AXIS_MAP_SIGN,
     BNO055_ID,
     CHIP_ID,
     CONFIG,
     DATA,
     IMU_MODE,
     OPR_MODE,
+    STRAIGHT_AXES,
     UNIT_SEL,
     UNITS,
     Bno055,
@@ -33,6 +37,7 @@ class FakeChip:
         self.clock = VirtualClock()
         self.memory = bytearray(0x80)
         self.memory[CHIP_ID], self.memory[OPR_MODE], self.memory[UNIT_SEL] = BNO055_ID, mode, 0x80
+        self.memory[AXIS_MAP_CONFIG : AXIS_MAP_SIGN + 1] = bytes(STRAIGHT_AXES)
         self.written: list[tuple[float, int, int]] = []
         self.there, self.stuck = True, False
         self.closed = 0
@@ -92,6 +97,8 @@ def test_a_chip_in_another_mode_is_set_with_the_waits_of_the_data_sheet() -> Non
         (OPR_MODE, CONFIG),
         (0x07, 0),
         (UNIT_SEL, UNITS),
+        (AXIS_MAP_CONFIG, 0x24),
+        (AXIS_MAP_SIGN, 0x00),
         (OPR_MODE, IMU_MODE),
     ]
     began = chip.written[0][0]
@@ -104,6 +111,15 @@ def test_a_chip_that_measures_already_is_left_alone() -> None:
     chip.memory[UNIT_SEL] = UNITS
     listening(chip)
     assert chip.written == []
+
+
+def test_axes_that_another_program_has_left_in_the_chip_are_reset() -> None:
+    chip = FakeChip(mode=IMU_MODE)
+    chip.memory[UNIT_SEL] = UNITS
+    chip.memory[AXIS_MAP_CONFIG], chip.memory[AXIS_MAP_SIGN] = 0x21, 0x07
+    listening(chip)
+    assert bytes(chip.memory[AXIS_MAP_CONFIG : AXIS_MAP_SIGN + 1]) == b"\x24\x00"
+    assert chip.memory[OPR_MODE] == IMU_MODE
 
 
 def test_a_sample_that_was_read_before_ages() -> None:
@@ -215,3 +231,11 @@ def test_a_url_of_no_i2c_bus_is_refused(url: str, says: str) -> None:
 def test_a_bus_that_is_not_there_says_which_are() -> None:
     with pytest.raises(PortError, match="no I2C bus /dev/i2c-99; buses there are: "):
         open_i2c("/dev/i2c-99", 0x28)
+
+
+def test_a_wire_that_is_held_low_does_not_stop_the_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[int, int, int]] = []
+    monkeypatch.setattr("smbus2.SMBus", lambda path: SimpleNamespace(fd=7, close=lambda: None))
+    monkeypatch.setattr("fcntl.ioctl", lambda *request: asked.append(request))
+    open_i2c("/dev/i2c-3", 0x28).close()
+    assert asked == [(7, 0x0701, 0), (7, 0x0702, 2)]  # no retry, 20 ms

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.shapes import ARM, LINK, QUADRUPED, write_shape
+from tests.shapes import ARM, LINK, QUADRUPED, Shape, add_table, write_shape
 from windup.robots import load_robot
 from windup.tools.checking.outline import outline_of, outline_of_model, sole_outline
 
@@ -22,6 +22,19 @@ def test_a_robot_has_an_axis_a_joint_and_a_sole_a_foot(tmp_path: Path) -> None:
     np.testing.assert_allclose(np.ptp(sole, axis=0), [0.12, 0.08, 0.0], atol=1e-9)
     assert outline.floor == pytest.approx(0.3 - 0.03 - 3 * LINK - 0.005)
     np.testing.assert_allclose(outline.com[:2], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("shape", [QUADRUPED, ARM], ids=lambda shape: shape.name)
+def test_a_table_beside_the_robot_has_no_part_in_its_centre_of_mass(
+    tmp_path: Path, shape: Shape
+) -> None:
+    alone, table = (write_shape(tmp_path / name, shape) for name in ("alone", "table"))
+    add_table(table)
+    com = outline_of(load_robot(alone)).com
+    robot = load_robot(table)
+    np.testing.assert_allclose(outline_of(robot).com, com)
+    bare = [outline_of_model(load_robot(each).spec().compile()).com for each in (alone, table)]
+    np.testing.assert_allclose(bare[1], bare[0])
 
 
 def test_links_go_from_body_to_body(tmp_path: Path) -> None:

@@ -28,6 +28,12 @@ LINES = {
     "armed twin": ("stand op3 --arm", "--arm needs a --port; without one only the twin moves"),
     "choice": ("walk op3 --sampling best", "see `windup walk --help`"),
     "swept": ("sweep walk op3 --hlep --out a.csv", "unknown option --hlep (did you mean --help?)"),
+    "bench": (
+        "bench",
+        "bench: give one of tick, twin, balance, servo, bus, safety, guardian, loop, faults, "
+        "unplug, leaks, starts, fuzz, startup (what to measure); see `windup bench --help`",
+    ),
+    "new": ("new", "new: give one of robot, gait, controller (what to write); see `windup new"),
     "plot": ("stand op3 --plot a.png", "stand: unknown option --plot"),
 }
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.shapes import ARM, THIRTY, write_shape
+from tests.shapes import ARM, THIRTY, add_table, write_shape
 from tests.tools.conftest import Windup, refusal
 
 PNG = b"\x89PNG\r\n"
@@ -20,6 +20,19 @@ def test_a_sound_robot_has_status_0_and_a_picture(shell: Windup, tmp_path: Path)
     assert len(ran.json["joints"]) == 30
     assert plot.read_bytes().startswith(PNG)
     assert ran.err.splitlines()[-2:] == ["thirty: 0 errors, 0 warnings", f"picture: {plot}"]
+
+
+@pytest.mark.parametrize("broken", [False, True])
+def test_a_table_in_the_mjcf_is_no_part_of_the_robot(
+    shell: Windup, tmp_path: Path, broken: bool
+) -> None:
+    folder = write_shape(tmp_path / "r", THIRTY)
+    add_table(folder)
+    if broken:
+        (folder / "robot.toml").write_text('name = "thirty"')
+    ran = shell("check", folder, "--json", "-")
+    assert ran.status == (2 if broken else 0), ran.err
+    assert ran.json["mass"] == pytest.approx(0.4 + 30 * 0.02 + 2 * 0.02)
 
 
 def test_all_that_is_wrong_and_doubtful_is_said_with_status_2(

@@ -155,6 +155,16 @@ def test_a_busy_worker_takes_the_newest_question_and_forgets_as_it_was_told(
         assert _newest(there) is None
 
 
+def test_files_of_the_working_folder_are_not_imported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("queue", "socket"):
+        (tmp_path / f"{name}.py").write_text(f"raise SystemExit('not the {name} of Python')")
+    monkeypatch.chdir(tmp_path)
+    with ProcessPlanner(TASK) as planner:
+        planner.wait_ready()
+
+
 def test_the_process_ends_with_its_planner() -> None:
     planner = ProcessPlanner(TASK, Stopwatch())
     planner.wait_ready()

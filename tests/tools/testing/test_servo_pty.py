@@ -1,5 +1,6 @@
 """Emulated servos under a path, in a process that ends with its test. Nothing here is timed."""
 
+import signal
 import subprocess
 import sys
 import time
@@ -8,8 +9,9 @@ from pathlib import Path
 import pytest
 import serial
 
-from windup.hal.errors import UsageError
+from windup.hal.errors import PortError, UsageError
 from windup.sim_twin.wire.protocols.frames1 import encode
+from windup.tools.testing import servo_pty
 from windup.tools.testing.servo_pty import ServoPty
 
 PATIENCE = 20.0  # s, for a busy machine
@@ -84,6 +86,30 @@ def test_it_ends_with_a_program_that_was_killed(tmp_path: Path) -> None:
     deadline = time.monotonic() + PATIENCE
     while path.is_symlink():  # its end comes soon after
         assert time.monotonic() < deadline
+
+
+def test_a_process_that_died_is_said_and_everything_is_closed() -> None:
+    with ServoPty(servos="STS3215:1") as pty:
+        folder = Path(pty.path).parent
+        pty._process.kill()
+        pty._process.wait()
+        for _ in range(2):
+            with pytest.raises(PortError, match=r"has ended \(exit status -9\)"):
+                pty.driven()
+        with pytest.raises(PortError, match="has ended"):
+            pty.faults.clear()
+    assert pty._process.stdout is not None and pty._process.stdout.closed
+    assert not folder.exists()
+    pty.close()
+
+
+def test_one_that_is_silent_is_not_called_dead(monkeypatch: pytest.MonkeyPatch) -> None:
+    with ServoPty(servos="STS3215:1") as pty:
+        monkeypatch.setattr(servo_pty, "PATIENCE", 0.2)
+        pty._process.send_signal(signal.SIGSTOP)
+        with pytest.raises(PortError, match=r"runs, and has not answered for 0\.2 s"):
+            pty.driven()
+        pty._process.send_signal(signal.SIGCONT)
 
 
 def test_a_robot_of_two_buses_has_two_paths() -> None:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from windup.robots import load_robot
+from windup.robots.folders import gait_files
 from windup.tools.benches.fuzz.broken_mjcf import broken_mjcf
 from windup.tools.benches.fuzz.broken_toml import broken_toml
 from windup.tools.benches.fuzz.odd_line import odd_line
@@ -103,7 +104,7 @@ def _robot(dice: random.Random, name: str, folder: Path) -> str:
         toml.write_text(broken_toml(dice, toml.read_text()))
     else:
         mjcf.write_text(broken_mjcf(dice, mjcf.read_text()))
-    gaits = sorted((folder / "gaits").glob("*.toml"))
+    gaits = list(gait_files(folder).values())
     if gaits and dice.random() < 0.3:
         gait = dice.choice(gaits)
         gait.write_text(broken_toml(dice, gait.read_text()))

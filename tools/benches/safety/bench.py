@@ -14,6 +14,7 @@ from rich.table import Table
 from windup.hal.errors import UsageError
 from windup.robots import load_robot
 from windup.tools.benches.safety.attempt import trial, under_way
+from windup.tools.benches.safety.endings import own_fault
 from windup.tools.benches.safety.moment import Moment
 from windup.tools.benches.safety.refusals import measure_refusals
 from windup.tools.benches.safety.row import Row
@@ -45,6 +46,8 @@ def measure_safety(
         only: Names of rows, or the beginnings of names; all if empty.
         robots: The robots.
 
+    A trial that could not be measured counts as one that is not safe.
+
     Raises:
         UsageError: There is no such row.
     """
@@ -56,12 +59,14 @@ def measure_safety(
     result = {row.name: _measure(row, moments, rng, robots) for row in rows}
     refused = {} if only else measure_refusals(robots)
     safe = sum(row["safe"] for row in result.values())
+    planned = sum(row["planned"] for row in result.values())
     trials = sum(row["trials"] for row in result.values())
     console.print(_table(result), width=WIDE)
     right = sum(each["right"] for each in refused.values())
     return {
-        "met": safe == trials and right == len(refused),
+        "met": safe == trials == planned > 0 and right == len(refused),
         "safe": safe,
+        "planned": planned,
         "trials": trials,
         "refused": right,
         "refusals": refused,
@@ -83,6 +88,7 @@ def _measure(
     times = [verdict.seconds for _, verdict in seen]
     wrong = [{"robot": name, **asdict(verdict)} for name, verdict in seen if verdict.wrong]
     report = {
+        "planned": len(todo),
         "trials": len(seen),
         "safe": len(seen) - len(wrong),
         "longest_s": round(max(times), 3) if times else None,
@@ -95,9 +101,11 @@ def _measure(
         "wrong": wrong,
         "not_measured": dict(failed),
     }
-    console.print(f"{row.name}: {report['safe']} of {len(seen)} safe, {report['longest_s']} s")
+    console.print(f"{row.name}: {report['safe']} of {len(todo)} safe, {report['longest_s']} s")
+    if len(seen) < len(todo):
+        console.print(f"  NOT MEASURED: {len(todo) - len(seen)} of {len(todo)}")
     for reason, count in failed.items():
-        console.print(f"  not measured, {count} x {reason}", markup=False, soft_wrap=True)
+        console.print(f"  attempts in vain, {count} x {reason}", markup=False, soft_wrap=True)
     for each in wrong:
         said = f"  {each['robot']} {each['activity']}: {each['wrong']}\n{each['words']}"
         console.print(said, markup=False, soft_wrap=True)
@@ -129,7 +137,7 @@ def _try(name: str, row: Row, moment: Moment, failed: Counter[str]) -> Verdict |
 def _one(name: str, row: Row, moment: Moment) -> Verdict:
     with trial(name, row, moment) as running:
         under_way(running)
-        if not row.fault or row.do.__name__ != "own_fault":
+        if row.do is not own_fault:
             running.journal.listen(moment.after)
             if BY_ITSELF in (said := running.errors()):
                 raise NotMeasuredError(said)
@@ -148,7 +156,7 @@ def _table(result: dict[str, Any]) -> Table:
             name,
             row["t0"],
             ", ".join(f"{count} {what}" for what, count in row["while"].items()),
-            f"{row['safe']}/{row['trials']}",
+            f"{row['safe']}/{row['planned']}",
             str(row["longest_s"]),
             f"{row['allowed_s']:g}" + " + crouch" * row["crouch"],
             ", ".join(row["status"]),

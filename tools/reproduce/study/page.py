@@ -3,10 +3,10 @@
 from base64 import b64encode
 from dataclasses import dataclass
 from html import escape
-from importlib.metadata import PackageNotFoundError, version
 
 import mujoco
 
+from windup.tools.command_line.version import installed_version
 from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Study
 
 STYLE = """
@@ -54,8 +54,8 @@ def page(study: Study, entries: list[Entry], *, quick: bool) -> str:
         f"<title>{escape(study.title)}</title><style>{STYLE}</style></head><body>",
         f"<h1>{escape(study.title)}</h1><p>{escape(study.source)}</p>",
         f"<p>{escape(study.setting)}</p>",
-        f"<p>Windup {_version()}, MuJoCo {mujoco.__version__}; {kind}. Each verdict is computed "
-        "from the runs; what would agree stands in brackets.</p>",
+        f"<p>Windup {installed_version()}, MuJoCo {mujoco.__version__}; {kind}. "
+        "Each verdict is computed from the runs; what would agree stands in brackets.</p>",
         _overview(entries),
         *(_section(entry) for entry in entries),
         _missing(study),
@@ -117,10 +117,3 @@ def _table(caption: str, header: list[str], rows: list[list[str]]) -> str:
     body = "\n".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
     title = f"<caption>{escape(caption)}</caption>" if caption else ""
     return f"<table>{title}<tr>{head}</tr>\n{body}</table>"
-
-
-def _version() -> str:
-    try:
-        return version("windup")
-    except PackageNotFoundError:
-        return "(not installed)"

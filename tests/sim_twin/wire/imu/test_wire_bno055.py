@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from windup.hal.errors import ImuError
+from windup.hal.observation import Observation
 from windup.robots.folders import FOLDER
 from windup.tools.robot.robot import Robot
 
@@ -41,3 +42,28 @@ def test_a_chip_that_falls_silent_stops_who_balances_with_it(duck: Path) -> None
         Robot.open(str(duck), port=f"twin://{duck}?{faults}") as robot,
     ):
         robot.walk(steps=40)
+
+
+def test_a_chip_that_is_unplugged_for_a_moment_goes_on(duck: Path) -> None:
+    faults = "faults=unplug:bus=imu:at=1.8:seconds=0.2"
+    with Robot.open(str(duck), port=f"twin://{duck}?{faults}") as robot:
+        ages: list[float] = []
+
+        def note(observation: Observation) -> None:
+            assert observation.imu is not None
+            ages.append(observation.imu.age)
+
+        robot.watch.append(note)
+        robot.stand(2.0)
+        assert 0.2 < max(ages) < 0.6
+        imu = robot.backend.read().imu
+        assert imu is not None and imu.age < 0.05
+
+
+def test_a_gyroscope_that_spins_does_so_about_the_same_axis_of_the_body(duck: Path) -> None:
+    faults = "faults=imu_spin:at=1.8:speed=0.5"
+    with Robot.open(str(duck), port=f"twin://{duck}?{faults}") as robot:
+        robot.stand(1.0)
+        imu = robot.backend.read().imu
+        assert imu is not None
+        assert imu.angular_velocity[0] == pytest.approx(0.5, abs=0.01)

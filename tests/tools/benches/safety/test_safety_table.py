@@ -74,6 +74,36 @@ def test_a_program_that_was_not_under_way_is_tried_again_and_counted(
     assert row["trials"] == 1 and row["not_measured"] == {"op3: it fell": 1}
 
 
+def test_what_could_not_be_measured_is_not_met_and_is_said(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def one(name: str, row: Row, moment: Moment) -> Verdict:
+        if name == "duck":
+            raise NotMeasuredError("it fell")
+        return Verdict(moment.activity, moment.after, 0.1, 130, "off", "")
+
+    monkeypatch.setattr(bench, "_one", one)
+    result = measure_safety(4, only=["SIGHUP"], robots=("op3", "duck"))
+    assert (result["safe"], result["planned"], result["trials"]) == (2, 4, 2)
+    assert result["met"] is False
+    row = result["rows"]["SIGHUP"]
+    assert (row["planned"], row["trials"], row["safe"]) == (4, 2, 2)
+    said = capfd.readouterr().err
+    assert "SIGHUP: 2 of 4 safe" in said and "NOT MEASURED: 2 of 4" in said and "2/4" in said
+    assert measure_safety(4, only=["SIGHUP"], robots=("duck",))["met"] is False
+
+
+def test_nothing_planned_is_not_met_and_all_measured_and_safe_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def one(name: str, row: Row, moment: Moment) -> Verdict:
+        return Verdict(moment.activity, moment.after, 0.1, 130, "off", "")
+
+    monkeypatch.setattr(bench, "_one", one)
+    assert measure_safety(2, only=["stop button"], robots=("op3",))["met"] is True
+    assert measure_safety(2, only=["stop button"], robots=("duck",))["met"] is False
+
+
 def test_a_row_that_is_not_there_is_refused() -> None:
     with pytest.raises(UsageError, match="no row begins with SIGFOO"):
         measure_safety(1, only=["SIGFOO"])
