@@ -5,6 +5,8 @@ import subprocess
 import sys
 from collections.abc import Sequence
 
+from windup.hal.guardian.child_path import child_python_path
+
 BODY = "from windup.hal.guardian.process import main; main()"
 STANDARD_ERROR = 2
 
@@ -26,7 +28,7 @@ def launch(locks: Sequence[int]) -> "subprocess.Popen[bytes]":
         stdout=subprocess.PIPE,
         stderr=None if _has_standard_error() else subprocess.DEVNULL,
         pass_fds=locks,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        env={**os.environ, "PYTHONPATH": child_python_path()},
         start_new_session=True,  # signals of the terminal go to the host only
     )
 

@@ -9,13 +9,13 @@ import subprocess
 import sys
 import time as wall
 from dataclasses import replace
-from pathlib import Path
 from types import TracebackType
 from typing import Self
 
 from windup.control.limit_cycle.planner import StepRequest
 from windup.hal.controller import Stopwatch
 from windup.hal.errors import PlannerError
+from windup.hal.guardian.child_path import child_python_path
 from windup.hal.joints import Array
 from windup.robots import RobotDescription
 from windup.sim_twin.rollouts import RolloutPredictor
@@ -176,13 +176,11 @@ def plan_aside(
 
 
 def _start(descriptor: int) -> subprocess.Popen[bytes]:
-    """Start the worker with our own packages first, and not those of the working folder."""
-    home = str(Path(__file__).parents[3])
-    path = os.pathsep.join([home, *filter(None, [os.environ.get("PYTHONPATH")])])
+    """Start the worker."""
     return subprocess.Popen(
         [sys.executable, "-P", "-c", PROGRAM, str(descriptor)],
         pass_fds=(descriptor,),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
-        env={**os.environ, "PYTHONPATH": path},
+        env={**os.environ, "PYTHONPATH": child_python_path()},
     )

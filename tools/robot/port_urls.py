@@ -35,7 +35,7 @@ def port_urls(robot: RobotDescription, port: str) -> dict[str, str]:
         raise UsageError(f"{robot.name} has no servos on a bus; leave --port away for its twin")
     apart = has_own_connection(robot.imu_kind)
     first, equals, _ = port.partition("=")
-    if equals and first in names:
+    if equals and (first in names or (apart and first == IMU)):
         given = dict(part.partition("=")[::2] for part in port.split(","))
         if set(given) - ({IMU} if apart else set()) != set(names):
             raise UsageError(f"--port names {', '.join(given)}; the buses are {', '.join(names)}")

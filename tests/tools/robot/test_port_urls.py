@@ -23,3 +23,10 @@ def test_one_on_the_board_or_none_at_all_has_no_url(name: str) -> None:
     with pytest.raises(UsageError) as caught:
         port_urls(robot, f"{bus.name}={WIRE},imu={SENSOR}")
     assert str(caught.value) == f"--port names {bus.name}, imu; the buses are {bus.name}"
+
+
+def test_the_imu_may_come_first() -> None:
+    duck = load_robot("duck")
+    assert port_urls(duck, f"imu={SENSOR},body={WIRE}") == {"body": WIRE, "imu": SENSOR}
+    with pytest.raises(UsageError, match="--port names imu; the buses are body"):
+        port_urls(duck, f"imu={SENSOR}")
