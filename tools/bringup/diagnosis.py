@@ -14,8 +14,8 @@ from windup.hal.errors import TelemetryError
 from windup.hal.guard import HealthLevels, Kind
 from windup.hal.guard.finding import SAYINGS, named
 from windup.hal.joints import Joints
-from windup.hal.telemetry.layout import Header
-from windup.hal.telemetry.ring import TelemetryReader, Ticks
+from windup.hal.telemetry.header import Header, bits_of
+from windup.hal.telemetry.reader import TelemetryReader, Ticks
 from windup.robots import RobotDescription
 from windup.tools.bringup.replay import findings
 from windup.tools.terminal.slowness import PLANS, TICKS, Slowness
@@ -154,7 +154,7 @@ class Diagnosis:
 
     def change(self, name: str) -> Any:
         """Return the growth of a counter over the ring."""
-        return self.newest[name] - self.ticks[0][name]
+        return self.newest[name].astype(np.int64) - self.ticks[0][name].astype(np.int64)
 
     def bus_errors(self) -> dict[str, int]:
         """Return the number of bus errors by kind, over the ring."""
@@ -188,7 +188,7 @@ class Diagnosis:
                 "clamped_share": float(share),
                 "temperature_c": float(temperature),
                 "voltage_v": float(voltage),
-                "alerts": self._alerts(alert),
+                "alerts": bits_of(alert, self.header.alerts),
             }
             for name, age, share, temperature, voltage, alert in columns
         ]
@@ -263,14 +263,10 @@ class Diagnosis:
     def _complain(self, who: str, what: str, do: str) -> None:
         self.complaints.append(Complaint(who, what, do))
 
-    def _alerts(self, bits: float) -> list[str]:
-        return [kind for bit, kind in enumerate(self.header.alerts) if int(bits) >> bit & 1]
-
 
 def _last_run(ticks: Ticks) -> Ticks:
     """Return the ticks of the last run in the ring."""
-    again = np.flatnonzero(np.diff(ticks["tick"]) <= 0)
-    return ticks[int(again[-1]) + 1 :] if len(again) else ticks
+    return ticks[ticks["run"] == ticks["run"][-1]] if len(ticks) else ticks
 
 
 def _alive(pid: int) -> bool:

@@ -12,8 +12,8 @@ from rich.table import Table
 from rich.text import Text
 
 from windup.hal.errors import TelemetryError, UsageError
-from windup.hal.telemetry.layout import ring_path
-from windup.hal.telemetry.ring import TelemetryReader
+from windup.hal.telemetry.reader import TelemetryReader
+from windup.hal.telemetry.runtime_folder import ring_path
 from windup.robots import RobotDescription, load_robot
 from windup.tools.bringup.diagnosis import Diagnosis, Limits
 from windup.tools.options.faults import with_faults
