@@ -4,30 +4,34 @@ from enum import IntEnum
 
 
 class RunState(IntEnum):
-    """State of a run; the codes are part of the format of telemetry and of logs."""
+    """State of a run; the codes are part of the format of telemetry and of logs.
+
+    Attributes:
+        DISCONNECTED: No program has the robot's ports open.
+        LIMP: Torque is off.
+        HOLDING: Torque is on, and the robot keeps its last goals; no controller runs.
+        STANDING: A controller runs that does not report any of the states that follow.
+        WALKING: The controller walks.
+        STEPPING: The controller takes single steps, against a fall or from one footprint to the
+            next.
+        FALLING: A fall is predicted that cannot be prevented; the robot takes a landing pose.
+        FALLEN: The robot lies.
+        RISING: The controller gets up.
+        STOPPING: The stop policy is being carried out.
+        FAULTED: The run ended with an error; the stop policy has been carried out.
+    """
 
     DISCONNECTED = 0
-    """No program has the robot's ports open."""
     LIMP = 1
-    """Torque is off."""
     HOLDING = 2
-    """Torque is on, and the robot keeps its last goals; no controller runs."""
     STANDING = 3
-    """A controller runs that has not reported any of the states that follow."""
     WALKING = 4
-    """The controller walks."""
     STEPPING = 5
-    """The controller takes single steps: against a fall, or from footprint to footprint."""
     FALLING = 6
-    """A fall is predicted that cannot be prevented; the robot takes a landing pose."""
     FALLEN = 7
-    """The robot lies."""
     RISING = 8
-    """The controller gets up."""
     STOPPING = 9
-    """The stop policy is being carried out."""
     FAULTED = 10
-    """The run ended with an error; the stop policy has been carried out."""
 
     @property
     def words(self) -> str:

@@ -23,28 +23,29 @@ ALIGNMENT: Final = 64
 RUNS, OVER, CLOSED = 0, 1, 2
 """Values of `phase` in the head: a run goes on; it has ended; the session was closed as well."""
 
-HEAD: Final = np.dtype(
-    [
-        ("magic", "S8"),  # b"WINDUPTR"
-        ("version", "<u4"),
-        ("json_size", "<u4"),  # of the header, bytes; it begins after this head
-        ("sequence", "<u8"),  # number of the newest tick, from 1; 0 before any
-        ("runs", "<u8"),  # number of runs begun
-        ("marks", "<u8"),  # number of marks
-        ("state", "<u4"),  # state of the run now, also between two ticks: a code of `states`
-        ("phase", "<u4"),
-        ("reason", "S128"),  # why the last run ended, UTF-8
-        ("records_at", "<u8"),  # offset of the first record
-        ("names_at", "<u8"),
-        ("marks_at", "<u8"),
-        ("records", "<u4"),  # number of records
-        ("record_size", "<u4"),  # bytes
-        ("name_slots", "<u4"),
-        ("name_size", "<u4"),
-        ("mark_slots", "<u4"),
-        ("mark_size", "<u4"),
-    ]
-)
+TABLE: Final = """
+magic         S8    WINDUPTR
+version       <u4   version of the format
+json_size     <u4   size of the header, bytes
+sequence      <u8   number of the newest tick, from 1; 0 before any
+runs          <u8   number of runs begun
+marks         <u8   number of marks
+state         <u4   state of the robot now, also between two ticks: a code of `states`
+phase         <u4   0 while a run goes on, 1 after it has ended, 2 after the session was closed
+reason        S128  why the last run ended, UTF-8
+records_at    <u8   offset of the first record
+names_at      <u8   offset of the first slot of names
+marks_at      <u8   offset of the first slot of marks
+records       <u4   number of records
+record_size   <u4   size of a record, bytes
+name_slots    <u4   number of slots of names
+name_size     <u4   size of such a slot, bytes
+mark_slots    <u4   number of slots of marks
+mark_size     <u4   size of such a slot, bytes
+"""
+_LINES = [line.split(maxsplit=2) for line in TABLE.strip().splitlines()]
+HEAD: Final = np.dtype([(name, kind) for name, kind, _ in _LINES])
+MEANINGS: Final = {name: meaning for name, _, meaning in _LINES}
 NAME_SLOTS, NAME_SIZE = 8, 16384
 MARK_SLOTS, MARK_SIZE = 64, 256
 NUMBER: Final = struct.Struct("<Q")
