@@ -123,6 +123,13 @@ def publisher_of(controller: object) -> Publisher | None:
     return controller if isinstance(controller, Publisher) else None
 
 
+def innermost(controller: object) -> object:
+    """Return the controller inside all those that have one in their attribute `controller`."""
+    while (inner := getattr(controller, "controller", None)) is not None:
+        controller = inner
+    return controller
+
+
 @dataclass
 class BlockPart:
     """One controller's part of the block of a controller that is made of several.

@@ -110,7 +110,7 @@ class RunNames(msgspec.Struct, frozen=True):
 
     Attributes:
         run: Number of the run in the ring.
-        controller: Name of the controller's class.
+        controller: Name of the class of the innermost controller.
         phases: Names of the codes of `phase`.
         reasons: Names of the codes of `reason`.
         values: Names of the first numbers of `values`; the others are NaN.

@@ -34,19 +34,18 @@ class Record:
 
     def __init__(self, header: Header) -> None:
         record = np.zeros(1, dtype=header.dtype())
-        self.data = memoryview(record.view(np.uint8))  # type: ignore[arg-type]  # it is a buffer
+        self.data = record.view(np.uint8).data
         self.payload = self.data[CHECK.size :]
         names = [kind.name for kind in KINDS]
         scalars = KINDS[names.index(FIRST) : names.index(LAST) + 1]
         self._scalars = struct.Struct("<" + "".join(CODES[kind.type] for kind in scalars))
         begin, end = header.offset("position"), header.offset("asked")
         self._measured = record.view(np.uint8)[begin:end].view(np.float64)
-        one = record[0]
-        self._asked, self._applied = one["asked"], one["applied"]
-        self.values: Array = one["values"]
+        self._asked, self._applied = record["asked"][0], record["applied"][0]
+        self.values: Array = record["values"][0]
         self.values.fill(np.nan)
-        self.clamped, self.clamped_by = one["clamped"], one["clamped_by"]
-        self.alert, self.joint_warnings = one["alert"], one["joint_warnings"]
+        self.clamped, self.clamped_by = record["clamped"][0], record["clamped_by"][0]
+        self.alert, self.joint_warnings = record["alert"][0], record["joint_warnings"][0]
         counts = len(header.clamps) + len(header.driver_clamps) + len(header.errors)
         self._counters, self._counters_at = struct.Struct(f"<{counts}Q"), header.offset("clamps")
         self._no_age = np.full(len(header.joints), 0.0)

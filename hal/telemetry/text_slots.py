@@ -50,6 +50,8 @@ class TextSlots:
 
     def read(self, number: int) -> bytes | None:
         """Return text `number`, or None if it has been overwritten or is being written."""
+        if number < 1:
+            return None
         start = self._at(number)
         found, size, check = SLOT.unpack_from(self._ring, start)
         if found != number or size > self.room:

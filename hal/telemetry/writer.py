@@ -19,7 +19,7 @@ from windup.hal.contacts import ContactSensors
 from windup.hal.guard import GuardedBackend
 from windup.hal.guard.imu_watch import ImuWatch
 from windup.hal.observation import Observation
-from windup.hal.publishing.controller_block import NOTHING, ControllerBlock, publisher_of
+from windup.hal.publishing.controller_block import NOTHING, ControllerBlock, innermost, publisher_of
 from windup.hal.publishing.run_state import RunState
 from windup.hal.telemetry.file import make_ring
 from windup.hal.telemetry.header import Header, Mark, RunNames
@@ -126,7 +126,7 @@ class TelemetryWriter:
         self.block = ControllerBlock(self._record.values[: len(names.values)])
         run = RunNames(
             self._run + 1,
-            type(controller).__name__ if controller is not None else "",
+            "" if controller is None else type(innermost(controller)).__name__,
             names.phases,
             names.reasons,
             names.values,

@@ -130,6 +130,11 @@ class Diagnosis:
         return "running" if self.silence < STANDSTILL else "standing still"
 
     @property
+    def robot_state(self) -> str:
+        """State of the robot in the newest tick, such as "walking"."""
+        return self.header.states[int(self.newest["state"])]
+
+    @property
     def rate(self) -> float | None:
         """Ticks per second of the backend's time over the ring, Hz; None if unknown."""
         seconds = float(self.newest["time"] - self.ticks[0]["time"])
@@ -196,11 +201,13 @@ class Diagnosis:
     def result(self) -> dict[str, Any]:
         """Return the whole diagnosis as plain data."""
         tick = np.percentile(self.ticks["tick_time"], [50, 99]) * 1e3
+        late = np.percentile(self.ticks["lateness"], [50, 99]) * 1e3
         return {
             "robot": self.header.robot,
             "port": self.header.port,
             "healthy": self.healthy,
             "state": self.state,
+            "robot_state": self.robot_state,
             "reason": self.ended,
             "silence_s": self.silence,
             "rate_hz": self.rate,
@@ -209,6 +216,7 @@ class Diagnosis:
             "missed": int(self.newest["missed"]),
             "missed_share": self.missed,
             "tick_ms": {"p50": float(tick[0]), "p99": float(tick[1])},
+            "lateness_ms": {"p50": float(late[0]), "p99": float(late[1])},
             "imu_age_s": float(self.newest["imu_age"]),
             "bus_errors": self.bus_errors(),
             "clamps": {name: count for name, count in self.clamps().items() if count},
