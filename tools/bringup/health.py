@@ -93,7 +93,8 @@ def picture(diagnosis: Diagnosis) -> Group:
     rate = "" if result["rate_hz"] is None else f"{result['rate_hz']:.1f} Hz of "
     why = "" if result["reason"] is None else f" ({result['reason']})"
     lines = [
-        f"{result['robot']}: {result['state']}{why}, {result['robot_state']} in the last tick, {result['silence_s']:.1f} s ago",
+        f"{result['robot']}: {result['state']}{why}, {result['robot_state']} in the last tick, "
+        f"{result['silence_s']:.1f} s ago",
         f"{rate}{result['rate_nominal_hz']:g} Hz, {result['missed']} of {result['ticks']} ticks "
         f"missed, tick {result['tick_ms']['p50']:.2f} ms, p99 {result['tick_ms']['p99']:.2f} ms",
         _counts("bus errors", result["bus_errors"]),
