@@ -3,6 +3,7 @@
 import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
 
 import mujoco
 import numpy as np
@@ -37,11 +38,7 @@ class RunTelemetry:
     def __init__(self, robot: RobotDescription, stack: Stack, period: float, imu: ImuWatch) -> None:
         self._robot, self._stack, self._period, self._imu = robot, stack, period, imu
         self.writer: TelemetryWriter | None = None
-        self._versions = {
-            "windup": installed_version(),
-            "mujoco": mujoco.__version__,
-            "numpy": np.__version__,
-        }
+        self._versions = _versions()
         with suppress(TelemetryError):  # a run logs it
             remove_leftovers(ring_path(robot.name, stack.port))
 
@@ -91,3 +88,13 @@ class RunTelemetry:
         """Close the ring; it stays readable."""
         if self.writer is not None:
             self.writer.close()
+
+
+@cache
+def _versions() -> dict[str, str]:
+    """Return the versions of this program and of what its twins depend on; looked up once."""
+    return {
+        "windup": installed_version(),
+        "mujoco": mujoco.__version__,
+        "numpy": np.__version__,
+    }
