@@ -101,22 +101,6 @@ class Balancer:
         """Heading at the start of the present step, rad; 0 before the first one."""
         return 0.0 if self._start is None else self._start.heading
 
-    @property
-    def published(self) -> BlockNames:
-        """Names of what `publish` fills in."""
-        return walk_names(self.gait, self.regulation, self.perturbations)
-
-    def publish(self, block: ControllerBlock) -> None:
-        """Publish the state of the graph and of the planning, and what they led to."""
-        tracker = self._tracker
-        block.run_state = RunState.WALKING
-        block.phase, block.phase_time = int(tracker.state[0]), float(tracker.elapsed[0])
-        block.plans, block.late_plans, block.plan_lateness = self.begun, self.late, self._lateness
-        block.reason = reason_of(self.planner is not None, self._asked, self._replanned)
-        if (scale := tracker.scale) is not self._shown:
-            self._shown, plan = scale, self._kept.get(self._first)
-            put_walk(block.values, self.records, self._target, plan, self.steering, scale[0])
-
     def reset(self, observation: Observation) -> None:
         """Start a new walk at the graph's first state.
 
@@ -177,6 +161,22 @@ class Balancer:
         goals = self._limits.apply(goals, self._sent[-1] if self._sent else None, dt)
         self._sent.append(goals)
         return self._hold.at(goals)
+
+    @property
+    def published(self) -> BlockNames:
+        """Names of what `publish` fills in."""
+        return walk_names(self.gait, self.regulation, self.perturbations)
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish the state of the graph and of the planning, and what they led to."""
+        tracker = self._tracker
+        block.run_state = RunState.WALKING
+        block.phase, block.phase_time = int(tracker.state[0]), float(tracker.elapsed[0])
+        block.plans, block.late_plans, block.plan_lateness = self.begun, self.late, self._lateness
+        block.reason = reason_of(self.planner is not None, self._asked, self._replanned)
+        if (scale := tracker.scale) is not self._shown:
+            self._shown, plan = scale, self._kept.get(self._first)
+            put_walk(block.values, self.records, self._target, plan, self.steering, scale[0])
 
     def _begin_step(self, observation: Observation, here: Outcomes, dt: float) -> None:
         """Store the start of the step and request its scalings."""

@@ -206,12 +206,11 @@ class TelemetryWriter:
     def mark(self, text: str) -> None:
         """Write a mark: an event, with the instant at which it happened."""
         self._mark = number = self._mark + 1
-        while True:
-            mark = Mark(number, self._sequence, time.monotonic(), text)
-            if len(data := msgspec.json.encode(mark)) <= self._marks.room:
-                break
-            text = text[: len(text) - (len(data) - self._marks.room)]
-        self._marks.write(number, data)
+        mark = Mark(number, self._sequence, time.monotonic(), text)
+        while (beyond := len(msgspec.json.encode(mark)) - self._marks.room) > 0:
+            cut = mark.text.encode()[: -(beyond + 1) // 2].decode(errors="ignore")
+            mark = msgspec.structs.replace(mark, text=cut)
+        self._marks.write(number, msgspec.json.encode(mark))
         NUMBER.pack_into(self._map, AT_MARKS, number)
 
     def end(self, reason: str, state: RunState = RunState.HOLDING) -> None:

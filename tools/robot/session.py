@@ -200,7 +200,7 @@ class Session(Armed):
         estimator: Estimator | None,
     ) -> None:
         """Run the loop; stop the robot if it ends by an error or a wish."""
-        asked, ended = end.asked, RunState.FAULTED
+        asked, state = end.asked, RunState.FAULTED
         recorder = self.telemetry.begin(controller)
         try:
             self._loop(controller, end, rollouts, estimator, recorder)
@@ -209,7 +209,7 @@ class Session(Armed):
                     note_interruption(asked.by)
                     logging.getLogger(__name__).warning("stopped by %s", asked.by)
                 self._stop_after_error(asked)
-            ended = self._resting()
+            state = self._resting()
         except WindupError as error:
             self.loop.reason = str(error)
             self.telemetry.record_last(self.loop)
@@ -219,7 +219,7 @@ class Session(Armed):
             asked.by = asked.by or type(ended).__name__
             self.loop.reason = INTERRUPTED
             self._stop_after_error(asked)
-            ended = self._resting()
+            state = self._resting()
         except BaseException as error:
             self.loop.reason = f"the controller failed: {type(error).__name__}: {error}"
             self._stop_after_error(asked)
@@ -229,7 +229,7 @@ class Session(Armed):
         finally:
             self.slowness.ticks += self.loop.ticks
             self.slowness.missed += self.loop.missed
-            self.telemetry.end(self.loop.reason, ended)
+            self.telemetry.end(self.loop.reason, state)
 
     def _loop(
         self,

@@ -95,7 +95,7 @@ def test_every_number_of_a_tick_is_read_as_it_was_written(header: Header, seed: 
         assert tick[kind.name] == (2 if kind.type != "<f8" else 2.5), kind.name
     measured = ("position", "velocity", "torque", "voltage", "temperature", "age", "health_age")
     expected: dict[str, Array] = dict(zip(measured, rows, strict=True))
-    expected |= {"imu_orientation": imu.orientation, "imu_acceleration": imu.acceleration}
+    expected |= {"imu_angular_velocity": imu.angular_velocity, "imu_acceleration": imu.acceleration}
     expected |= {"base_position": base.position, "base_angular_velocity": base.angular_velocity}
     expected |= {"asked": asked.block, "applied": applied.block}
     for name, values in expected.items():

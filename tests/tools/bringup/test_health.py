@@ -174,6 +174,7 @@ def test_what_is_not_measured_is_no_complaint(bench: Bench) -> None:
 def test_missed_ticks_count_above_one_in_a_hundred(bench: Bench) -> None:
     bench.ticks(99, missed=1)
     assert bench.complaints() == []
+    bench.writer.begin()
     bench.ticks(97, missed=3)
     assert bench.complaints() == ["loop: 3 % of the ticks came late"]
 
