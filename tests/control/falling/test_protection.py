@@ -77,12 +77,13 @@ def test_the_phases_of_a_fall_are_published_after_the_controllers_own() -> None:
     fall = Fall()
     names = fall.protected.published
     block = ControllerBlock.of(names)
-    for seconds, pitch, state, phase in (
-        (0.1, 0.1, RunState.STANDING, ""),
-        (DT, 1.2, RunState.FALLING, "impact"),
-        (3.0, 1.2, RunState.FALLEN, "lying"),
+    for seconds, pitch, rate, state, phase in (
+        (0.1, 0.1, 0.0, RunState.STANDING, ""),
+        (0.05, 1.2, 5.0, RunState.FALLING, "falling"),
+        (0.05, 1.44, 5.0, RunState.FALLING, "impact"),
+        (REST + 3 * DT, 1.5, 0.0, RunState.FALLEN, "lying"),
     ):
-        fall.hold(seconds, pitch)
+        fall.hold(seconds, pitch, rate)
         fall.protected.publish(block)
         assert block.run_state is state
         assert not phase or names.phases[block.phase] == phase

@@ -121,7 +121,6 @@ def test_states_between_runs_are_those_of_the_torque() -> None:
             assert reader.state.words == "holding"
             robot.stop(limp=True)
             assert reader.state.words == "limp"
-            robot.stand(0.1)
             assert reader.header.versions["windup"]
     assert reader.header.port == "twin://op3"
     with ring(robot) as reader:
