@@ -135,6 +135,7 @@ class TickLoop:
     Attributes:
         observation: Observation of the present tick; None before the first.
         applied: Command of the present tick that the joints really got; None until `command`.
+        recorder: Takes down every tick.
     """
 
     def __init__(
@@ -156,7 +157,7 @@ class TickLoop:
         self._read, self._write, self._step = backend.read, backend.write, controller.step
         self._reset: Callable[[Observation], None] | None = controller.reset
         self._period, self._until, self._estimator = period, until, estimator
-        self._rollouts, self._recorder = rollouts or Stopwatch(), recorder
+        self._rollouts, self.recorder = rollouts or Stopwatch(), recorder
         self._schedule = Schedule(backend.clock, period)
         self._wall_started = wall.perf_counter()
 
@@ -200,9 +201,9 @@ class TickLoop:
         spent = wall.perf_counter() - self._began - (self._rollouts.seconds - self._played)
         report.tick.append(spent)
         report.ticks += 1
-        if self._recorder is not None:
+        if self.recorder is not None:
             assert self.observation is not None, "a tick begins with an observation"
-            self._recorder.record(self.observation, applied, spent, report.ticks, report.missed)
+            self.recorder.record(self.observation, applied, spent, report.ticks, report.missed)
         report.missed += schedule.advance()
         schedule.wait()
         report.sim_time = schedule.elapsed

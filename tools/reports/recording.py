@@ -11,8 +11,9 @@ from windup.hal.joints import Array
 from windup.hal.observation import BaseState, ImuState, Observation
 from windup.tools.reports.run_data import RunData
 
-NO_BASE = BaseState(*(np.full(size, np.nan) for size in (3, 4, 3, 3)), confidence=0.0)
-NO_IMU = ImuState(None, np.full(3, np.nan), np.full(3, np.nan), np.nan)
+NAN3, NAN4 = np.full(3, np.nan), np.full(4, np.nan)
+NO_BASE = BaseState(NAN3, NAN4, NAN3, NAN3, confidence=0.0)
+NO_IMU = ImuState(None, NAN3, NAN3, np.nan)
 
 
 class Row(NamedTuple):

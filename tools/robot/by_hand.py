@@ -3,7 +3,7 @@
 import logging
 from math import nan
 
-from windup.control.loop import Recorder, TickLoop
+from windup.control.loop import TickLoop
 from windup.hal.command import JointCommand
 from windup.hal.errors import UsageError, WindupError
 from windup.hal.observation import Observation
@@ -34,7 +34,7 @@ class ByHand:
         self._runner = runner
         self._given = runner.given_command()
         self._loop: TickLoop | None = None
-        self._begun, self._writes = -1, False
+        self._report, self._begun = RunReport(), -1
         self._read_at, self._said = nan, False
 
     def check_may_move(self) -> None:
@@ -70,7 +70,7 @@ class ByHand:
         """
         self._runner.check_open()
         self._runner.check_heard()
-        seen = self._observe(self._current(writes=False))
+        seen = self._observe(self._current())
         stands = isinstance(self._runner.backend.clock, TwinClock)
         if stands and seen.time == self._read_at and not self._said:
             self._said = True
@@ -101,8 +101,10 @@ class ByHand:
 
     def _tick(self, command: JointCommand, asked: Asked) -> JointCommand:
         """Send a command in a tick of its own; stop the robot after an error."""
-        loop = self._current(writes=True)
-        self._runner.loop = loop.report
+        loop, self._runner.loop = self._current(), self._report
+        if loop.recorder is None:
+            self._runner.publish()
+            loop.recorder = self._runner.telemetry
         try:
             if loop.observation is None or loop.applied is not None:
                 self._observe(loop)
@@ -126,15 +128,11 @@ class ByHand:
         assert seen is not None, "nothing ends this loop"
         return seen
 
-    def _current(self, *, writes: bool) -> TickLoop:
-        """Return the loop that goes on, or a new one after a run, or before the first write."""
+    def _current(self) -> TickLoop:
+        """Return the loop that goes on, or a new one after a run."""
         runner, loop = self._runner, self._loop
-        if loop is None or self._begun != runner.runs or (writes and not self._writes):
-            self._begun, self._writes = runner.runs, writes
-            recorder: Recorder | None = None
-            if writes:
-                runner.publish()
-                recorder = runner.telemetry
-            self._given = runner.given_command()
-            loop = self._loop = runner.loop_by_hand(self._given, recorder, RunReport())
+        if loop is None or self._begun != runner.runs:
+            self._given, self._report = runner.given_command(), RunReport()
+            loop = self._loop = runner.loop_by_hand(self._given, self._report)
+            self._begun = runner.runs
         return loop

@@ -222,9 +222,7 @@ class Runner(Watched):
             recorder=recorder,
         )
 
-    def loop_by_hand(
-        self, controller: Controller, recorder: Recorder | None, report: RunReport
-    ) -> TickLoop:
+    def loop_by_hand(self, controller: Controller, report: RunReport) -> TickLoop:
         """Return a loop without an end, whose ticks are called one by one outside of a run."""
         if isinstance(self.backend.clock, TwinClock):
             self.backend.clock.align()
@@ -235,7 +233,6 @@ class Runner(Watched):
             until=self.looked_at(lambda _: None),
             estimator=self.guarded_estimator(needs_imu=False),
             report=report,
-            recorder=recorder,
         )
 
     def open_body(self, body: Body, asked: Asked) -> None:
