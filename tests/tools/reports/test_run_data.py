@@ -22,19 +22,19 @@ def data() -> RunData:
 
 
 def test_every_tick_has_a_row_and_every_array_a_unit(data: RunData) -> None:
-    ticks, joints, contacts = 50, len(data.joints), len(data.contacts)
+    ticks, joints, contacts = 100, len(data.joints), len(data.contacts)
     shapes = {name: array.shape for name, array in data.arrays.items()}
     assert set(shapes) == set(UNITS) == set(data.units)
     assert {shape[0] for shape in shapes.values()} == {ticks}
     assert shapes["time"] == (ticks,) and shapes["contacts"] == (ticks, contacts)
     assert shapes["position_asked"] == shapes["position"] == (ticks, joints)
-    assert data.arrays["time"][[0, -1]] == pytest.approx([0.0, 0.392])
+    assert data.arrays["time"][[0, -1]] == pytest.approx([0.0, 0.396])
 
 
 def test_what_was_asked_for_and_what_the_joints_got_are_apart(data: RunData) -> None:
     pan = data.joints.index("head_pan")
     asked, applied = data.arrays["position_asked"][:, pan], data.arrays["position_applied"][:, pan]
-    assert asked.max() == pytest.approx(3.92) and applied.max() < 3.2
+    assert asked.max() == pytest.approx(3.96) and applied.max() < 3.2
 
 
 def test_a_saved_run_is_loaded_as_it_was(data: RunData, tmp_path: Path) -> None:
