@@ -98,8 +98,8 @@ def _bus_mistakes(robot: RobotFile, joint: JointEntry, key: str) -> Iterator[Mis
     """Yield a mistake if a servo's protocol or baud rate does not match its bus."""
     family = family_of(str(joint.servo))
     for bus in [bus for bus in robot.bus if bus.name == joint.bus][:1]:
-        if family.protocol != bus.protocol:
-            speaks = f'a {joint.servo} speaks "{family.protocol}"'
+        if family.protocol_name != bus.protocol:
+            speaks = f'a {joint.servo} speaks "{family.protocol_name}"'
             yield key, f'{speaks}, and bus {bus.name!r} has protocol "{bus.protocol}"'
         elif bus.baud not in family.bauds:
             rates = ", ".join(map(str, sorted(family.bauds)))

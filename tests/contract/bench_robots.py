@@ -18,7 +18,7 @@ from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
 from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
-from windup.sim_twin.wire.world.families import PROTOCOLS, make_language, make_servo
+from windup.sim_twin.wire.world.families import PROTOCOLS, make_protocol, make_servo
 
 BAUD = 1_000_000
 REACH = 1.0  # rad, of every joint, both ways
@@ -108,9 +108,9 @@ def _world(places: Sequence[Place], supply: float) -> BusWorld:
         shafts.append(InertiaShaft(sheet.motor(supply), sheet.armature, sheet.friction_loss))
         servo = make_servo(place.model, shafts[-1], place.id, BAUD, supply, 0)
         hung.setdefault(place.bus, []).append(servo)
-    languages = {place.bus: PROTOCOLS[place.model] for place in places}
+    protocols = {place.bus: PROTOCOLS[place.model] for place in places}
     buses = {
-        name: Bus(name, devices, make_language(languages[name]), schedule, BAUD)
+        name: Bus(name, devices, make_protocol(protocols[name]), schedule, BAUD)
         for name, devices in hung.items()
     }
     return BusWorld(Bench(shafts), schedule, buses, supply)

@@ -81,8 +81,8 @@ def pty_subjects(
 def wire_bytes(vendor: Vendor, servos: int = 20) -> int:
     """Return the number of bytes in one cycle: request, answers and goals."""
     family, ids = MAKERS[vendor].family, list(range(1, servos + 1))
-    read = family.dialect.read([family.state.span(id) for id in ids], fast=True)
-    goals = family.dialect.write(ids, family.registers["goal_position"])
+    read = family.protocol.read([family.state.span(id) for id in ids], fast=True)
+    goals = family.protocol.write(ids, family.registers["goal_position"])
     return len(read.request) + read.length + sum(map(len, goals.frames()))
 
 
@@ -103,8 +103,8 @@ def answer(request: bytes) -> bytes:
 def codec_cycle(port: Port, ids: list[int], family: Family) -> Cycle:
     """Return our cycle without the backend: exchange, codec, integers in arrays."""
     exchange, block = BusTransactions(port), family.state
-    read = family.dialect.read([block.span(id) for id in ids], fast=True)
-    write = family.dialect.write(ids, family.registers["goal_position"])
+    read = family.protocol.read([block.span(id) for id in ids], fast=True)
+    write = family.protocol.write(ids, family.registers["goal_position"])
     goal = np.full(len(ids), 2048)
 
     def cycle() -> None:

@@ -40,7 +40,7 @@ def strange_answers(port: Port, family: Family) -> list[Strange]:
     if unasked := port.read(ROOM, port.clock.now() + LISTEN):
         return [Strange(None, unasked)]
     found = []
-    for id in range(family.dialect.last_id + 1):
+    for id in range(family.protocol.last_id + 1):
         request = _request(family, id)
         data = _exchange(port, request)
         if data.startswith(request):
@@ -57,7 +57,7 @@ def is_echo(data: bytes) -> bool:
 
 
 def _request(family: Family, id: int) -> bytes:
-    return protocol1.ping(id) if family.dialect.weak else protocol2.ping(id)
+    return protocol1.ping(id) if family.protocol.weak else protocol2.ping(id)
 
 
 def _exchange(port: Port, request: bytes) -> bytes:
@@ -69,11 +69,11 @@ def _exchange(port: Port, request: bytes) -> bytes:
 
 
 def _is_answer(family: Family, id: int, data: bytes) -> bool:
-    wanted = 0 if family.dialect.weak else PING_PARAMS
+    wanted = 0 if family.protocol.weak else PING_PARAMS
     frames = _frames(family, data)
     return any(frame.id == id and len(frame.params) == wanted for frame in frames)
 
 
 def _frames(family: Family, data: bytes) -> list[Status]:
-    salvage = protocol1.salvage if family.dialect.weak else protocol2.salvage
+    salvage = protocol1.salvage if family.protocol.weak else protocol2.salvage
     return list(salvage(data))

@@ -70,7 +70,7 @@ class Survey:
                 begin(f"{family.name}, {rate} baud" if self.port.has_baud else family.name)
                 for servo in self._ask(family, rate):
                     shown = rate if self.port.has_baud else None
-                    if servo.model_number in (*family.numbers, OPENCR) or not family.dialect.weak:
+                    if servo.model_number in (*family.numbers, OPENCR) or not family.protocol.weak:
                         self._add(Bus(self.port, family), servo, shown)
                     else:
                         others.setdefault((shown, servo.id), {})[family.name] = servo.model_number
@@ -93,7 +93,7 @@ class Survey:
         bus.get_to_know_adapter(FIRST)
         before = self.port.received
         found = bus.scan([rate])
-        more = self.port.received - before - ANSWER_BYTES[family.dialect.weak] * len(found)
+        more = self.port.received - before - ANSWER_BYTES[family.protocol.weak] * len(found)
         if more > 0:
             self.port.baud = rate
             self.strange += [(rate, family, one) for one in strange_answers(self.port, family)]

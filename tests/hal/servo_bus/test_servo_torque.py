@@ -56,7 +56,7 @@ def test_torque_comes_on_one_servo_after_the_other_where_each_is(model: ServoMod
     assert written(wires, model, "torque_enable") == [1, 2, 3, 4]
     goals = written(wires, model, "goal_position")
     assert goals[-4:] == [1, 2, 3, 4]
-    if family_of(model.name).goal_wakes:
+    if family_of(model.name).goal_enables_torque:
         assert len(goals) == 4  # none before its turn
     assert backend.clock.now() - began > 4 * INRUSH
 

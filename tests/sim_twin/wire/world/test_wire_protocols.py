@@ -1,4 +1,4 @@
-"""Several languages in one world, and what may hang where."""
+"""Several protocols in one world, and what may hang where."""
 
 import pytest
 import serial
@@ -17,7 +17,7 @@ from windup.sim_twin.wire.shafts.shaft import InertiaShaft
 from windup.sim_twin.wire.world.address import parse_address
 from windup.sim_twin.wire.world.build import build_world
 from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
-from windup.sim_twin.wire.world.families import PROTOCOLS, make_language, make_servo
+from windup.sim_twin.wire.world.families import PROTOCOLS, make_protocol, make_servo
 
 MIX = {"legs": "STS3215-12V", "arms": "AX-12A", "head": "XL430-W250", "face": "SCS0009"}
 
@@ -30,7 +30,7 @@ def mixed() -> BusWorld:
         shafts.append(InertiaShaft(sheet.motor(supply), sheet.armature))
         servo = make_servo(name, shafts[-1], 1, 1_000_000, supply, 0)
         devices: list[Device] = [servo]
-        buses[bus] = Bus(bus, devices, make_language(PROTOCOLS[name]), schedule)
+        buses[bus] = Bus(bus, devices, make_protocol(PROTOCOLS[name]), schedule)
     return BusWorld(Bench(shafts), schedule, buses)
 
 
@@ -48,7 +48,7 @@ def test_four_families_on_four_buses_of_one_world() -> None:
         drop_world("mix")
 
 
-def test_buses_of_different_languages_do_not_wait_for_each_other() -> None:
+def test_buses_of_different_protocols_do_not_wait_for_each_other() -> None:
     put_world("mix", mixed())
     try:
         with (

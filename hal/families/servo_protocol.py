@@ -1,4 +1,4 @@
-"""Dialects: the requests and reads of each protocol as implemented by each maker."""
+"""The requests and reads of each protocol, as implemented by each maker."""
 
 import contextlib
 from abc import ABC, abstractmethod
@@ -48,7 +48,7 @@ class ServoProtocol(ABC):
     weak: bool
 
     @abstractmethod
-    def link(self, port: Port) -> "ServoConfigurator":
+    def configurator(self, port: Port) -> "ServoConfigurator":
         """Return a configurator, for access to one servo at a time."""
 
     @abstractmethod
@@ -68,10 +68,10 @@ class ServoProtocol(ABC):
         """Return a request to one servo whose answer cannot be mistaken for its echo."""
 
     @abstractmethod
-    def who(self, port: Port, link: "ServoConfigurator") -> list[Answered]:
+    def scan(self, port: Port, configurator: "ServoConfigurator") -> list[Answered]:
         """Return the servos that answer at the port's present baud rate."""
 
-    def estranged(self, port: Port, id: int) -> int | None:
+    def other_protocol(self, port: Port, id: int) -> int | None:
         """Return the model number of a silent servo that answers in another protocol, or None."""
         return None
 
@@ -81,7 +81,7 @@ class Protocol2(ServoProtocol):
 
     last_id, weak = protocol2.LAST_ID, False
 
-    def link(self, port: Port) -> "ServoConfigurator":
+    def configurator(self, port: Port) -> "ServoConfigurator":
         """Return a configurator, for access to one servo at a time."""
         from windup.hal.families.configurator import DynamixelConfigurator  # and the SDK
 
@@ -104,7 +104,7 @@ class Protocol2(ServoProtocol):
         answer = protocol2.status(id, bytes(3))
         return Probe(protocol2.ping(id), len(answer), answer[:8])
 
-    def who(self, port: Port, link: "ServoConfigurator") -> list[Answered]:
+    def scan(self, port: Port, configurator: "ServoConfigurator") -> list[Answered]:
         """Send a broadcast ping, and return all servos with a valid reply."""
         port.flush_input()
         port.write(protocol2.ping())
@@ -118,7 +118,7 @@ class Protocol2(ServoProtocol):
             if len(params) == 3
         ]
 
-    def estranged(self, port: Port, id: int) -> int | None:
+    def other_protocol(self, port: Port, id: int) -> int | None:
         """Return the model number of a servo that answers in protocol 1 instead, or None."""
         from windup.hal.families.configurator1 import Dynamixel1Configurator
 
@@ -161,7 +161,7 @@ class Protocol1(ServoProtocol):
         request = protocol1.read(id, self.model_number.address, 1)
         return Probe(request, len(answer), answer[:4])
 
-    def who(self, port: Port, link: "ServoConfigurator") -> list[Answered]:
+    def scan(self, port: Port, configurator: "ServoConfigurator") -> list[Answered]:
         """Ping each id in turn, as answers to a broadcast ping would collide; return who answered.
 
         An answer that comes while a later id is pinged shows that the adapter's latency is longer
@@ -175,12 +175,12 @@ class Protocol1(ServoProtocol):
             late = [port.clock.now() - asked[other] for other in pongs & asked.keys() - {id}]
             if port.latency < max(late, default=0.0) < LATEST:
                 port.latency = MARGIN * max(late)
-                return self.who(port, link)
+                return self.scan(port, configurator)
             # Noise, or two servos with this id, may look like an answer, but give no model number.
             if id in pongs:
                 with contextlib.suppress(HardwareError):
-                    version = link.read(id, firmware.address, firmware.size)
-                    found.append(Answered(id, link.ping(id), firmware.decode(version)))
+                    version = configurator.read(id, firmware.address, firmware.size)
+                    found.append(Answered(id, configurator.ping(id), firmware.decode(version)))
         return found
 
     @abstractmethod
@@ -195,7 +195,7 @@ class Protocol1(ServoProtocol):
 class Dynamixel1(Protocol1):
     """Dynamixel AX and MX. The common read is the bulk read, which an AX does not support."""
 
-    def link(self, port: Port) -> "ServoConfigurator":
+    def configurator(self, port: Port) -> "ServoConfigurator":
         """Return a configurator, for access to one servo at a time."""
         from windup.hal.families.configurator1 import Dynamixel1Configurator  # and the SDK
 
@@ -221,7 +221,7 @@ class Feetech(Protocol1):
         super().__init__(model_number, firmware, protocol1.LONGEST_FEETECH)
         self.always_sync = always_sync
 
-    def link(self, port: Port) -> "ServoConfigurator":
+    def configurator(self, port: Port) -> "ServoConfigurator":
         """Return a configurator, for access to one servo at a time."""
         from windup.hal.families.configurator1 import FeetechConfigurator  # and the SDK
 
