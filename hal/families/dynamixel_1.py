@@ -4,6 +4,7 @@ from windup.hal.families.family import Block, Family, RequiredSetting, RestartMa
 from windup.hal.families.gain import Gain, slope_pair, slope_steps
 from windup.hal.families.servo_protocol import Dynamixel1
 from windup.hal.protocols.protocol1 import LONGEST_DYNAMIXEL
+from windup.hal.servos.mx import MX
 from windup.hal.servos.mx_registers import (
     BAUD_CODES,
     COMMON,
@@ -61,6 +62,7 @@ DYNAMIXEL_1 = Family(
     registers=COMMON,
     table=mx_registers,
     numbers=NUMBERS,
+    models=MX,
     bauds=BAUD_CODES | FAST_CODES,
     state=Block(36, 6, STATE),
     health=Block(36, 8, STATE),

@@ -5,6 +5,7 @@ from windup.hal.families.gain import Gain
 from windup.hal.families.servo_protocol import Protocol2
 from windup.hal.registers import Register
 from windup.hal.servos.servo_model import ServoModel
+from windup.hal.servos.x_series import X_SERIES
 from windup.hal.servos.x_series_registers import (
     BAUD_CODES,
     COMMON,
@@ -68,6 +69,7 @@ DYNAMIXEL_X = Family(
     registers=REGISTERS,
     table=x_series_registers,
     numbers=NUMBERS,
+    models=X_SERIES,
     bauds=BAUD_CODES,
     state=Block(126, 10, STATE),
     health=None,

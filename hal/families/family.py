@@ -102,7 +102,8 @@ class Family:
         protocol: Its protocol, as implemented by the maker.
         registers: Registers common to all models, by name; units may differ by model.
         table: Returns all registers of a model, by its name.
-        numbers: Maps model number to model name.
+        numbers: Maps model number to model name, without the winding after a dash.
+        models: Data sheets of the models.
         bauds: Maps baud rate to the value of the baud rate register.
         state: Block read in each cycle.
         current: Block read instead if torque is computed from its current; None if `state`
@@ -126,6 +127,9 @@ class Family:
         errors_in_answers: Whether the bits of the error byte are the errors themselves; else the
             register `hardware_error` contains them.
         goal_enables_torque: Whether writing a goal may switch torque on.
+        emulation: Where the emulation of its servos is, "module:name" of a
+            `windup.sim_twin.wire.world.emulation.Emulation`, imported when one is emulated; "" for
+            the families of Windup itself, and for one that cannot be emulated.
     """
 
     name: str
@@ -134,6 +138,7 @@ class Family:
     registers: Mapping[str, Register]
     table: Callable[[str], RegisterTable]
     numbers: Mapping[int, str]
+    models: Sequence[ServoModel]
     bauds: Mapping[int, int]
     state: Block
     health: Block | None
@@ -154,6 +159,7 @@ class Family:
     check_alone: bool = False
     errors_in_answers: bool = True
     goal_enables_torque: bool = True
+    emulation: str = ""
 
     def model_name(self, number: int) -> str:
         """Return the name of a model number, or a text such as "model 999" if it is unknown."""

@@ -8,6 +8,7 @@ from windup.hal.families.factory_default import FactoryDefault, protective_limit
 from windup.hal.families.family import Block, Family, RequiredSetting, RestartMark
 from windup.hal.families.gain import Gain
 from windup.hal.families.servo_protocol import Feetech
+from windup.hal.servos.feetech import SCS_MODELS, STS_MODELS
 from windup.hal.servos.feetech_registers import (
     BAUD_CODES,
     HARDWARE_ERRORS,
@@ -99,6 +100,7 @@ FEETECH_STS = Family(
     registers=STS,
     table=feetech_registers,
     numbers=STS_NUMBERS,
+    models=STS_MODELS,
     bauds=BAUD_CODES,
     state=Block(56, 6, _STS_STATE),
     current=Block(56, 15, _STS_CURRENT),
@@ -123,6 +125,7 @@ FEETECH_SCS = Family(
     registers=SCS,
     table=feetech_registers,
     numbers=SCS_NUMBERS,
+    models=SCS_MODELS,
     bauds=BAUD_CODES,
     state=Block(56, 6, _SCS_STATE),
     health=Block(56, 8, _SCS_STATE),

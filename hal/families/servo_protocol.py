@@ -12,7 +12,7 @@ from windup.hal.protocols import protocol1, protocol2
 from windup.hal.protocols.batched import BlockRead, BlockWrite
 from windup.hal.protocols.batched1 import ChainRead, GoalWrite, bulk_read, sync_read
 from windup.hal.protocols.cyclic import CyclicRead, CyclicWrite
-from windup.hal.protocols.protocol2 import Span
+from windup.hal.protocols.protocol2 import Span, Status
 from windup.hal.registers import Register
 
 if TYPE_CHECKING:
@@ -42,10 +42,14 @@ class ServoProtocol(ABC):
     Attributes:
         last_id: The largest id that a servo can have.
         weak: Whether the checksum is so short (8 bits) that corrupt frames often pass it.
+        ping_params: Number of parameters in the answer to a ping.
+        scan_bytes: Number of bytes that `scan` reads from one servo.
     """
 
     last_id: int
     weak: bool
+    ping_params: int
+    scan_bytes: int
 
     @abstractmethod
     def configurator(self, port: Port) -> "ServoConfigurator":
@@ -64,6 +68,14 @@ class ServoProtocol(ABC):
         """Return the frames that write `size` bytes at `address` of each id in `data`."""
 
     @abstractmethod
+    def ping(self, id: int) -> bytes:
+        """Return the frame that pings one servo."""
+
+    @abstractmethod
+    def salvage(self, data: bytes) -> list[Status]:
+        """Return the valid status packets in received bytes."""
+
+    @abstractmethod
     def probe(self, id: int) -> Probe:
         """Return a request to one servo whose answer cannot be mistaken for its echo."""
 
@@ -80,6 +92,7 @@ class Protocol2(ServoProtocol):
     """Dynamixel protocol 2. Its fast read is the fast sync read."""
 
     last_id, weak = protocol2.LAST_ID, False
+    ping_params, scan_bytes = 3, 14  # one ping suffices
 
     def configurator(self, port: Port) -> "ServoConfigurator":
         """Return a configurator, for access to one servo at a time."""
@@ -98,6 +111,14 @@ class Protocol2(ServoProtocol):
     def sync_write(self, data: Mapping[int, bytes], address: int, size: int) -> list[bytes]:
         """Return the frame that writes `size` bytes at `address` of each id in `data`."""
         return [protocol2.sync_write(data, address, size)]
+
+    def ping(self, id: int) -> bytes:
+        """Return the frame that pings one servo."""
+        return protocol2.ping(id)
+
+    def salvage(self, data: bytes) -> list[Status]:
+        """Return the valid status packets in received bytes."""
+        return list(protocol2.salvage(data))
 
     def probe(self, id: int) -> Probe:
         """Return a ping: its answer differs from its echo by the instruction byte."""
@@ -137,6 +158,7 @@ class Protocol1(ServoProtocol):
     """
 
     last_id, weak = protocol1.LAST_ID, True
+    ping_params, scan_bytes = 0, 27  # a servo is pinged, read, pinged and read
 
     def __init__(self, model_number: Register, firmware: Register, longest: int) -> None:
         self.model_number, self.firmware, self.longest = model_number, firmware, longest
@@ -154,6 +176,14 @@ class Protocol1(ServoProtocol):
     def sync_write(self, data: Mapping[int, bytes], address: int, size: int) -> list[bytes]:
         """Return the frames that write `size` bytes at `address` of each id in `data`."""
         return protocol1.split_sync_write(data, address, size, self.longest)
+
+    def ping(self, id: int) -> bytes:
+        """Return the frame that pings one servo."""
+        return protocol1.ping(id)
+
+    def salvage(self, data: bytes) -> list[Status]:
+        """Return the valid status packets in received bytes."""
+        return list(protocol1.salvage(data))
 
     def probe(self, id: int) -> Probe:
         """Return a read of one byte: its answer differs in length from its echo, a ping's not."""

@@ -77,6 +77,11 @@ class Plugins(Generic[Thing]):
                 self._report(str(error))
         return found
 
+    def origin(self, thing: Thing) -> str:
+        """Return the name and version of the distribution that added a loaded object."""
+        names = [name for name, loaded in self._things.items() if loaded is thing]
+        return distribution_of(self._entries[names[0]])
+
     def _discover(self) -> None:
         """Read the metadata of all distributions, unless that was done for this `sys.path`."""
         if self._path == sys.path:

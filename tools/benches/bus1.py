@@ -16,14 +16,13 @@ from scservo_sdk.protocol_packet_handler import protocol_packet_handler
 
 from windup.hal.bus.transactions import BusTransactions
 from windup.hal.command import JointCommand
-from windup.hal.families import DYNAMIXEL_1, FEETECH_STS, Family
+from windup.hal.families import DYNAMIXEL_1, FEETECH_STS, Family, servo_model
 from windup.hal.joints import Joint, Joints
 from windup.hal.port.open_port import open_port
 from windup.hal.port.port import Port
 from windup.hal.protocols import protocol1
 from windup.hal.protocols.protocol1 import Instruction
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
 
 Vendor = Literal["feetech", "dynamixel1"]

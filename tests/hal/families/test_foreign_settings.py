@@ -8,12 +8,11 @@ from tests.hal.backend_robot import Robot
 from tests.hal.mixed_robot import Wires, mount, robot
 from windup.hal.bus.bus import Bus
 from windup.hal.errors import HardwareError
-from windup.hal.families import family_of
+from windup.hal.families import family_of, servo_model
 from windup.hal.families.factory_default import protective_limits
 from windup.hal.families.feetech import PROTECTION_DEFAULTS
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.servo_bus.servo_setup import power_up
-from windup.hal.servos import servo_model
 from windup.tools.testing.servo_bus import ServoBus
 
 KNEE = {"op3": 13, "duck": 23}

@@ -7,9 +7,8 @@ from tests.hal.fake_bus1 import AX, MX, SCS, STS
 from tests.hal.mixed_robot import Wires, mount, robot, ticks
 from windup.hal.command import JointCommand
 from windup.hal.errors import HardwareError
-from windup.hal.families import family_of
+from windup.hal.families import family_of, servo_model
 from windup.hal.servo_bus.torque_check import MISSES
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoModel
 
 XM = servo_model("XM430-W350")
