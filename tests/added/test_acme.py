@@ -70,7 +70,7 @@ def test_the_driver_moves_its_emulated_servos() -> None:
 def test_an_overload_of_its_servo_is_seen_as_one() -> None:
     with ServoBus("acme_arm") as bus:
         bus.faults.overload(ids=[2], at=1.0)
-        with pytest.raises(TorqueLostError, match="elbow.*overload"):
+        with pytest.raises(TorqueLostError, match=r"elbow.*overload"):
             bus.robot().stand(3.0)
 
 

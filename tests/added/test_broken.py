@@ -66,7 +66,9 @@ def test_a_robot_without_its_file_is_refused_by_its_distribution(
     assert shell("stand", "wreck") == shell("walk", "wreck")
     ran = shell("stand", "wreck")
     assert (ran.status, ran.err) == (2, f"windup: {line}\n")
-    with pytest.raises(PluginError, match="should be a package with a robot.toml or a pathlib.Pa"):
+    with pytest.raises(
+        PluginError, match=r"should be a package with a robot\.toml or a pathlib\.Path"
+    ):
         load_robot("text")
 
 
