@@ -23,7 +23,7 @@ def differences(bus: Bus, mount: ServoMount) -> list[Setting]:
     """Return the required settings of a servo that differ. Nothing is written."""
     table = bus.family.table(mount.model.name)
     found = []
-    for name, value, mask in required_of(bus.family, mount):
+    for name, value, mask in required_settings(bus.family, mount):
         if name not in table:
             continue
         present = bus.read(mount.id, table[name])
@@ -33,7 +33,7 @@ def differences(bus: Bus, mount: ServoMount) -> list[Setting]:
     return found
 
 
-def required_of(family: Family, mount: ServoMount) -> list[RequiredSetting]:
+def required_settings(family: Family, mount: ServoMount) -> list[RequiredSetting]:
     """Return the required settings of a servo, in the order in which they are written."""
     other = family.extended if mount.extended else None
     return [

@@ -25,7 +25,7 @@ BAUD_TOLERANCE = 0.03
 PIECE = 4096  # largest number of host bytes that are parsed at once
 
 
-class BusProtocol(Protocol):
+class WireProtocol(Protocol):
     """A protocol: how bytes become frames, and what devices do with a frame.
 
     Attributes:
@@ -44,7 +44,7 @@ class BusProtocol(Protocol):
         """Return `frame` with the correct checksum."""
         ...
 
-    def update_devices(self, devices: Sequence[Device], /) -> None:
+    def set_devices(self, devices: Sequence[Device], /) -> None:
         """Register the devices; called whenever registers below 64 may have changed."""
         ...
 
@@ -110,7 +110,7 @@ class Bus:
         self,
         name: str,
         devices: list[Device],
-        protocol: BusProtocol,
+        protocol: WireProtocol,
         schedule: Schedule,
         baud: int = 1_000_000,
         timing: Timing | None = None,
@@ -152,7 +152,7 @@ class Bus:
 
     def refresh(self) -> None:
         """Update the tables of ids and protocols from the devices."""
-        self.protocol.update_devices(self.devices)
+        self.protocol.set_devices(self.devices)
         self._by_id.clear()
         for device in self.devices:
             self._by_id.setdefault(device.identifier, []).append(device)

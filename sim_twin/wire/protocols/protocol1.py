@@ -74,7 +74,7 @@ class Protocol1:
             SYNC_WRITE: _sync_write,
         }
 
-    def update_devices(self, devices: Sequence[Device]) -> None:
+    def set_devices(self, devices: Sequence[Device]) -> None:
         """Do nothing: all devices use protocol 1."""
 
     def feed(self, chunk: bytes) -> list[Heard]:

@@ -44,7 +44,7 @@ class Tape:
         """Return `frame` unchanged."""
         return frame
 
-    def update_devices(self, devices: Sequence[Device]) -> None:
+    def set_devices(self, devices: Sequence[Device]) -> None:
         """Do nothing: there are no devices."""
 
     def feed(self, chunk: bytes) -> list[Heard]:

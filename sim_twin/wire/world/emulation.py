@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from windup.hal.servos.servo_model import ServoModel
-from windup.sim_twin.wire.bus.bus import BusProtocol
+from windup.sim_twin.wire.bus.bus import WireProtocol
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.shafts.shaft import Shaft
 
@@ -47,5 +47,5 @@ class Emulation:
     """
 
     servo: ServoFactory
-    protocol: Callable[[], BusProtocol]
+    protocol: Callable[[], WireProtocol]
     bauds: Collection[int] = ()

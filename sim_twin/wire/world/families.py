@@ -6,7 +6,7 @@ from pkgutil import resolve_name
 from windup.hal.errors import PluginError, UnknownNameError, UsageError
 from windup.hal.families import FAMILIES, Family, families, family_of, servo_model
 from windup.hal.families.catalogue import ADDED_FAMILIES
-from windup.sim_twin.wire.bus.bus import BusProtocol
+from windup.sim_twin.wire.bus.bus import WireProtocol
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.shafts.shaft import Shaft
 from windup.sim_twin.wire.world.emulation import Emulation
@@ -30,7 +30,7 @@ def full_name(name: str) -> str:
     raise UnknownNameError("servo model", name, (*PROTOCOLS, *added))
 
 
-def make_protocol(name: str) -> BusProtocol:
+def make_protocol(name: str) -> WireProtocol:
     """Return a new instance of a protocol.
 
     Raises:

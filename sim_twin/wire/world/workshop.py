@@ -5,7 +5,7 @@ from windup.hal.imu.kind import ImuKind
 from windup.hal.imu.mounting import STRAIGHT
 from windup.sim_twin.wire.boards.rvc import BAUD as RVC_BAUD
 from windup.sim_twin.wire.boards.rvc import Mute, start_rvc
-from windup.sim_twin.wire.bus.bus import Bus, BusProtocol
+from windup.sim_twin.wire.bus.bus import Bus, WireProtocol
 from windup.sim_twin.wire.bus.timing import Timing
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.faults.faults import Faults
@@ -33,7 +33,7 @@ class Workshop:
         self.faults = Faults.parse(address.faults, address.seed)
         self.buses: dict[str, Bus] = {}
 
-    def bus(self, name: str, devices: list[Device], protocol: BusProtocol, baud: int) -> Bus:
+    def bus(self, name: str, devices: list[Device], protocol: WireProtocol, baud: int) -> Bus:
         """Add a bus."""
         address = self.address
         timing = Timing(
