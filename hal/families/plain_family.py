@@ -55,7 +55,7 @@ def plain_family(
         name=name,
         protocol_name=protocol_name,
         protocol=protocol,
-        registers=table,
+        registers={**table},
         table=lambda model: table,
         numbers={model.model_number: model.name.split("-")[0] for model in models},
         models=models,

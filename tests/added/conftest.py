@@ -10,6 +10,9 @@ from sys import executable
 import pytest
 
 from tests.added.install import install
+from tests.tools.conftest import shell
+
+__all__ = ["acme", "acme_folder", "python", "shell"]
 
 HERE = Path(__file__).parent
 GROUPS = {

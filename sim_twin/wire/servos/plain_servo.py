@@ -68,7 +68,7 @@ class PlainServo(ByteServo):
         return_delay: int = -1,
     ) -> None:
         self.family, self.bauds = family, {**family.bauds}
-        self._registers = family.table(model.name)
+        self._registers = {**family.table(model.name)}
         self._gain = family.gain(model.name).register.name
         self._bits = {what: 1 << bit for bit, what in family.errors.items()}
         reported = [self._registers[name].address for name in REPORTED if name in self._registers]

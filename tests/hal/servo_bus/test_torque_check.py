@@ -47,7 +47,7 @@ class Bench:
 
     def restart(self, id: int) -> None:
         self.put(id, "torque_enable", 0)
-        mark = family_of(self.model.name).mark
+        mark = family_of(self.model.name).restart_mark
         if mark is not None:
             self.put(id, mark.name, mark.restarted)
 
