@@ -25,11 +25,13 @@ if TYPE_CHECKING:
     )
     from windup.robots import RobotDescription, load_robot, robot_names
     from windup.tools.assembly.walk_options import WalkOptions
+    from windup.tools.behaviours.behaviour import Behaviour
     from windup.tools.robot.robot import Robot
     from windup.tools.robot.walk_report import WalkReport
 
 PLACES = {
     "BaseState": "windup.hal",
+    "Behaviour": "windup.tools.behaviours.behaviour",
     "Controller": "windup.hal",
     "ImuState": "windup.hal",
     "JointCommand": "windup.hal",
@@ -49,6 +51,7 @@ PLACES = {
 
 __all__ = [
     "BaseState",
+    "Behaviour",
     "Controller",
     "ImuState",
     "JointCommand",
