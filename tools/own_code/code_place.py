@@ -49,13 +49,18 @@ def own_traceback(error: BaseException, path: Path) -> str:
 def refusing(path: Path) -> Iterator[None]:
     """Convert what a file's code raises before anything moves into one line.
 
+    Errors of the stack that did not pass the file are raised as they are.
+
     Raises:
         UsageError: The code raised something; the message has file, line and cause.
     """
     try:
         yield
     except Exception as error:  # whatever a user's code raises
-        raise UsageError(f"{place_of_error(error, path)}: {named(error)}") from error
+        place = place_of_error(error, path)
+        if isinstance(error, WindupError) and place == str(path):
+            raise  # it did not come from there
+        raise UsageError(f"{place}: {named(error)}") from error
 
 
 @contextmanager
