@@ -79,14 +79,14 @@ class Behaviour(ABC, Generic[T]):
         return {}
 
     def perform(self, run: RunRecord[T]) -> None:
-        """Move the robot.
+        """Move the robot, and keep in `run.measured` what the report needs.
 
         Raises:
             WindupError: The robot has been stopped.
             KeyboardInterrupt: The same, because somebody asked for it; the report is still wanted.
         """
         robot = run.robot
-        controller = self.build(robot.description, run.options, robot.predictor)
+        run.measured = controller = self.build(robot.description, run.options, robot.predictor)
         run.disturb_twin()
         robot.run(
             controller,

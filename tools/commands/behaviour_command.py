@@ -120,6 +120,8 @@ class BehaviourCommand(WorldOptions, Common):
             try:
                 self.behaviour.perform(run)
             except KeyboardInterrupt:  # the robot has stopped; the report says how far it came
+                if run.measured is None:
+                    raise
                 interrupted = True
         report = self.behaviour.report(run)
         return report.interrupted() if interrupted else report
