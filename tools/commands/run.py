@@ -11,12 +11,12 @@ import tyro
 
 from windup.hal.errors import UsageError
 from windup.tools.behaviours.behaviour import Behaviour
-from windup.tools.behaviours.registry import installed_behaviours, load_behaviour
 from windup.tools.behaviours.report import Report
 from windup.tools.command_line.table import COMMANDS
 from windup.tools.commands.behaviour_command import BehaviourCommand
 from windup.tools.options.twin_options import TwinOptions
 from windup.tools.own_code.code_place import failing, refusing
+from windup.tools.own_code.installed import installed_behaviours, load_behaviour
 from windup.tools.own_code.python_file import is_python_file, load_own, split
 
 

@@ -1,1 +1,1 @@
-"""Controllers and behaviours in a file of the user's own, for `windup run`."""
+"""Controllers and behaviours in a user's file or an installed package, for `windup run`."""

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.tools.conftest import Windup, refusal
-from windup.tools.behaviours.registry import installed_behaviours
+from windup.tools.own_code.installed import installed_behaviours
 
 
 def install(folder: Path, monkeypatch: pytest.MonkeyPatch, value: str) -> None:
@@ -19,7 +19,7 @@ def install(folder: Path, monkeypatch: pytest.MonkeyPatch, value: str) -> None:
 
 @pytest.fixture
 def nod(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    install(tmp_path, monkeypatch, "tests.tools.behaviours.nodding_package:Nod")
+    install(tmp_path, monkeypatch, "tests.tools.own_code.nodding_package:Nod")
 
 
 @pytest.mark.usefixtures("nod")
