@@ -99,7 +99,7 @@ class PushOptions:
 
     def walk_options(self, plan: PushPlan) -> WalkOptions:
         """Return how the robot walks that is pushed as planned."""
-        return WalkOptions(speed=self.speed, catch=plan.way if self.catch else None)
+        return WalkOptions(speed=self.speed, catch=self.catch, way=plan.way)
 
 
 @dataclass
@@ -130,7 +130,7 @@ class Push(Behaviour[PushOptions]):
         if options.during == "walk":
             walk = options.walk_options(plan)
             walker = build_walk(robot, walk, predictor)
-            return supervisor_for(robot, walker, walk.catch) or walker
+            return supervisor_for(robot, walker, walk) or walker
         stance = stepping_stance(robot, plan.stance)
         return build_stepper(robot, plan.way, stance, forbidden(plan.forbid), plan.support)
 

@@ -13,6 +13,7 @@ from typing import Final, Self
 from windup.control.loop import LoopReport, Until
 from windup.control.motions.play import GraphPlayer, PoseHolder
 from windup.control.motions.staged import StagedPlayer
+from windup.control.steering.guide import Guide
 from windup.hal.controller import Stopwatch
 from windup.hal.errors import UnknownNameError
 from windup.hal.joints import Array
@@ -175,6 +176,7 @@ class Robot(Session):
         on_step: Sequence[OnStep] = (),
         disturb: Callable[["Robot"], None] | None = None,
         stand: Seconds = 0.0,
+        guide: Guide | None = None,
     ) -> WalkReport:
         """Walk a number of steps and return how it went.
 
@@ -185,6 +187,7 @@ class Robot(Session):
             on_step: All are called at the end of each step with its number and its speed, m/s.
             disturb: Called before the first step, to arrange pushes on a twin.
             stand: Then come to rest and stand for so long, s.
+            guide: Leads the walk, instead of speed, side, turn, path and goal of the options.
 
         Raises:
             UsageError: The options do not fit the gait; nothing has moved.
@@ -198,7 +201,9 @@ class Robot(Session):
         # A plan takes its time on a robot; an emulated one waits for it as long.
         wait = self.description.model_latency if self.stack.wired else 0.0
         walker = build_walk(self.description, options, self.predictor, latency=wait)
-        supervisor = supervisor_for(self.description, walker, options.catch)
+        if guide is not None:
+            walker.steering.guide = guide
+        supervisor = supervisor_for(self.description, walker, options)
         end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
         report = WalkReport(
             self, walker, options, steps, self.predictor.stopwatch, self.seed,
