@@ -29,9 +29,9 @@ class Run(TwinOptions, BehaviourCommand):
     observation first, and refused before anything moves if it fails.
     """
 
-    what: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="FILE.py[:NAME]")]
-    """File of Python with the class, and its name if there are several; or the name of a behaviour
-    that an installed package brings."""
+    what: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="FILE")]
+    """The class: FILE.py, or FILE.py:NAME if the file has several; or the name of a behaviour that
+    an installed package brings."""
 
     usage: ClassVar[str] = "run"
 

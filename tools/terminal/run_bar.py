@@ -46,4 +46,5 @@ class RunBar:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._progress.stop()
+        if self._progress.tasks:
+            self._progress.stop()
