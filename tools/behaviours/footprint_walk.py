@@ -1,7 +1,6 @@
 """Walking footprints: what `step` and `footprints` have in common."""
 
 from abc import abstractmethod
-from collections.abc import Sequence
 from typing import Any, TypeVar
 
 import numpy as np
@@ -30,7 +29,7 @@ class FootprintWalk(Behaviour[T]):
     done = "put every foot where it should be"
 
     @abstractmethod
-    def prints(self, robot: RobotDescription, options: T, seed: int) -> Sequence[Footprint]:
+    def prints(self, robot: RobotDescription, options: T, seed: int) -> list[Footprint]:
         """Return what to walk with a seed.
 
         Raises:

@@ -1,6 +1,5 @@
 """Footprints from a file, or random ones."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -41,7 +40,7 @@ class Footprints(FootprintWalk[FootprintsOptions]):
 
     def prints(
         self, robot: RobotDescription, options: FootprintsOptions, seed: int
-    ) -> Sequence[Footprint]:
+    ) -> list[Footprint]:
         """Return the file's footprints, or random ones; see `FootprintWalk.prints`."""
         if options.file is not None:
             return read_footprints(options.file, feet_of(robot))

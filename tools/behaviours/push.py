@@ -71,7 +71,7 @@ class PushOptions:
     """Ground where no foot may come down, such as a hole: X,Y,R (circle), X,Y,W,H (rectangle about
     X,Y) or X1,Y1,X2,Y2,X3,Y3,.. (polygon), m, seen from between the feet at the start; several."""
 
-    def plan(self, robot: RobotDescription, seed: int) -> PushPlan:
+    def plan_for(self, robot: RobotDescription, seed: int) -> PushPlan:
         """Return what is done to a robot with a seed.
 
         Raises:
@@ -126,7 +126,7 @@ class Push(Behaviour[PushOptions]):
         self, robot: RobotDescription, options: PushOptions, predictor: Predictor | None
     ) -> Controller:
         """Return what meets the push."""
-        plan = options.plan(robot, 0)
+        plan = options.plan_for(robot, 0)
         if options.during == "walk":
             walk = options.walk_options(plan)
             walker = build_walk(robot, walk, predictor)
@@ -152,7 +152,7 @@ class Push(Behaviour[PushOptions]):
         """Push the robot; one that falls does so to the end."""
         robot = run.robot
         run.measured = pushed = Pushed(ImpactGauge(robot.twin))
-        plan = run.options.plan(robot.description, robot.seed)
+        plan = run.options.plan_for(robot.description, robot.seed)
         pushed.result = push(robot, run.options, plan, to_the_end=True)
 
     def report(self, run: RunRecord[PushOptions]) -> Report:

@@ -1,6 +1,5 @@
 """One directed step."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from windup.control.footprints.footprints import Footprint, Frame, StepRecord, footprint
@@ -33,9 +32,7 @@ class Step(FootprintWalk[StepOptions]):
 
     name, Options = "step", StepOptions
 
-    def prints(
-        self, robot: RobotDescription, options: StepOptions, seed: int
-    ) -> Sequence[Footprint]:
+    def prints(self, robot: RobotDescription, options: StepOptions, seed: int) -> list[Footprint]:
         """Return the one footprint; see `FootprintWalk.prints`."""
         x, y = options.to
         row = StepRecord(foot=options.foot, x=x, y=y, yaw=options.yaw, duration=options.duration)

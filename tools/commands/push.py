@@ -54,7 +54,7 @@ class Push(PushOptions, BehaviourCommand):
 
     def plan(self, seed: int) -> PushPlan:
         """Return what is done with a seed."""
-        return self.options.plan(load_robot(self.robot), seed)
+        return self.plan_for(load_robot(self.robot), seed)
 
     def trial(self, seed: int, plan: PushPlan) -> dict[str, Any]:
         """Return how one push of the envelope went; it ends at the first touch of the ground."""

@@ -65,7 +65,7 @@ def _parameters(kind: type) -> Mapping[str, Parameter]:
     return {name: item for name, item in found.items() if item.kind not in several}
 
 
-def _hints(kind: type, place: str) -> dict[str, Any]:
+def _hints(kind: Any, place: str) -> dict[str, Any]:
     """Return the annotations of a constructor.
 
     Raises:
@@ -109,7 +109,7 @@ def _is_plain(hint: Any) -> bool:
     return hint in PLAIN or (isinstance(hint, type) and issubclass(hint, Enum))
 
 
-def _documented(kind: type) -> str:
+def _documented(kind: Any) -> str:
     """Return the documentation of a class and its constructor, whose `Args` are the help."""
     own = getdoc(kind) or f"Run {kind.__name__}."
     inside = kind.__init__.__doc__ if "__init__" in vars(kind) else None

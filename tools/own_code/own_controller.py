@@ -31,7 +31,7 @@ class OwnController(Behaviour[Any]):
         UsageError: It is no controller, or its constructor needs what nobody can give.
     """
 
-    def __init__(self, kind: type, path: Path) -> None:
+    def __init__(self, kind: Any, path: Path) -> None:
         self.kind, self.path = kind, path
         for method, arguments in METHODS.items():
             _check_method(kind, method, arguments, path)
