@@ -4,6 +4,7 @@ import shlex
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, is_dataclass, make_dataclass
+from inspect import getfile
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
@@ -67,11 +68,10 @@ class Run(TwinOptions, BehaviourCommand):
 
     @contextmanager
     def _own(self, converting: Any) -> Iterator[None]:
-        """Convert what the code of a user's file raises; other errors are of the stack."""
-        if not is_python_file(self.what):
-            yield
-            return
-        with converting(split(self.what)[0]):
+        """Convert what the code of a user raises; other errors are of the stack."""
+        own = is_python_file(self.what)
+        path = split(self.what)[0] if own else Path(getfile(type(self.behaviour)))
+        with converting(path):
             yield
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from tests.tools.conftest import Windup, refusal
+from tests.tools.own_code.nodding_package import Nod, Nodder
 from windup.tools.own_code.installed import installed_behaviours
 
 
@@ -43,6 +44,26 @@ def test_several_seeds_are_rows_and_counted(shell: Windup) -> None:
     ran = shell("run", "op3", "nod", "--times", "1", "--seeds", "2", "--json", "-")
     assert [row["seed"] for row in ran.json["rows"]] == [0, 1]
     assert ran.err.splitlines()[-1] == "2 of 2 seeds nodded"
+
+
+@pytest.mark.usefixtures("nod")
+def test_several_seeds_run_in_processes_where_the_behaviour_wants_so(
+    shell: Windup, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Nod, "side_by_side", True)
+    ran = shell("run", "op3", "nod", "--times", "1", "--seeds", "2", "--json", "-")
+    assert [row["seed"] for row in ran.json["rows"]] == [0, 1], ran.err
+    assert ran.json["rows"][1]["options"]["times"] == 1
+
+
+@pytest.mark.usefixtures("nod")
+def test_an_exception_in_its_code_ends_the_command_in_one_line(
+    shell: Windup, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Nodder, "step", lambda *_: {}["angle"])
+    ran = shell("run", "op3", "nod")
+    assert ran.status == 1
+    assert ran.err.splitlines()[-1].startswith("windup: the controller failed: KeyError: 'angle'")
 
 
 @pytest.mark.usefixtures("nod")
