@@ -2,10 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Final
 
 from windup.tools.robot.robot import Robot
 from windup.tools.robot.stopping import INTERRUPTED
+
+PLAIN: Final = (bool, int, float, str, tuple, list)
+"""Types that JSON has."""
 
 
 @dataclass(frozen=True)
