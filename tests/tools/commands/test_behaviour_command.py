@@ -71,7 +71,6 @@ def test_walks_of_several_seeds_are_rows_in_their_order(shell: Windup) -> None:
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("walk op3 --plot a.png --seeds 2", "--plot draws one run: leave it or --seeds away"),
         ("walk op3 --way ip", "--way ip is how steps catch a walk: give --catch, too"),
         ("walk duck --catch", "duck"),
         ("push op3 --envelope --during walk", "leave --during walk away"),

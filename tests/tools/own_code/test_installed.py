@@ -60,7 +60,7 @@ def test_several_seeds_run_in_processes_where_the_behaviour_wants_so(
 def test_an_exception_in_its_code_ends_the_command_in_one_line(
     shell: Windup, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(Nodder, "step", lambda *_: {}["angle"])
+    monkeypatch.setattr(Nodder, "step", lambda *_: dict[str, float]()["angle"])
     ran = shell("run", "op3", "nod")
     assert ran.status == 1
     assert ran.err.splitlines()[-1].startswith("windup: the controller failed: KeyError: 'angle'")
