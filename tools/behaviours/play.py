@@ -14,6 +14,7 @@ from windup.tools.behaviours.behaviour import Behaviour
 from windup.tools.behaviours.report import Report
 from windup.tools.behaviours.run_record import RunRecord
 from windup.tools.measures.load_gauge import format_load
+from windup.tools.reports.play_report import PlayReport
 from windup.tools.terminal.quantities import Duration
 
 
@@ -45,12 +46,14 @@ class Play(Behaviour[PlayOptions]):
         try:
             run.robot.play(run.options.graph, run.options.seconds, disturb=run.disturb)
         finally:
-            run.measured = run.robot.player
+            run.measured = run.robot.loop
 
     def report(self, run: RunRecord[PlayOptions]) -> Report:
         """Return how it played."""
-        robot, loop, player, load = run.robot, run.robot.loop, run.measured, run.robot.load
-        fell = robot.fallen and not (isinstance(player, StagedPlayer) and player.ends_down)
+        robot, loop = run.robot, run.measured
+        played = loop if isinstance(loop, PlayReport) else None  # perhaps it did not come so far
+        load = None if played is None else played.load
+        fell = robot.fallen and not (played is not None and played.ends_down)
         result = {
             "robot": robot.description.name,
             "graph": run.options.graph,
@@ -58,7 +61,7 @@ class Play(Behaviour[PlayOptions]):
             "done": loop.reason == "done" and not fell,
             "fell": fell,
             "reason": loop.reason,
-            "retries": player.retries,
+            "retries": 0 if played is None else played.retries,
             "peak_load": None if load is None else load.peak,
             "peak_joint": "" if load is None else load.joint,
             "high_load_s": 0.0 if load is None else load.high_time,
