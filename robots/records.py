@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from msgspec import Meta
 from msgspec.structs import replace
 
-from windup.hal.config import Delay, Length, NotNegative, Positive, Record, Tilt
+from windup.hal.config import Delay, Length, NotNegative, Positive, Tilt, TomlRecord
 from windup.hal.guard import StopPolicy
 from windup.hal.mirror import Side, side_of
 from windup.robots.levels import JointLevels
@@ -18,7 +18,7 @@ Wait = Annotated[float, Meta(gt=0.0, le=86_400.0)]
 Share = Annotated[float, Meta(ge=0.05, le=1.0)]
 
 
-class Drive(Record, frozen=True):
+class Drive(TomlRecord, frozen=True):
     """Actuators of the joints, their latencies, and defaults of the joints.
 
     Attributes:
@@ -45,7 +45,7 @@ class Drive(Record, frozen=True):
     damping: NotNegative | None = None
 
 
-class Bus(Record, frozen=True):
+class Bus(TomlRecord, frozen=True):
     """A servo bus; its serial port is given when the robot is opened."""
 
     name: str
@@ -53,7 +53,7 @@ class Bus(Record, frozen=True):
     baud: Annotated[int, Meta(gt=0, le=10_000_000)]
 
 
-class JointEntry(Record, frozen=True):
+class JointEntry(TomlRecord, frozen=True):
     """One joint: limits rad, gains N m/rad and N m s/rad, and the servo that drives it.
 
     Omitted `servo`, `bus`, `stiffness` and `damping` are the defaults of the drive.
@@ -89,7 +89,7 @@ class JointEntry(Record, frozen=True):
     offset: Annotated[int, Meta(ge=-1_044_479, le=1_044_479)] = 0
 
 
-class CouplingEntry(Record, frozen=True):
+class CouplingEntry(TomlRecord, frozen=True):
     """A joint without a servo that a linkage moves with another one, like URDF's <mimic>.
 
     ``angle of joint = offset + ratio (angle of follows)``, a constraint in the twin.
@@ -107,7 +107,7 @@ class CouplingEntry(Record, frozen=True):
     offset: Annotated[float, Meta(ge=-1_000.0, le=1_000.0)] = 0.0
 
 
-class Foot(Record, frozen=True):
+class Foot(TomlRecord, frozen=True):
     """One foot.
 
     Attributes:
@@ -125,7 +125,7 @@ class Foot(Record, frozen=True):
     side: Side | Literal[""] = ""
 
 
-class FootEntry(Record, frozen=True):
+class FootEntry(TomlRecord, frozen=True):
     """A foot in the file; by default it gets one sensor, and its side follows from its name."""
 
     name: str
@@ -141,7 +141,7 @@ class FootEntry(Record, frozen=True):
         return Foot(name=self.name, body=self.body, site=self.site, sensors=sensors, side=side)
 
 
-class Imu(Record, frozen=True):
+class Imu(TomlRecord, frozen=True):
     """The IMU: its site and the names of its sensors in the MJCF.
 
     A gyroscope and an accelerometer of the default names are added if the MJCF lacks them.
@@ -165,7 +165,7 @@ class Imu(Record, frozen=True):
     orientation: str | None = None
 
 
-class Shares(Record, frozen=True):
+class Shares(TomlRecord, frozen=True):
     """Shares of the joints' stiffness: for joints between base and feet, and for all others.
 
     The minimum is large enough that no joint is limp.
@@ -175,7 +175,7 @@ class Shares(Record, frozen=True):
     others: Share
 
 
-class FallWay(Record, frozen=True):
+class FallWay(TomlRecord, frozen=True):
     """Pose and stiffness of a protective fall in one direction.
 
     Attributes:
@@ -193,7 +193,7 @@ class FallWay(Record, frozen=True):
     impact: Shares
 
 
-class Fall(Record, frozen=True):
+class Fall(TomlRecord, frozen=True):
     """Criterion for a fallen robot: base lower than `height` m or torso tilted by over `tilt` rad.
 
     Attributes:
@@ -237,7 +237,7 @@ def with_defaults(entry: JointEntry, drive: Drive) -> JointEntry:
     return replace(entry, **{key: getattr(drive, key) for key in missing})
 
 
-class RobotFile(Record, frozen=True):
+class RobotFile(TomlRecord, frozen=True):
     """A whole `robot.toml`.
 
     Attributes:

@@ -75,7 +75,7 @@ class ImuGate:
         if found is not None and not found.stop:
             found = None
         if found is not None and self._needed:
-            raise ImuError(f"{found}: {found.saying.do}{self._look}", found.saying.name)
+            raise ImuError(f"{found}: {found.text.remedy}{self._look}", found.text.name)
         if found is not None or imu is None:
             return self._guess(observation, dt)
         self._failed = False

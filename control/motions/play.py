@@ -26,7 +26,7 @@ class PoseHolder:
 
     @property
     def first_pose(self) -> Array:
-        """First pose (n,), rad; see `Begins`."""
+        """First pose (n,), rad; see `HasFirstPose`."""
         return self.pose
 
     def reset(self, observation: Observation) -> None:

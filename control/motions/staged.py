@@ -51,7 +51,7 @@ class StagedPlayer:
 
     @property
     def first_pose(self) -> Array:
-        """First pose (n,), rad; see `Begins`."""
+        """First pose (n,), rad; see `HasFirstPose`."""
         return self.gait.graph.pose[0]
 
     def reset(self, observation: Observation) -> None:

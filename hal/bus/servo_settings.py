@@ -8,7 +8,7 @@ from windup.hal.registers import Register
 from windup.hal.servos.servo_model import ServoModel, ServoMount
 
 
-class Setting(NamedTuple):
+class SettingDifference(NamedTuple):
     """A register whose present value differs from the wanted one, counts."""
 
     register: Register
@@ -19,28 +19,28 @@ class Setting(NamedTuple):
         return f"{self.register.name} {self.present} instead of {self.wanted}"
 
 
-def differences(bus: Bus, mount: ServoMount) -> list[Setting]:
+def differences(bus: Bus, mount: ServoMount) -> list[SettingDifference]:
     """Return the required settings of a servo that differ. Nothing is written."""
     table = bus.family.table(mount.model.name)
     found = []
-    for name, value, mask in wanted_of(bus.family, mount):
+    for name, value, mask in required_settings(bus.family, mount):
         if name not in table:
             continue
         present = bus.read(mount.id, table[name])
         wanted = value if mask is None else present & ~mask | value
         if present != wanted:
-            found.append(Setting(table[name], present, wanted))
+            found.append(SettingDifference(table[name], present, wanted))
     return found
 
 
-def wanted_of(family: Family, mount: ServoMount) -> list[RequiredSetting]:
+def required_settings(family: Family, mount: ServoMount) -> list[RequiredSetting]:
     """Return the required settings of a servo, in the order in which they are written."""
     other = family.extended if mount.extended else None
     usual = family.wanted(mount.model)
     return [other if other is not None and want.name == other.name else want for want in usual]
 
 
-def limits(bus: Bus, id: int, model: ServoModel) -> list[Setting]:
+def limits(bus: Bus, id: int, model: ServoModel) -> list[SettingDifference]:
     """Return the unusual protection registers of servo `id`; `wanted` is the factory default."""
     table = bus.family.table(model.name)
     found = []
@@ -49,11 +49,11 @@ def limits(bus: Bus, id: int, model: ServoModel) -> list[Setting]:
             continue
         present = bus.read(id, table[usual.name])
         if usual.is_odd(present):
-            found.append(Setting(table[usual.name], present, usual.value))
+            found.append(SettingDifference(table[usual.name], present, usual.value))
     return found
 
 
-def assert_settings(bus: Bus, id: int, settings: list[Setting]) -> None:
+def assert_settings(bus: Bus, id: int, settings: list[SettingDifference]) -> None:
     """Write `settings` and read each one back.
 
     Raises:

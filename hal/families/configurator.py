@@ -16,7 +16,7 @@ from dynamixel_sdk import COMM_RX_CORRUPT, COMM_RX_TIMEOUT, COMM_SUCCESS
 from dynamixel_sdk.port_handler import PortHandler
 from dynamixel_sdk.protocol2_packet_handler import Protocol2PacketHandler
 
-from windup.hal.errors import CorruptAnswerError, NoAnswerError, RefusedError
+from windup.hal.errors import CorruptAnswerError, NoAnswerError, ServoRejectionError
 from windup.hal.heartbeat import no_heartbeat
 from windup.hal.port.port import BITS, Port
 from windup.hal.protocols import protocol2
@@ -141,7 +141,7 @@ def keep_received(packets: Any) -> deque[Sequence[int]]:
 class ServoConfigurator(ABC):
     """Verified access to one servo at a time, with retries; slow, for configuration only.
 
-    All methods raise `NoAnswerError`, `CorruptAnswerError`, `RefusedError` or `PortError`.
+    All methods raise `NoAnswerError`, `CorruptAnswerError`, `ServoRejectionError` or `PortError`.
 
     Attributes:
         heartbeat: Called before each attempt, because a silent servo takes several.
@@ -158,7 +158,7 @@ class ServoConfigurator(ABC):
 
     def settle(self) -> None:
         """Wait until no late answer to an earlier request can arrive."""
-        self._port.port.settle(QUIET + self._port.port.latency, NOISY)
+        self._port.port.drain_input(QUIET + self._port.port.latency, NOISY)
         self._unsettled = False
 
     @abstractmethod
@@ -274,4 +274,4 @@ class DynamixelConfigurator(ServoConfigurator):
     def _check(self, id: int, error: int) -> None:
         if code := error & ~protocol2.ALERT:
             what = REFUSALS.get(code, f"answers with error {code}")
-            raise RefusedError(f"id {id} on {self._port.port.url} {what}")
+            raise ServoRejectionError(f"id {id} on {self._port.port.url} {what}")

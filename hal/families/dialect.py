@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from windup.hal.errors import CorruptAnswerError, HardwareError, NoAnswerError, RefusedError
+from windup.hal.errors import CorruptAnswerError, HardwareError, NoAnswerError, ServoRejectionError
 from windup.hal.port.adapter import MARGIN, Probe
 from windup.hal.port.port import BITS, Port
 from windup.hal.protocols import protocol1, protocol2
@@ -122,7 +122,7 @@ class Protocol2(ServoProtocol):
         """Return the model number of a servo that answers in protocol 1 instead, or None."""
         from windup.hal.families.configurator1 import Dynamixel1Configurator
 
-        with contextlib.suppress(NoAnswerError, CorruptAnswerError, RefusedError):
+        with contextlib.suppress(NoAnswerError, CorruptAnswerError, ServoRejectionError):
             return Dynamixel1Configurator(port, MODEL_NUMBER).ping(id, attempts=1)
         return None
 

@@ -11,7 +11,7 @@ from math import isfinite, nan
 
 import numpy as np
 
-from windup.hal.guard.finding import AGAIN, CHECK, Finding, Saying
+from windup.hal.guard.finding import AGAIN, CHECK, Finding, FindingText
 from windup.hal.guard.gyro_watch import LONGEST, NEXT, GyroWatch, Verdict
 from windup.hal.guard.stuck_axis import StuckAxis
 from windup.hal.joints import Array
@@ -26,11 +26,13 @@ RIGID = 1.0
 MOVED = 0.03
 """Minimum motion of a joint that counts as moved, rad."""
 
-SILENCE = Saying("imu silent", "silent for {:.2f} s", "at {:.2f} s", CHECK, who="the IMU")
-STUCK = Saying(
-    "imu frozen", "stuck at one sample for {:.1f} s", "at {:.1f} s", AGAIN, who="the IMU"
+SILENCE = FindingText("imu silent", "silent for {:.2f} s", "at {:.2f} s", CHECK, subject="the IMU")
+STUCK = FindingText(
+    "imu frozen", "stuck at one sample for {:.1f} s", "at {:.1f} s", AGAIN, subject="the IMU"
 )
-NO_NUMBER = Saying("imu not a number", "not a number", "", AGAIN, who="a reading of the IMU")
+NO_NUMBER = FindingText(
+    "imu not a number", "not a number", "", AGAIN, subject="a reading of the IMU"
+)
 
 
 class ImuWatch:
@@ -105,8 +107,8 @@ class ImuWatch:
 
     def _note(self, found: Finding) -> None:
         """Record a finding, its worst value, and how many times it began."""
-        name = found.saying.name
-        fresh = Finding(found.saying, found.value, found.limit, found.since)
+        name = found.text.name
+        fresh = Finding(found.text, found.value, found.limit, found.since)
         known = self._warnings.setdefault(name, fresh)
         if found.value > known.value:
             known.value, known.limit = found.value, found.limit

@@ -7,7 +7,7 @@ from windup.hal.errors import PortError, StaleStateError
 from windup.hal.joints import Array
 from windup.hal.torque_loss import SILENT, torque_lost
 
-LOOKS = 5
+MAX_REREADS = 5
 """Maximum number of re-reads of a silent joint before a stop treats its torque as lost."""
 
 
@@ -21,7 +21,7 @@ class Presence:
     def __init__(self, backend: Backend) -> None:
         self._backend = backend
         self._watched = backend if isinstance(backend, TorqueWatched) else None
-        self._told = False  # a loss of torque or ports has been reported
+        self._reported = False  # a loss of torque or ports has been reported
 
     def check(self, age: Array, max_age: float) -> None:
         """Check torque, ports, and the ages (n,) s of the joint states against `max_age` s.
@@ -36,20 +36,20 @@ class Presence:
         if age.max() > max_age:
             raise self._stale(age, max_age)
 
-    def crippled(self) -> bool:
+    def has_lost_torque(self) -> bool:
         """Return whether a joint has lost its torque, or may have; reads again if in doubt."""
         watched = self._watched
         if watched is None:
             return False
-        for _ in range(LOOKS):
+        for _ in range(MAX_REREADS):
             if watched.lost_joints or watched.lost or not watched.doubtful_joints:
                 break
             self._backend.read()
         return bool(watched.lost_joints or watched.doubtful_joints)
 
     def _check_torque(self, watched: TorqueWatched) -> None:
-        told, self._told = self._told, bool(watched.lost_joints or watched.lost)
-        if not self._told or told:
+        before, self._reported = self._reported, bool(watched.lost_joints or watched.lost)
+        if not self._reported or before:
             return
         if watched.lost_joints:
             raise torque_lost(watched.lost_joints)

@@ -13,7 +13,7 @@ MEMORY = 1.0
 FULL, PUSHES = 0.8, 0.6
 """Fractions of stall torque from which a joint counts as at its torque limit: of the torque that
 its goal commands, and of the measured torque if that is available."""
-STANDS = 0.1
+MAX_STANDING_SPEED = 0.1
 """Maximum speed of a joint that counts as standing still, rad/s."""
 
 
@@ -52,5 +52,5 @@ class Strain:
             self.stall.fill(0.0)
             return
         weak = measured < PUSHES  # never true where torque is not measured
-        held = asked & (np.abs(joints.velocity) < STANDS) & ~weak
+        held = asked & (np.abs(joints.velocity) < MAX_STANDING_SPEED) & ~weak
         np.copyto(self.stall, np.where(held, self.stall + dt, 0.0))

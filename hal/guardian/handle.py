@@ -14,15 +14,24 @@ from typing import IO
 import msgspec
 
 from windup.hal.backend import Backend
+from windup.hal.error_text import error_text
 from windup.hal.errors import GuardianError, HardwareError
 from windup.hal.guard.levels import HealthLevels
 from windup.hal.guard.limits import StopPolicy
-from windup.hal.guardian.charges import charges_of
+from windup.hal.guardian.guarded_buses import guarded_buses
 from windup.hal.guardian.launch import launch
-from windup.hal.guardian.order import FIRST, HAND_OVER, IDLE, READY, RELEASE, TICK, Charge, Order
-from windup.hal.guardian.signals import held_back
+from windup.hal.guardian.order import (
+    FIRST,
+    HAND_OVER,
+    IDLE,
+    READY,
+    RELEASE,
+    TICK,
+    GuardedBus,
+    GuardianOrder,
+)
+from windup.hal.guardian.signals import signals_blocked
 from windup.hal.guardian.traceback_signal import show_traceback_on_signal
-from windup.hal.in_words import in_words
 from windup.hal.joints import Array
 from windup.hal.port.lock import AdapterLock
 from windup.hal.servo_bus.servo_backend import ServoBackend
@@ -42,7 +51,7 @@ class Guardian:
     """Handle of the guardian process, which stops the robot if this process dies or hangs.
 
     Args:
-        charges: The robot's buses.
+        buses: The robot's buses.
         policy: Stop policy to carry out.
         hold: Duration of the policy "hold" before torque goes off, s.
 
@@ -51,23 +60,23 @@ class Guardian:
         HardwareError: The process does not start.
     """
 
-    def __init__(self, charges: Sequence[Charge], policy: StopPolicy, hold: float = 60.0) -> None:
+    def __init__(self, buses: Sequence[GuardedBus], policy: StopPolicy, hold: float = 60.0) -> None:
         self._locks: list[AdapterLock] = []
         try:
             with ExitStack() as undo:  # also on Ctrl-C, which the program may catch
-                told = tuple(self._lock(charge, undo) for charge in charges)
+                told = tuple(self._lock(record, undo) for record in buses)
                 show_traceback_on_signal()
-                with held_back():
-                    self._process = launch([charge.lock for charge in told])
+                with signals_blocked():
+                    self._process = launch([record.lock for record in told])
                     undo.callback(self._give_up)
                 assert self._process.stdin is not None
                 self._pipe: IO[bytes] = self._process.stdin
                 self._descriptor = self._pipe.fileno()
                 self._read_at = time.monotonic()
-                self._start(Order(host=os.getpid(), policy=policy, charges=told, hold=hold))
+                self._start(GuardianOrder(host=os.getpid(), policy=policy, buses=told, hold=hold))
                 undo.pop_all()
         except OSError as error:
-            raise HardwareError(NOT_STARTED.format(f" ({in_words(error)})")) from error
+            raise HardwareError(NOT_STARTED.format(f" ({error_text(error)})")) from error
 
     @property
     def pid(self) -> int:
@@ -115,18 +124,18 @@ class Guardian:
         self._end(HAND_OVER)
         self._unlock()
 
-    def _lock(self, charge: Charge, undo: ExitStack) -> Charge:
+    def _lock(self, record: GuardedBus, undo: ExitStack) -> GuardedBus:
         """Lock the adapter of a charge; return the charge with the lock's descriptor.
 
         Raises:
             PortError: Another armed run holds the lock.
         """
-        lock = AdapterLock(charge.url)
+        lock = AdapterLock(record.url)
         undo.callback(lock.close)
         self._locks.append(lock)
-        return msgspec.structs.replace(charge, lock=lock.take())
+        return msgspec.structs.replace(record, lock=lock.acquire())
 
-    def _start(self, order: Order) -> None:
+    def _start(self, order: GuardianOrder) -> None:
         """Send the order and a first heartbeat, and wait until the guardian confirms both."""
         with suppress(BrokenPipeError):
             self._pipe.write(msgspec.json.encode(order) + b"\n" + IDLE)
@@ -143,7 +152,7 @@ class Guardian:
 
     def _give_up(self) -> None:
         """Kill a guardian that has not begun to watch; torque is still off."""
-        with held_back():
+        with signals_blocked():
             self._process.kill()
             self._process.wait()
             for pipe in filter(None, (self._process.stdin, self._process.stdout)):
@@ -205,5 +214,5 @@ def guardian_for(
     """
     if not isinstance(backend, ServoBackend):
         return None
-    charges = charges_of(backend, crouch, levels)
-    return Guardian(charges, policy, hold) if charges else None
+    buses = guarded_buses(backend, crouch, levels)
+    return Guardian(buses, policy, hold) if buses else None

@@ -25,7 +25,7 @@ from windup.hal.imu.kind import ImuKind
 from windup.hal.imu.mounting import Mounting
 from windup.hal.imu.quaternion import conjugate, multiply
 from windup.hal.observation import ImuState
-from windup.hal.port.replug import RETRY, Opener
+from windup.hal.port.port_reopener import RETRY, Opener
 
 ADDRESS = 0x28
 """I2C address of the chip; 0x29 if its pin COM3 is high (section 4.6)."""
@@ -90,7 +90,7 @@ class Bno055:
         """
         return Bno055Link(self, self._opener(self.url, ADDRESS))
 
-    def take(self, data: bytes, now: float) -> None:
+    def decode(self, data: bytes, now: float) -> None:
         """Decode the registers from DATA on, read at `now` s.
 
         A new sample is half a period old on average. An unchanged one was read before: it ages.
@@ -104,7 +104,7 @@ class Bno055:
         if not 0.9 < size < 1.1 or np.linalg.norm(rates) > FASTEST:
             self.implausible += 1
             return
-        body = self._mounting.body
+        body = self._mounting.to_body
         self._state = ImuState(
             multiply(orientation / size, self._back),
             body(rates),
@@ -164,7 +164,7 @@ class Bno055Link:
         now = self.clock.now()
         try:
             if self._set_up(now):
-                self._imu.take(self._chip.read(DATA, LENGTH), self.clock.now())
+                self._imu.decode(self._chip.read(DATA, LENGTH), self.clock.now())
         except OSError:  # unplugged: the last sample ages until the IMU watch reports it as silent
             self._setting = _Setting(due=now + RETRY)
 

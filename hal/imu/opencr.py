@@ -72,7 +72,7 @@ class OpenCr:
     def decode(self, data: bytes, age: float) -> ImuState:
         """Return the sample in the bytes of `span`, `age` s old, in the body frame."""
         counts = np.frombuffer(data, "<i2", count=6, offset=2).astype(np.float64)
-        body = self.mounting.body
+        body = self.mounting.to_body
         return ImuState(None, body(counts[:3]) * GYRO, body(counts[3:]) * ACCELERATION, age)
 
 

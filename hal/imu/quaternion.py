@@ -32,7 +32,7 @@ def euler_zxy(yaw: float, pitch: float, roll: float) -> Array:
     return multiply(multiply(about_z, about_x), about_y)
 
 
-def between(before: Array, after: Array) -> Array:
+def rotation_between(before: Array, after: Array) -> Array:
     """Return the rotation vector (3,) rad, in the body, from one orientation to the next."""
     turn = multiply(conjugate(before), after)
     size = float(np.linalg.norm(turn[1:]))

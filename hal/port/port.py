@@ -122,7 +122,7 @@ class Port:
                 self._echo = 0  # an echo that has not come by now is lost
         self._discard()
 
-    def settle(self, silence: float, longest: float) -> None:
+    def drain_input(self, silence: float, longest: float) -> None:
         """Read and discard bytes until none has come for `silence` s.
 
         Gives up after `longest` s if the line is never quiet.

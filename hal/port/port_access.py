@@ -11,7 +11,7 @@ READ_WRITE = 0o6
 RULE = 'SUBSYSTEM=="tty", GROUP="dialout", MODE="0660"'
 
 
-class Person(NamedTuple):
+class User(NamedTuple):
     """A user and the groups that count for access.
 
     Attributes:
@@ -38,10 +38,10 @@ class Person(NamedTuple):
 
 def access_remedy(device: str) -> str:
     """Return why this process may not read and write `device`, with the remedy."""
-    return remedy(os.stat(device), Person.present())
+    return permission_remedy(os.stat(device), User.present())
 
 
-def remedy(device: os.stat_result, person: Person) -> str:
+def permission_remedy(device: os.stat_result, person: User) -> str:
     """Return why `person` may not read and write a device with this `stat`, with the remedy."""
     mode, owner, group = device.st_mode, _user(device.st_uid), _group(device.st_gid)
     shown = f"it is {stat.filemode(mode)} {owner} {group}"
@@ -61,7 +61,7 @@ def remedy(device: os.stat_result, person: Person) -> str:
     return f"join its group: sudo usermod -aG {group} $USER, then log in again"
 
 
-def _allowed(device: os.stat_result, person: Person) -> bool:
+def _allowed(device: os.stat_result, person: User) -> bool:
     """Return whether the mode bits allow a person to read and write."""
     if person.uid == device.st_uid:
         return _has(device.st_mode >> 6)

@@ -45,7 +45,7 @@ class StatusRead(CyclicRead):
             protocol1.status(span.id, bytes(span.size))[:_ERROR] for span in self.spans
         )
 
-    def answered(self) -> int:
+    def answered_bytes(self) -> int:
         """Return the number of bytes of the valid replies to the last request."""
         return int(self._widths[self.valid].sum())
 
@@ -87,9 +87,9 @@ class ChainRead(CyclicRead):
             self._take(row, Status(part.spans[0].id, int(part.error[0]), part.payload.tobytes()))
         self.complete = bool(self.valid.all())
 
-    def answered(self) -> int:
+    def answered_bytes(self) -> int:
         """Return the number of bytes of the valid replies to the last request."""
-        return sum(part.answered() for part in self.parts)
+        return sum(part.answered_bytes() for part in self.parts)
 
     def _sound(self, data: Bytes) -> bool:
         """Return False: only the parts are decoded by layout."""

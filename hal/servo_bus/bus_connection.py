@@ -11,7 +11,7 @@ from windup.hal.bus.bus import Bus
 from windup.hal.errors import PortError
 from windup.hal.joints import Array, Mask
 from windup.hal.port.port import Port
-from windup.hal.port.replug import RETRY, Opener, Replug
+from windup.hal.port.port_reopener import RETRY, Opener, PortReopener
 from windup.hal.protocols.cyclic import CyclicWrite
 from windup.hal.servo_bus.bus_readout import BusReadout
 from windup.hal.servo_bus.servo_torque import ServoTorque
@@ -35,7 +35,7 @@ class BusConnection:
     off until it is read back as off, and goals are withheld until `rearmed`.
 
     Attributes:
-        line: Readout of the servos.
+        readout: Readout of the servos.
         torque: Torque control of the servos.
         check: Finds servos that have lost their torque, while it should be on.
         lost: Description of the failure of the port, or None while it is open.
@@ -46,25 +46,25 @@ class BusConnection:
     """
 
     def __init__(
-        self, where: BusPort, opener: Opener, line: Callable[[Port], BusReadout], watchdog: float
+        self, where: BusPort, opener: Opener, readout: Callable[[Port], BusReadout], watchdog: float
     ) -> None:
-        self._replug = Replug(where.url, where.baud, opener)
-        self.line = line(self._replug.opened)
-        self.torque = ServoTorque(self.line, watchdog)
-        self.check = TorqueCheck(self.line)
-        self._some = b"", self.line.goals
+        self._reopener = PortReopener(where.url, where.baud, opener)
+        self.readout = readout(self._reopener.opened)
+        self.torque = ServoTorque(self.readout, watchdog)
+        self.check = TorqueCheck(self.readout)
+        self._some = b"", self.readout.goals
         self.lost: str | None = None
         self.losses = 0
         self.heard, self.calm = -np.inf, False
         self.barred = self._unsure = self._dropped = False
         self._look_again = 0.0
         # Goals to such servos may switch torque on.
-        self._goal_wakes = self.line.bus.family.goal_wakes
+        self._goal_wakes = self.readout.bus.family.goal_wakes
 
     @property
     def bus(self) -> Bus:
         """The bus."""
-        return self.line.bus
+        return self.readout.bus
 
     @property
     def clock(self) -> Clock:
@@ -77,7 +77,7 @@ class BusConnection:
             self._revive()
         if self.lost is None:
             try:
-                self.line.request()
+                self.readout.request()
             except PortError as error:
                 self._lose(error)
 
@@ -85,23 +85,23 @@ class BusConnection:
         """Return (servos,) bool: valid and plausible answers; see `BusReadout.collect`."""
         if self.lost is None:
             try:
-                valid = self.line.collect(counts, health, error)
+                valid = self.readout.collect(counts, health, error)
                 self.heard = self.clock.now()
                 if self.torque.powered:
                     watchdog = self.torque.watchdog if self.torque.armed else 0.0
                     self.check.update(error, self.heard, watchdog)
-                self.calm = self.line.calm and self.check.calm and not self.check.woke
+                self.calm = self.readout.calm and self.check.calm and not self.check.woke
                 return valid
             except PortError as gone:
                 self._lose(gone)
         self.calm = False
-        return np.zeros(len(self.line.ids), dtype=bool)
+        return np.zeros(len(self.readout.ids), dtype=bool)
 
     def read_health(self, health: Array) -> None:
         """Read voltage and temperature of the servos into `health` (3, n), if the port is open."""
         if self.lost is None:
             try:
-                self.line.read_health(health)
+                self.readout.read_health(health)
             except PortError as error:
                 self._lose(error)
 
@@ -114,8 +114,8 @@ class BusConnection:
             return "unarmed"
         withheld = self.check.withheld
         if withheld is None:
-            self.line.goals.values[:] = counts
-            return None if self._send(self.line.goals.frames()) else "unarmed"
+            self.readout.goals.values[:] = counts
+            return None if self._send(self.readout.goals.frames()) else "unarmed"
         if not withheld.all():
             goals = self._goals_but(withheld)
             goals.values[:] = counts[~withheld]
@@ -126,7 +126,7 @@ class BusConnection:
         """Send P registers, (servos,)."""
         if self.barred or self.lost is not None:
             return
-        for gain, rows, write in self.line.gains:
+        for gain, rows, write in self.readout.gains:
             write.values[:] = gain.counts(registers[rows])
             self._send(write.frames())
 
@@ -151,22 +151,22 @@ class BusConnection:
                 return self.torque.off()
             except PortError as error:
                 self._lose(error)
-        return TorqueState.unread(len(self.line.ids))
+        return TorqueState.unread(len(self.readout.ids))
 
     @property
     def gone_for_good(self) -> bool:
         """Whether the port is lost and this process does not reopen it."""
-        return self.lost is not None and not self._replug.returns
+        return self.lost is not None and not self._reopener.can_reopen
 
-    def insist_off(self, state: TorqueState) -> TorqueState:
+    def retry_off(self, state: TorqueState) -> TorqueState:
         """Switch off again the servos not read back as off; first try to reopen a lost port."""
         if state.all_off:
             return state
         try:
             if self.lost is not None:
-                self._replug.hurry()
+                self._reopener.retry_now()
                 self._open(self.clock.now())
-            return state if self.lost is not None else self.torque.insist(state)
+            return state if self.lost is not None else self.torque.retry_off(state)
         except PortError as error:
             self._lose(error)
             return state
@@ -174,7 +174,7 @@ class BusConnection:
     def clear_watchdogs(self) -> int:
         """Clear Bus Watchdogs that have fired; return their number."""
         try:
-            return self.torque.revive() if self.lost is None else 0
+            return self.torque.clear_watchdogs() if self.lost is None else 0
         except PortError as error:
             self._lose(error)
             return 0
@@ -186,14 +186,14 @@ class BusConnection:
 
     def close(self) -> None:
         """Close the port."""
-        self._replug.close()
+        self._reopener.close()
 
     def _goals_but(self, withheld: Mask) -> CyclicWrite:
         """Return the sync write of goals to all servos that are not `withheld` (servos,) bool."""
         key = withheld.tobytes()
         if self._some[0] != key:
-            ids = [id for id, held in zip(self.line.ids, withheld, strict=True) if not held]
-            self._some = key, self.line.goals_of(ids)
+            ids = [id for id, held in zip(self.readout.ids, withheld, strict=True) if not held]
+            self._some = key, self.readout.goals_of(ids)
         return self._some[1]
 
     def _send(self, frames: list[bytes]) -> bool:
@@ -210,8 +210,8 @@ class BusConnection:
         self.barred = self._unsure = True
         self._dropped |= self.torque.powered
         self.torque.armed = self.torque.powered = False
-        self.line.forget()
-        self._replug.lose(self.clock.now())
+        self.readout.reset()
+        self._reopener.lose(self.clock.now())
 
     def _revive(self) -> None:
         """Reopen the port, if it is back, and switch torque off until it is read back as off."""
@@ -227,9 +227,9 @@ class BusConnection:
 
     def _open(self, now: float) -> None:
         """Reopen the port if it was lost and has come back."""
-        port = self._replug.again(now) if self.lost is not None else None
+        port = self._reopener.try_reopen(now) if self.lost is not None else None
         if port is not None:
-            self.line.bus.move_to(port)
+            self.readout.bus.move_to(port)
             self.lost, self._look_again = None, now
 
     def _tell_dropped(self) -> None:

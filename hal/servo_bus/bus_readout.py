@@ -10,7 +10,7 @@ from windup.hal.bus.bus import Bus
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.joints import Array, Mask
 from windup.hal.protocols.cyclic import CyclicWrite
-from windup.hal.servo_bus.line_reads import Asked, LineReads, Longer
+from windup.hal.servo_bus.bus_reads import BusReads, CycleRead, ExtraViews
 from windup.hal.servo_bus.plausibility import Plausibility
 from windup.hal.servo_bus.units import gain_groups
 from windup.hal.servos.servo_model import ServoMount
@@ -73,10 +73,10 @@ class BusReadout:
             (gain, at, family.dialect.write([self.ids[row] for row in at], gain.register))
             for gain, at in gain_groups(mounts)
         ]
-        self.reads = LineReads(bus, self.ids, [mount.model for mount in mounts], board)
+        self.reads = BusReads(bus, self.ids, [mount.model for mount in mounts], board)
         self._asked = self.reads.next()
 
-    def who(self, rows: Iterable[int]) -> str:
+    def names_at(self, rows: Iterable[int]) -> str:
         """Return the names of the servos at `rows`, such as "l_knee (id 13)" or "id 13"."""
         if not self.names:
             return ", ".join(f"id {self.ids[row]}" for row in rows)
@@ -113,9 +113,9 @@ class BusReadout:
             self.imu = asked.read.params(servos)
         self.reads.broken_chain = not asked.read.complete
         believed = self._put(asked, valid, counts, error)
-        if asked.longer is not None and (fresh := believed[asked.longer.rows]).any():
-            self._take_health(asked.longer, fresh, health)
-            self._look_at_torque(asked.longer, fresh)
+        if asked.extra is not None and (fresh := believed[asked.extra.rows]).any():
+            self._take_health(asked.extra, fresh, health)
+            self._look_at_torque(asked.extra, fresh)
         return believed
 
     def errors(self, error: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
@@ -133,19 +133,21 @@ class BusReadout:
         for _ in range(ATTEMPTS):
             self.bus.exchange.request(asked.read)
             fresh = self.bus.exchange.collect()[: len(self.ids)]
-            if asked.longer is not None and fresh.any():
-                self._take_health(asked.longer, fresh, health)
+            if asked.extra is not None and fresh.any():
+                self._take_health(asked.extra, fresh, health)
             if fresh.all():
                 break
 
-    def forget(self) -> None:
+    def reset(self) -> None:
         """Reset the plausibility check and the fast read: servos may have moved, or be missing."""
         self.reads.broken_chain = True
         self.calm = self.imu_fresh = False
         if self.check is not None:
-            self.check.forget()
+            self.check.reset()
 
-    def _put(self, asked: Asked, valid: Mask, counts: Array, error: npt.NDArray[np.uint8]) -> Mask:
+    def _put(
+        self, asked: CycleRead, valid: Mask, counts: Array, error: npt.NDArray[np.uint8]
+    ) -> Mask:
         read, block = asked.read, asked.block
         records = self._records(asked)
         position, velocity, effort = block.counts(records)
@@ -167,26 +169,26 @@ class BusReadout:
         error[rows] = errors
         return valid
 
-    def _records(self, asked: Asked) -> npt.NDArray[np.void]:
+    def _records(self, asked: CycleRead) -> npt.NDArray[np.void]:
         """Return the (servos,) records of the block in the last answers."""
         payload, block = asked.read.payload, asked.block
         if asked.state_at is not None:
             payload = payload.take(asked.state_at)
         return payload[: len(self.ids) * block.size].view(block.dtype)
 
-    def _take_health(self, longer: Longer, fresh: Mask, health: Array) -> None:
+    def _take_health(self, extra: ExtraViews, fresh: Mask, health: Array) -> None:
         """Store voltage and temperature of the servos that are `fresh`."""
-        rows = self.rows[longer.rows][fresh]
-        volts = longer.volts[fresh] * self._volt
+        rows = self.rows[extra.rows][fresh]
+        volts = extra.volts[fresh] * self._volt
         health[0, rows] = volts
-        health[1, rows] = longer.degrees[fresh]
+        health[1, rows] = extra.degrees[fresh]
         health[2, rows] = now = self.bus.port.clock.now()
         self._volts.append((now, float(volts.min())))
 
-    def _look_at_torque(self, longer: Longer, fresh: Mask) -> None:
+    def _look_at_torque(self, extra: ExtraViews, fresh: Mask) -> None:
         """Mark servos as slack whose torque registers show no torque, or a restart."""
-        for counts, restarted in longer.torque:
+        for counts, restarted in extra.torque:
             gone = fresh & ((counts == 0) | (counts == restarted))
             if gone.any():
-                self.slack[longer.rows] |= gone
+                self.slack[extra.rows] |= gone
                 self.calm = False

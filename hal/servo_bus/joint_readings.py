@@ -40,9 +40,9 @@ class JointReadings:
     def collect(self, link: BusConnection, error: npt.NDArray[np.uint8]) -> None:
         """Collect and timestamp the answers on one bus; error bytes are stored in `error` (n,)."""
         valid: Mask = link.collect(self._counts, self._health, error)
-        line = link.line
-        self.answered[line.where if line.calm else line.rows[valid]] = link.heard
-        if line.imu_fresh:
+        readout = link.readout
+        self.answered[readout.where if readout.calm else readout.rows[valid]] = link.heard
+        if readout.imu_fresh:
             self._imu_at = link.heard
 
     def read_health(self, links: Sequence[BusConnection]) -> None:
@@ -68,7 +68,7 @@ class JointReadings:
         if self._imu is not None:
             return self._imu.state(now)
         for link in links:
-            line = link.line
-            if line.board is not None and line.imu is not None:
-                return line.board.decode(line.imu, now - self._imu_at)
+            readout = link.readout
+            if readout.board is not None and readout.imu is not None:
+                return readout.board.decode(readout.imu, now - self._imu_at)
         return None

@@ -11,7 +11,7 @@ from windup.hal.bus.transactions import TURNAROUND
 from windup.hal.clock import WallClock
 from windup.hal.command import JointCommand, shifted_goal
 from windup.hal.errors import HardwareError, PortError
-from windup.hal.heartbeat import Heartbeat, beating, no_heartbeat
+from windup.hal.heartbeat import Heartbeat, no_heartbeat, with_heartbeat
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.imu.source import ImuConnection, ImuSource
 from windup.hal.joints import Array, Joints
@@ -24,7 +24,7 @@ from windup.hal.servo_bus.coupling import Coupling, Couplings
 from windup.hal.servo_bus.joint_readings import JointReadings
 from windup.hal.servo_bus.joint_torque import JointTorque
 from windup.hal.servo_bus.servo_alerts import ServoAlerts, count_errors
-from windup.hal.servo_bus.servo_setup import lines_of, names_of, open_links, set_up
+from windup.hal.servo_bus.servo_setup import names_of, open_links, readout_builders, set_up_servos
 from windup.hal.servo_bus.stop_button import StopButton
 from windup.hal.servo_bus.units import Units
 from windup.hal.servo_bus.wiring import check_mounts
@@ -109,9 +109,9 @@ class ServoBackend:
         self.heartbeat: Heartbeat = no_heartbeat
 
     @property
-    def lines(self) -> list[BusReadout]:
+    def readouts(self) -> list[BusReadout]:
         """The readout of each bus."""
-        return [link.line for link in self.links]
+        return [link.readout for link in self.links]
 
     @property
     def _buses(self) -> list[Bus]:
@@ -135,7 +135,7 @@ class ServoBackend:
     @property
     def doubtful_joints(self) -> Mapping[str, str]:
         """Maps joint name to the remedy, for joints whose torque state is unknown."""
-        return self._torque.doubts(self.links)
+        return self._torque.torque_unknown(self.links)
 
     def connect(self) -> None:
         """Open the ports. Nothing moves.
@@ -145,11 +145,11 @@ class ServoBackend:
             UsageError: The ports do not share one clock (wall clock, or one virtual clock).
         """
         self.disconnect()
-        build = lines_of(self.joints, self.mounts, self.units, self.board)
+        build = readout_builders(self.joints, self.mounts, self.units, self.board)
         self.links, self._imu_link, self.clock = open_links(
             build, self._ports, self.imu, self._watchdog, self._opener
         )
-        self._alerts.watch(self.lines)
+        self._alerts.watch(self.readouts)
 
     def configure(self) -> None:
         """Check every servo, then write the required settings that differ. Nothing moves.
@@ -158,12 +158,12 @@ class ServoBackend:
             HardwareError: The wiring differs from robot.toml, and nothing has been written; or a
                 servo does not answer cyclic reads.
         """
-        buses = {link.line.mounts[0].bus: link.bus for link in self.links}
-        with beating(self._buses, self.heartbeat):
-            set_up(self.joints, self.mounts, buses, self.board)
-        for line in self.lines:
-            line.bus.exchange.turnaround = TURNAROUND
-            line.reads.probe_fast()
+        buses = {link.readout.mounts[0].bus: link.bus for link in self.links}
+        with with_heartbeat(self._buses, self.heartbeat):
+            set_up_servos(self.joints, self.mounts, buses, self.board)
+        for readout in self.readouts:
+            readout.bus.exchange.turnaround = TURNAROUND
+            readout.reads.probe_fast()
         if silent := self._silent():
             raise HardwareError(f"no answer to cyclic reads from {silent}; run `windup scan`")
         self.read_health()
@@ -222,10 +222,10 @@ class ServoBackend:
         real[0] = self._couplings.joints(angle) if self._couplings else angle
         real[3:] = self._realised
         for link in self.links:
-            if (clamp := link.send_goals(inside[link.line.rows])) is not None:
+            if (clamp := link.send_goals(inside[link.readout.rows])) is not None:
                 self.clamps[clamp] += 1
             if link.check.withheld is not None:
-                real[3:, link.line.rows[link.check.withheld]] = 0.0
+                real[3:, link.readout.rows[link.check.withheld]] = 0.0
         return JointCommand(real)
 
     def goal_counts(self, pose: Array) -> Array:
@@ -246,10 +246,10 @@ class ServoBackend:
                 of a joint was lost since the robot was armed; torque is switched off everywhere.
         """
         self._gains = b""
-        with beating(self._buses, self.heartbeat):
+        with with_heartbeat(self._buses, self.heartbeat):
             if not on:
                 return self._torque.off(self.links, self.heartbeat)
-            self.button.forget()
+            self.button.reset()
             wanted = self._couplings.servo_gains(self.arming_stiffness)
             gains, _ = self.units.p_registers(wanted)
             return self._torque.on(self.links, gains, self.heartbeat)
@@ -294,6 +294,6 @@ class ServoBackend:
         registers, beyond = self.units.p_registers(wanted)
         self.clamps["gain"] += beyond
         for link in self.links:
-            link.send_gains(registers[link.line.rows])
+            link.send_gains(registers[link.readout.rows])
         self._realised[0] = self._couplings.joint_gains(registers * self.units.stiffness)
         self._gains = stiffness.tobytes()

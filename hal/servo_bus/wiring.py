@@ -8,9 +8,9 @@ from shlex import quote
 import numpy as np
 
 from windup.hal.bus.bus import Bus
-from windup.hal.bus.differs import Differs
-from windup.hal.bus.servo_settings import Setting, differences, limits
-from windup.hal.bus.status_level import make_answer
+from windup.hal.bus.servo_differences import ServoDifferences
+from windup.hal.bus.servo_settings import SettingDifference, differences, limits
+from windup.hal.bus.status_return_level import enable_answers
 from windup.hal.errors import (
     ConfigError,
     CorruptAnswerError,
@@ -53,9 +53,9 @@ def check_mounts(
             raise ConfigError(
                 f"joints {first!r} and {second!r} both have id {one.id} on bus {one.bus!r}"
             )
-    extent = couplings.extent(joints.lower, joints.upper)
+    servo_range = couplings.servo_range(joints.lower, joints.upper)
     for row, (name, mount) in enumerate(named):
-        ends = sorted(float(units.counts(end)[row]) for end in extent)
+        ends = sorted(float(units.counts(end)[row]) for end in servo_range)
         bottom, top = mount.first_count, mount.last_count
         if ends[0] < bottom or ends[1] > top:
             raise ConfigError(
@@ -86,7 +86,7 @@ def _check_families(named: Sequence[tuple[str, ServoMount]]) -> None:
 
 def check_servos(
     joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, Bus], board: OpenCr | None
-) -> list[Differs]:
+) -> list[ServoDifferences]:
     """Check every servo, and return the settings that have to be written to each.
 
     Nothing is written except the status return level of a servo that does not answer reads.
@@ -96,11 +96,11 @@ def check_servos(
             is on; one message lists all such servos, with the command to run next.
     """
     problems: dict[str, list[str]] = {}
-    found: list[Differs] = []
+    found: list[ServoDifferences] = []
     for name, mount in zip(joints.names, mounts, strict=True):
         bus = buses[mount.bus]
         try:
-            found.append(Differs(bus, mount.id, name, *_inspect(bus, mount)))
+            found.append(ServoDifferences(bus, mount.id, name, *_inspect(bus, mount)))
         except HardwareError as error:
             who = f"joint {name!r} id {mount.id}: {_short(error)}"
             problems.setdefault(bus.port.url, []).append(who)
@@ -118,7 +118,9 @@ def check_servos(
     return found
 
 
-def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting], str]:
+def _inspect(
+    bus: Bus, mount: ServoMount
+) -> tuple[list[SettingDifference], list[SettingDifference], str]:
     try:
         number = bus.ping(mount.id)
     except NoAnswerError:
@@ -133,14 +135,16 @@ def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting],
         return _settings(bus, mount)
     except NoAnswerError as error:
         raise HardwareError(
-            f"answers a ping, but not every question after it{_strange(error)}; a loose cable, or "
+            f"answers a ping, but not every question after it{_extra_bytes(error)}; a loose cable, or "
             "a weak supply?"
         ) from None
 
 
-def _settings(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting], str]:
+def _settings(
+    bus: Bus, mount: ServoMount
+) -> tuple[list[SettingDifference], list[SettingDifference], str]:
     """Return the settings to write, the unusual protection limits, and what was repaired."""
-    repaired = make_answer(bus, mount.id, mount.model)
+    repaired = enable_answers(bus, mount.id, mount.model)
     _check_offset(bus, mount)
     settings = differences(bus, mount)
     locked = [str(setting) for setting in settings if setting.register.area == "eeprom"]
@@ -171,14 +175,14 @@ def _check_offset(bus: Bus, mount: ServoMount) -> None:
 
 def _short(error: HardwareError) -> str:
     if isinstance(error, NoAnswerError):
-        return f"no answer{_strange(error)}"
+        return f"no answer{_extra_bytes(error)}"
     if isinstance(error, CorruptAnswerError):
         return "only broken answers (two servos with this id?)"
     return str(error)
 
 
-def _strange(error: NoAnswerError) -> str:
-    return f", but {error.came} bytes that are none" if error.came else ""
+def _extra_bytes(error: NoAnswerError) -> str:
+    return f", but {error.extra_bytes} bytes that are none" if error.extra_bytes else ""
 
 
 def _sentence(url: str, problems: list[str]) -> str:

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import msgspec
 import mujoco
 
-from windup.hal.config import not_finite, read_toml
+from windup.hal.config import non_finite_numbers, read_toml
 from windup.hal.errors import ConfigError
 from windup.hal.key_mistakes import key_mistakes, without_unknown
 from windup.robots import mjcf
@@ -79,7 +79,7 @@ def decode(name: str, data: Any, record: type[T]) -> tuple[tuple[str, ...], T | 
     Returns:
         One line for each mistake; and the record, or None if it cannot be decoded.
     """
-    infinite = dict(not_finite(data))
+    infinite = dict(non_finite_numbers(data))
     found = list(key_mistakes(data, record))
     others = [mistake for mistake in found if mistake.key not in infinite]
     lines = [f"{name}: {key}: {why}" for key, why in infinite.items()]

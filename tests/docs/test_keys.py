@@ -10,7 +10,7 @@ import pytest
 
 from tests.docs.pages import PAGES, read
 from windup.control.pose_graph.gait_file import GaitFile
-from windup.hal.config import Record
+from windup.hal.config import TomlRecord
 from windup.robots.levels import Level
 from windup.robots.records import RobotFile, Shares
 
@@ -82,7 +82,7 @@ def nested(kind: Any, seen: set[Any]) -> set[Any]:
     """Return a record and all records inside it."""
     for inner in getattr(kind, "__args__", ()):
         nested(inner, seen)
-    if isinstance(kind, type) and issubclass(kind, Record) and kind not in seen:
+    if isinstance(kind, type) and issubclass(kind, TomlRecord) and kind not in seen:
         seen.add(kind)
         for field in msgspec.structs.fields(kind):
             nested(field.type, seen)

@@ -2,16 +2,16 @@ from pathlib import Path
 
 import pytest
 
-from windup.hal.config import Record, load_toml
+from windup.hal.config import TomlRecord, load_toml
 from windup.hal.errors import ConfigError
 
 
-class Wheel(Record, frozen=True):
+class Wheel(TomlRecord, frozen=True):
     radius: float
     spokes: int = 8
 
 
-class Cart(Record, frozen=True):
+class Cart(TomlRecord, frozen=True):
     name: str
     wheels: list[Wheel] = []
 

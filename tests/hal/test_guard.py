@@ -255,7 +255,7 @@ def test_an_answer_lost_after_a_long_arming_is_no_reason_to_stop() -> None:
         seen = servo_state.seen(servos.clock.now())
         return replace(seen, joints=replace(seen.joints, age=np.array([0.0, late, 0.0])))
 
-    guard.admit()
+    guard.check_before_arming()
     servos.collect = collect  # type: ignore[method-assign]
     guard.watch = None
     assert guard.set_torque(True).all_on

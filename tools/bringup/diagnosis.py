@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from windup.hal.errors import TelemetryError
-from windup.hal.guard import HealthLevels, Kind
-from windup.hal.guard.finding import SAYINGS, named
+from windup.hal.guard import HealthKind, HealthLevels
+from windup.hal.guard.finding import FINDING_TEXTS, format_names
 from windup.hal.joints import Joints
 from windup.hal.telemetry.layout import Header
 from windup.hal.telemetry.ring import TelemetryReader, Ticks
@@ -56,8 +56,11 @@ class Limits:
         """Return the limits as plain data; levels are by kind and joint."""
         plain = {item.name: getattr(self, item.name) for item in fields(self)[2:]}
         levels = {
-            SAYINGS[kind].name: {"warn": self.health.warn[kind], "stop": self.health.stop[kind]}
-            for kind in Kind
+            FINDING_TEXTS[kind].name: {
+                "warn": self.health.warn[kind],
+                "stop": self.health.stop[kind],
+            }
+            for kind in HealthKind
         }
         return plain | {"levels": levels}
 
@@ -257,8 +260,8 @@ class Diagnosis:
                 self._complain(name, what, "ask for less, or widen its limits in robot.toml")
 
         for finding in self.findings:
-            who = named(finding.joints) or finding.saying.who
-            self._complain(who, finding.what, finding.saying.do)
+            who = format_names(finding.joints) or finding.text.subject
+            self._complain(who, finding.description, finding.text.remedy)
 
     def _complain(self, who: str, what: str, do: str) -> None:
         self.complaints.append(Complaint(who, what, do))

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from windup.hal.bus.bus import FIRST, Bus, Found
+from windup.hal.bus.bus import FIRST, Bus, ScannedServo
 from windup.hal.errors import CorruptAnswerError, HardwareError
 from windup.hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FAMILIES, Family
 from windup.hal.imu.opencr import MODEL_NUMBER as OPENCR
@@ -87,10 +87,10 @@ class Survey:
             elif (shown, id) not in known:
                 self.unknown.append({"id": id, "baud": shown, "numbers": numbers})
 
-    def _ask(self, family: Family, rate: int) -> list[Found]:
+    def _ask(self, family: Family, rate: int) -> list[ScannedServo]:
         """Return the servos of a family that answer; store all other answers."""
         bus, self.port.baud = Bus(self.port, family), rate
-        bus.get_to_know_adapter(FIRST)
+        bus.measure_adapter(FIRST)
         before = self.port.received
         found = bus.scan([rate])
         more = self.port.received - before - ANSWER_BYTES[family.dialect.weak] * len(found)
@@ -99,7 +99,7 @@ class Survey:
             self.strange += [(rate, family, one) for one in strange_answers(self.port, family)]
         return found
 
-    def _add(self, bus: Bus, servo: Found, shown: int | None) -> None:
+    def _add(self, bus: Bus, servo: ScannedServo, shown: int | None) -> None:
         if servo.model_number not in (*bus.family.numbers, OPENCR):
             numbers = {bus.family.name: servo.model_number}
             self.unknown.append({"id": servo.id, "baud": shown, "numbers": numbers})
@@ -124,7 +124,7 @@ def places(port: Port, baud: int | None = None) -> Iterator[tuple[Family, int]]:
         yield from ((family, rate) for rate in bauds if baud in (None, rate))
 
 
-def _describe(bus: Bus, servo: Found) -> dict[str, Any]:
+def _describe(bus: Bus, servo: ScannedServo) -> dict[str, Any]:
     """Return a row with a servo's registers; "broken" if reading one gave a corrupt answer."""
     board = servo.model_number == OPENCR
     registers: Mapping[str, Register] = {VOLTAGE.name: VOLTAGE} if board else bus.family.registers

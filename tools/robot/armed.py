@@ -103,7 +103,7 @@ class Armed(Stoppable):
         check_released(self.backend.backend)
         if self.stack.real:
             say(f"arming {self.description.name}: {how_to_stop(self.backend.backend)}")
-        self.backend.admit()
+        self.backend.check_before_arming()
         if asked():
             return
         self.custody.begin()

@@ -11,7 +11,7 @@ from windup.control.estimation.estimator import BaseEstimator
 from windup.control.estimation.imu_gate import ImuGate
 from windup.control.loop import Estimator, LoopReport, Until, run_loop
 from windup.control.motions.play import PoseHolder
-from windup.hal.clock import punctual
+from windup.hal.clock import real_time_loop
 from windup.hal.controller import Controller, Stopwatch
 from windup.hal.errors import ControllerError, TelemetryError, WindupError
 from windup.hal.guard.finding import Finding
@@ -189,7 +189,7 @@ class Session(Armed):
         look = look_with(self.description, self.stack.port)
         gate = ImuGate(estimator, self.imu, needs_imu, look)
         if not self.armed:
-            gate.admit(self.backend.peek)
+            gate.check_before_arming(self.backend.peek)
         return gate
 
     def _run(
@@ -245,7 +245,7 @@ class Session(Armed):
                 look(observation)
             return end(observation)
 
-        with punctual() if self.paced else nullcontext():
+        with real_time_loop() if self.paced else nullcontext():
             if isinstance(self.backend.clock, TwinClock):
                 self.backend.clock.align()
             run_loop(

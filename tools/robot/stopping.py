@@ -140,7 +140,7 @@ class Stoppable(OnStack):
     def _stop_after_error(self, asked: Asked, error: WindupError | None = None) -> None:
         """Carry out the stop policy; nobody holds a joint that is unwell, or bad news."""
         unwell = isinstance(error, UnhealthyError) and self.backend.stop_policy == "hold"
-        limp = error is not None and (error.limp or unwell)
+        limp = error is not None and (error.torque_off_at_once or unwell)
         try:
             self._stop("limp" if limp else None, asked)
         except WindupError as failed:

@@ -45,9 +45,9 @@ class RunNotes:
         if isinstance(backend, BusHealth):
             self.driver_clamps.update(backend.clamps)
         for finding in findings:
-            known = self._findings.get(finding.saying.name)
+            known = self._findings.get(finding.text.name)
             if known is None:
-                self._findings[finding.saying.name] = deepcopy(finding)
+                self._findings[finding.text.name] = deepcopy(finding)
             else:
                 known.merge(finding)
         if self._slowness is None:

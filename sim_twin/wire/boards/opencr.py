@@ -85,7 +85,7 @@ class OpenCr:
         mounting: Mounting = IN_OP3,
     ) -> None:
         self.imu, self.servos, self.supply = imu, tuple(servos), supply
-        self._chip = mounting.chip
+        self._chip = mounting.to_imu
         self.buttons = 0
         self.dead: list[Device] = []
         self.on_power: Callable[[bool], None] | None = None

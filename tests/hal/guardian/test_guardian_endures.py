@@ -12,23 +12,23 @@ import pytest
 from tests.hal.guardian.two_servos import (
     NAMES,
     TORQUE,
-    charge,
     full_pipe,
     host,
+    record,
     runs,
     show,
     switch_on,
     wait_for_end,
 )
 from windup.hal.guardian import takeover
-from windup.hal.guardian.order import Order
+from windup.hal.guardian.order import GuardianOrder
 from windup.hal.guardian.remote_bus import RemoteBus
 from windup.hal.guardian.takeover import Takeover
 
 
-def order(path: Path, policy: str = "limp") -> Order:
-    whole = msgspec.structs.replace(charge(path), names=NAMES, crouch={1: 1800, 2: 2300})
-    return Order(host=os.getpid(), policy=policy, charges=(whole,))  # type: ignore[arg-type]
+def order(path: Path, policy: str = "limp") -> GuardianOrder:
+    whole = msgspec.structs.replace(record(path), names=NAMES, crouch={1: 1800, 2: 2300})
+    return GuardianOrder(host=os.getpid(), policy=policy, buses=(whole,))  # type: ignore[arg-type]
 
 
 def fails(*_: object) -> None:
@@ -107,11 +107,11 @@ def test_joints_are_called_by_their_names_and_who_cuts_the_power_is_told_how_to_
 ) -> None:
     switch_on(sts_bus)
     lost = msgspec.structs.replace(
-        charge(sts_bus), servos={**charge(sts_bus).servos, 9: "STS3215-7.4V"},
+        record(sts_bus), servos={**record(sts_bus).servos, 9: "STS3215-7.4V"},
         names={**NAMES, 9: "neck"},
     )  # fmt: skip
     said: list[str] = []
-    taken = Takeover(Order(host=1, policy="limp", charges=(lost,)), said.append)
+    taken = Takeover(GuardianOrder(host=1, policy="limp", buses=(lost,)), said.append)
     assert taken.switch_off_once() == [str(sts_bus)]
     taken._complain(inf)
     assert "torque cannot be read at neck (id 9)" in said[0]

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 
 from tests.hal.guardian.two_servos import full_pipe
-from windup.hal.guardian.words import LINES, Words
+from windup.hal.guardian.message_writer import LINES, MessageWriter
 
 LONG_ENOUGH = 10.0
 
@@ -19,42 +19,42 @@ def pipe() -> Iterator[tuple[int, int]]:
 
 
 def test_what_is_said_is_written_in_order(pipe: tuple[int, int]) -> None:
-    words = Words(pipe[1])
-    words.say("one")
-    words.say("two")
-    words.finish(LONG_ENOUGH)
+    writer = MessageWriter(pipe[1])
+    writer.write_line("one")
+    writer.write_line("two")
+    writer.finish(LONG_ENOUGH)
     assert os.read(pipe[0], 100) == b"windup guardian: one\nwindup guardian: two\n"
     os.close(pipe[0])
 
 
 def test_who_does_not_read_keeps_nobody_waiting() -> None:
     with full_pipe() as writing:
-        words = Words(writing)
+        writer = MessageWriter(writing)
         for _ in range(10 * LINES):
-            words.say("torque is not known to be off")
-        words.finish(0.0)
-        assert words._thread.is_alive() and words._lines.full()
+            writer.write_line("torque is not known to be off")
+        writer.finish(0.0)
+        assert writer._thread.is_alive() and writer._lines.full()
 
 
 def test_of_too_many_lines_the_last_are_kept(pipe: tuple[int, int]) -> None:
-    words = Words(None)
+    writer = MessageWriter(None)
     for number in range(2 * LINES):
-        words.say(str(number))
-    assert words._lines.qsize() == LINES
-    assert words._lines.get() == f"windup guardian: {LINES}\n".encode()
+        writer.write_line(str(number))
+    assert writer._lines.qsize() == LINES
+    assert writer._lines.get() == f"windup guardian: {LINES}\n".encode()
 
 
 def test_a_reader_that_has_gone_is_no_error(pipe: tuple[int, int]) -> None:
     os.close(pipe[0])
-    words = Words(pipe[1])
-    words.say("one")
-    words.say("two")
-    words.finish(LONG_ENOUGH)
-    assert not words._thread.is_alive()
+    writer = MessageWriter(pipe[1])
+    writer.write_line("one")
+    writer.write_line("two")
+    writer.finish(LONG_ENOUGH)
+    assert not writer._thread.is_alive()
 
 
 def test_where_standard_error_is_closed_nothing_is_said() -> None:
-    words = Words(None)
-    words.say("one")
-    words.finish(LONG_ENOUGH)
-    assert not words._thread.is_alive()
+    writer = MessageWriter(None)
+    writer.write_line("one")
+    writer.finish(LONG_ENOUGH)
+    assert not writer._thread.is_alive()

@@ -13,7 +13,7 @@ from typing import TypeVar
 from windup.hal.bus.bus import Bus
 from windup.hal.errors import HardwareError
 from windup.hal.families import FEETECH_STS
-from windup.hal.guardian.order import Charge
+from windup.hal.guardian.order import GuardedBus
 from windup.hal.port.open_port import open_port
 from windup.hal.registers import Register
 
@@ -39,8 +39,8 @@ def emulated(*arguments: str) -> "Iterator[subprocess.Popen[str]]":
             process.kill()
 
 
-def charge(path: Path) -> Charge:
-    return Charge(url=str(path), baud=1_000_000, servos=IDS)
+def record(path: Path) -> GuardedBus:
+    return GuardedBus(url=str(path), baud=1_000_000, servos=IDS)
 
 
 def patiently(ask: Callable[[], T]) -> T:

@@ -10,7 +10,7 @@ from tests.hal.mixed_robot import Wires, mount, robot, ticks
 from windup.hal.command import JointCommand
 from windup.hal.errors import HardwareError
 from windup.hal.port.open_port import open_port, stable_url
-from windup.hal.port.replug import Replug
+from windup.hal.port.port_reopener import PortReopener
 from windup.hal.servo_bus.servo_backend import ServoBackend
 from windup.hal.servos import servo_model
 
@@ -136,7 +136,7 @@ def test_a_device_is_found_again_from_another_working_folder(
     _, slave = os.openpty()
     (tmp_path / "bus").symlink_to(os.ttyname(slave))
     monkeypatch.chdir(tmp_path)
-    replug = Replug("bus", 1_000_000, open_port)
+    replug = PortReopener("bus", 1_000_000, open_port)
     monkeypatch.chdir("/")
     replug.lose(0.0)
     assert replug.again(1.0) is not None

@@ -38,7 +38,7 @@ def test_counts_become_si_and_goals_become_counts(model: ServoModel) -> None:
     state = backend.read().joints
     count = 2 * pi / model.counts_per_rev
     assert state.position == pytest.approx([5 * count, -5 * count])
-    unit = backend.lines[0].bus.family.table(model.name)["present_velocity"].unit
+    unit = backend.readouts[0].bus.family.table(model.name)["present_velocity"].unit
     assert state.velocity == pytest.approx([-7 * unit, 7 * unit])
     assert np.isnan(state.torque).all() and state.age.tolist() == [0.0, 0.0]
     assert state.voltage == pytest.approx([7.4] * 2) and state.temperature.tolist() == [35.0] * 2

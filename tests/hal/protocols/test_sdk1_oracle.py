@@ -9,7 +9,13 @@ from hypothesis import strategies as st
 from scservo_sdk.protocol_packet_handler import protocol_packet_handler
 
 from tests.hal.fake_bus1 import MX, SCS, STS, fake_port1
-from windup.hal.errors import CorruptAnswerError, NoAnswerError, PortError, RefusedError, UsageError
+from windup.hal.errors import (
+    CorruptAnswerError,
+    NoAnswerError,
+    PortError,
+    ServoRejectionError,
+    UsageError,
+)
 from windup.hal.families import DYNAMIXEL_1, FEETECH_SCS, FEETECH_STS, Family
 from windup.hal.families.configurator import SdkPort
 from windup.hal.protocols import protocol1
@@ -105,7 +111,9 @@ def test_a_dynamixel_refuses_and_an_overload_is_no_refusal() -> None:
     serial, port = fake_port1({1: MX})
     serial.error[1] = 0x08
     link = DYNAMIXEL_1.dialect.link(port)
-    with pytest.raises(RefusedError, match="id 1 on fake://bus says the value is out of range"):
+    with pytest.raises(
+        ServoRejectionError, match="id 1 on fake://bus says the value is out of range"
+    ):
         link.write(1, 30, b"\xff\xff")
     serial.error[1] = 0x20
     assert link.ping(1) == 29

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.hal.fake_bus import fake_port
-from windup.hal.errors import CorruptAnswerError, NoAnswerError, PortError, RefusedError
+from windup.hal.errors import CorruptAnswerError, NoAnswerError, PortError, ServoRejectionError
 from windup.hal.families.configurator import DynamixelConfigurator, SdkPackets, SdkPort
 from windup.hal.protocols import protocol2
 from windup.hal.protocols.crc16 import crc16
@@ -84,7 +84,9 @@ def test_two_servos_with_one_id_are_named_as_such() -> None:
 def test_a_refusal_says_why() -> None:
     serial, port = fake_port(IDS)
     serial.error[2] = 7
-    with pytest.raises(RefusedError, match=r"id 2 on fake://bus says the register is locked"):
+    with pytest.raises(
+        ServoRejectionError, match=r"id 2 on fake://bus says the register is locked"
+    ):
         DynamixelConfigurator(port).write(2, 9, b"\x00")
 
 

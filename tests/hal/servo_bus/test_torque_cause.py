@@ -5,7 +5,7 @@ from math import nan
 import pytest
 
 from windup.hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FEETECH_SCS, FEETECH_STS, Family
-from windup.hal.servo_bus.torque_cause import Evidence, judge
+from windup.hal.servo_bus.torque_cause import Evidence, torque_loss_of
 from windup.hal.torque_loss import UNPLUGGED, Loss, restarted, torque_lost
 
 HOT, LOADED = 0b100, 0b10_0000
@@ -15,13 +15,13 @@ names = [family.name for family in ALL]
 
 def cause(family: Family, **known: int) -> str:
     seen = {"drives": False, "restarted": False, "errors": 0, "unloading": HOT | LOADED, **known}
-    return str(judge(family, Evidence(**seen), nan))  # type: ignore[arg-type]
+    return str(torque_loss_of(family, Evidence(**seen), nan))  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("family", ALL, ids=names)
 def test_an_alert_of_a_servo_that_drives_is_no_loss(family: Family) -> None:
-    assert cause(family, drives=True, errors=HOT) == "None"
-    assert cause(family, drives=True, errors=LOADED, unloading=HOT) == "None"
+    assert cause(family, torque_on=True, errors=HOT) == "None"
+    assert cause(family, torque_on=True, errors=LOADED, unloading=HOT) == "None"
 
 
 @pytest.mark.parametrize("family", ALL, ids=names)
@@ -32,7 +32,7 @@ def test_a_servo_that_signals_what_ends_its_torque_has_shut_down(family: Family)
 @pytest.mark.parametrize("family", ALL, ids=names)
 def test_a_restart_comes_before_all_other_causes(family: Family) -> None:
     assert cause(family, restarted=True, errors=HOT) == "its servo restarted"
-    assert cause(family, restarted=True, drives=True) == "its servo restarted"
+    assert cause(family, restarted=True, torque_on=True) == "its servo restarted"
 
 
 @pytest.mark.parametrize(
@@ -54,7 +54,7 @@ def test_without_an_error_it_was_somebody_where_errors_stay_until_the_power_goes
 @pytest.mark.parametrize("family", [FEETECH_STS, FEETECH_SCS])
 def test_an_overload_of_a_feetech_servo_leaves_a_part_of_its_torque(family: Family) -> None:
     weak = "its servo pushes with a part of the torque only: overload"
-    assert cause(family, drives=True, errors=LOADED) == weak
+    assert cause(family, torque_on=True, errors=LOADED) == weak
 
 
 def test_one_sentence_for_each_cause_names_the_joints_and_what_to_do() -> None:

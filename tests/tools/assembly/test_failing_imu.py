@@ -47,7 +47,7 @@ def test_a_stand_without_its_imu_goes_on_and_says_so(name: str, fault: str) -> N
         assert robot.stand(AT + 2.0).reason == "done"
         assert not robot.twin.fallen
         (warning,) = robot.imu.warnings
-        assert warning.saying.name == fault.split(":")[0].replace("_", " ").replace(
+        assert warning.text.name == fault.split(":")[0].replace("_", " ").replace(
             "spin", "spinning"
         )
 

@@ -1,7 +1,7 @@
 import pytest
 
-from windup.hal.guard.finding import SAYINGS, Finding
-from windup.hal.guard.levels import Kind
+from windup.hal.guard.finding import FINDING_TEXTS, Finding
+from windup.hal.guard.levels import HealthKind
 from windup.tools.terminal.run_notes import RunNotes
 from windup.tools.terminal.slowness import Slowness
 
@@ -9,11 +9,15 @@ WELL = Slowness(125.0)
 
 
 def warm(joint: str, degrees: float) -> Finding:
-    return Finding(SAYINGS[Kind.TEMPERATURE], degrees, 65.0, 1.0, joints=[joint], count=1)
+    return Finding(
+        FINDING_TEXTS[HealthKind.TEMPERATURE], degrees, 65.0, 1.0, joints=[joint], count=1
+    )
 
 
 def low(volts: float) -> Finding:
-    return Finding(SAYINGS[Kind.SUPPLY_LOW], volts, 11.0, 1.0, joints=["a", "b"], count=2)
+    return Finding(
+        FINDING_TEXTS[HealthKind.SUPPLY_LOW], volts, 11.0, 1.0, joints=["a", "b"], count=2
+    )
 
 
 def test_a_command_begins_without_warnings() -> None:

@@ -11,7 +11,7 @@ from types import ModuleType
 from typing import Any
 
 
-class LateModule(ModuleType):
+class LazyModule(ModuleType):
     """A module whose code runs when one of its attributes is first used.
 
     Unlike a module of `importlib.util.LazyLoader`, it is not loaded by a second `import`, which
@@ -25,22 +25,22 @@ class LateModule(ModuleType):
         try:
             self.__spec__.loader.exec_module(self)
         except BaseException:
-            object.__setattr__(self, "__class__", LateModule)
+            object.__setattr__(self, "__class__", LazyModule)
             raise
         return getattr(self, name)
 
 
-def import_late(name: str) -> None:
+def import_lazily(name: str) -> None:
     """Register a module whose code runs when it is first used.
 
     Does nothing if the module is imported already or is not installed.
     """
     if name in sys.modules or (spec := find_spec(name)) is None:
         return
-    module = LateModule(name)
+    module = LazyModule(name)
     module.__spec__, module.__loader__, module.__file__ = spec, spec.loader, spec.origin
     module.__package__, module.__path__ = name, spec.submodule_search_locations or []
     sys.modules[name] = module
 
 
-import_late("glfw")
+import_lazily("glfw")

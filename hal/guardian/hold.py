@@ -7,7 +7,7 @@ from windup.hal.guardian.remote_bus import RemoteBus
 
 PERIOD = 0.2
 """Period of the checks of temperature and supply, s."""
-AGAIN = 3
+CONSECUTIVE = 3
 """Consecutive checks that have to fail: a weak checksum sometimes passes a wrong byte."""
 
 
@@ -24,8 +24,8 @@ def hold(buses: Sequence[RemoteBus], seconds: float) -> str | None:
     until, doubts = time.monotonic() + seconds, 0
     while time.monotonic() < until:
         time.sleep(PERIOD)
-        why = next((why for bus in buses if (why := bus.complaint())), None)
+        why = next((why for bus in buses if (why := bus.health_problem())), None)
         doubts = 0 if why is None else doubts + 1
-        if doubts == AGAIN:
+        if doubts == CONSECUTIVE:
             return why
     return None

@@ -3,8 +3,8 @@
 import numpy as np
 
 from windup.hal.errors import UsageError
-from windup.hal.guard.levels import HealthLevels, Kind
-from windup.hal.guardian.order import Charge
+from windup.hal.guard.levels import HealthKind, HealthLevels
+from windup.hal.guardian.order import GuardedBus
 from windup.hal.joints import Array
 from windup.hal.port.network_port import NETWORK
 from windup.hal.port.open_port import stable_url
@@ -13,9 +13,9 @@ from windup.hal.servo_bus.bus_connection import BusConnection
 from windup.hal.servo_bus.servo_backend import ServoBackend
 
 
-def charges_of(
+def guarded_buses(
     backend: ServoBackend, crouch: Array | None, levels: HealthLevels | None
-) -> list[Charge]:
+) -> list[GuardedBus]:
     """Return the guardian's records of the buses that are not emulated in this process.
 
     Args:
@@ -30,27 +30,31 @@ def charges_of(
     for link in links:
         _check_network(link)
     goals = None if crouch is None else backend.goal_counts(crouch)
-    return [charge_of(link, goals, levels) for link in links]
+    return [guarded_bus(link, goals, levels) for link in links]
 
 
-def charge_of(link: BusConnection, goals: Array | None, levels: HealthLevels | None) -> Charge:
+def guarded_bus(
+    link: BusConnection, goals: Array | None, levels: HealthLevels | None
+) -> GuardedBus:
     """Return the guardian's record of a bus; `goals` (n,) are those of the crouch, counts."""
-    port, line = link.bus.port, link.line
-    counts = {} if goals is None else dict(zip(line.ids, goals[line.rows].tolist(), strict=True))
+    port, readout = link.bus.port, link.readout
+    counts = (
+        {} if goals is None else dict(zip(readout.ids, goals[readout.rows].tolist(), strict=True))
+    )
     hot_and_low = {}
     if levels is not None:
-        stop = levels.stop[[Kind.TEMPERATURE, Kind.SUPPLY_LOW]][:, line.rows]
+        stop = levels.stop[[HealthKind.TEMPERATURE, HealthKind.SUPPLY_LOW]][:, readout.rows]
         hot_and_low = {
-            id: (float(hot), float(low)) for id, hot, low in zip(line.ids, *stop, strict=True)
+            id: (float(hot), float(low)) for id, hot, low in zip(readout.ids, *stop, strict=True)
         }
-    return Charge(
+    return GuardedBus(
         url=stable_url(port.place),
         baud=port.baud,
-        servos={mount.id: mount.model.name for mount in line.mounts},
+        servos={mount.id: mount.model.name for mount in readout.mounts},
         crouch={id: int(np.rint(count)) for id, count in counts.items()},
         levels=hot_and_low,
-        names=dict(zip(line.ids, line.names, strict=False)),  # joint names, if known
-        extended=tuple(mount.id for mount in line.mounts if mount.extended),
+        names=dict(zip(readout.ids, readout.names, strict=False)),  # joint names, if known
+        extended=tuple(mount.id for mount in readout.mounts if mount.extended),
         latency=port.latency,
         echoes=port.echoes,
     )

@@ -2,23 +2,25 @@
 
 from collections.abc import Iterator, Sequence
 
-from windup.hal.bus.differs import Differs
-from windup.hal.bus.servo_settings import Setting
+from windup.hal.bus.servo_differences import ServoDifferences
+from windup.hal.bus.servo_settings import SettingDifference
 
 MANY = 4
 """Maximum number of joints that a message names; more are counted."""
 
 
-def in_words(found: Sequence[Differs]) -> list[str]:
+def format_settings(found: Sequence[ServoDifferences]) -> list[str]:
     """Return a line about EEPROM changes, grouped by joints, and a line about unusual limits.
 
     RAM registers are not mentioned: they are lost without power, and are set at every start.
     """
-    changes = [(differs.joint, change) for differs in found for change in _changes(differs)]
+    changes = [
+        (differences.joint, change) for differences in found for change in _changes(differences)
+    ]
     limits = [
-        (differs.joint, f"{limit.register.name} {limit.present} (usual: {limit.wanted})")
-        for differs in found
-        for limit in differs.limits
+        (differences.joint, f"{limit.register.name} {limit.present} (usual: {limit.wanted})")
+        for differences in found
+        for limit in differences.limits
     ]
     lines = (
         ("servo settings are changed", changes),
@@ -27,16 +29,16 @@ def in_words(found: Sequence[Differs]) -> list[str]:
     return [f"{head}: {_grouped(pairs, len(found))}" for head, pairs in lines if pairs]
 
 
-def _changes(differs: Differs) -> Iterator[str]:
+def _changes(differences: ServoDifferences) -> Iterator[str]:
     """Yield a description of each EEPROM change in one servo."""
-    if differs.repaired:
-        yield differs.repaired
-    for setting in differs.settings:
+    if differences.repaired:
+        yield differences.repaired
+    for setting in differences.settings:
         if setting.register.area == "eeprom":
             yield _change(setting)
 
 
-def _change(setting: Setting) -> str:
+def _change(setting: SettingDifference) -> str:
     return f"{setting.register.name} {setting.present} -> {setting.wanted}"
 
 

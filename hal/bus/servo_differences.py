@@ -3,10 +3,10 @@
 from typing import NamedTuple
 
 from windup.hal.bus.bus import Bus
-from windup.hal.bus.servo_settings import Setting
+from windup.hal.bus.servo_settings import SettingDifference
 
 
-class Differs(NamedTuple):
+class ServoDifferences(NamedTuple):
     """Registers of one servo that differ from the required settings or the factory defaults.
 
     Attributes:
@@ -21,6 +21,6 @@ class Differs(NamedTuple):
     bus: Bus
     id: int
     joint: str
-    settings: list[Setting]
-    limits: list[Setting]
+    settings: list[SettingDifference]
+    limits: list[SettingDifference]
     repaired: str

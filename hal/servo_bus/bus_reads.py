@@ -24,7 +24,7 @@ ALONE_EVERY = 5
 Column = npt.NDArray[np.int64]
 
 
-class Longer(NamedTuple):
+class ExtraViews(NamedTuple):
     """Live views of the data that a read contains beyond the state, for some servos.
 
     Attributes:
@@ -41,7 +41,7 @@ class Longer(NamedTuple):
     torque: tuple[tuple[Column, int], ...]
 
     @classmethod
-    def of(cls, read: CyclicRead, rows: slice, begin: int, family: Family) -> "Longer":
+    def of(cls, read: CyclicRead, rows: slice, begin: int, family: Family) -> "ExtraViews":
         """Return the views of `rows` in `read`, which reads them from the address `begin` on."""
 
         def column(name: str) -> Column:
@@ -55,7 +55,7 @@ class Longer(NamedTuple):
         return cls(rows, column("present_voltage"), column("present_temperature"), torque)
 
 
-class Asked(NamedTuple):
+class CycleRead(NamedTuple):
     """One of the reads of a bus.
 
     Attributes:
@@ -63,16 +63,16 @@ class Asked(NamedTuple):
         state_at: Indices of the bytes of its payload that contain the servos' states; None if
             they are its first bytes.
         block: The block read of each servo.
-        longer: Views of further data of some servos, or None.
+        extra: Views of further data of some servos, or None.
     """
 
     read: CyclicRead
     state_at: npt.NDArray[np.intp] | None
     block: Block
-    longer: Longer | None = None
+    extra: ExtraViews | None = None
 
 
-class LineReads:
+class BusReads:
     """The reads of the servos of one bus, one per cycle.
 
     A cycle is one transaction: the common read of the family, the fast one if all servos support
@@ -95,7 +95,7 @@ class LineReads:
         self._every = ALONE_EVERY if family.check_alone else HEALTH_EVERY
         self._state = self._plain()
         self._health = self._take_turns()
-        self._fast: Asked | None = None
+        self._fast: CycleRead | None = None
         self._fast_health = self._health
         self._cycle = 0
         self.broken_chain = False
@@ -108,7 +108,7 @@ class LineReads:
                 self._fast_health = self._take_turns(fast=True)
         return self._fast is not None
 
-    def next(self) -> Asked:
+    def next(self) -> CycleRead:
         """Return the read of the next cycle."""
         self._cycle += 1
         fast = self._fast if not self.broken_chain else None
@@ -117,17 +117,17 @@ class LineReads:
         health = self._health if fast is None else self._fast_health
         return health[self._cycle // self._every % len(health)]
 
-    def health(self) -> Asked:
+    def health(self) -> CycleRead:
         """Return a read of state and health of all servos, for use outside the cycle."""
         state, check = self._blocks.state, self._blocks.check
         end = check.address + check.size
         return self._of_all(Block(state.address, end - state.address, state.state), False)
 
-    def _plain(self, fast: bool = False) -> Asked:
+    def _plain(self, fast: bool = False) -> CycleRead:
         block = self._blocks.state
-        return Asked(self._read(self._spans(block), fast), None, block)
+        return CycleRead(self._read(self._spans(block), fast), None, block)
 
-    def _take_turns(self, fast: bool = False) -> list[Asked]:
+    def _take_turns(self, fast: bool = False) -> list[CycleRead]:
         """Return the longer reads, in the order of their use."""
         health, check = self._blocks.health, self._blocks.check
         if health is None:
@@ -135,20 +135,22 @@ class LineReads:
         short, long = (self._of_all(block, fast) for block in (health, check))
         return [short] * (CHECK_EVERY - 1) + [long]
 
-    def _of_all(self, block: Block, fast: bool) -> Asked:
+    def _of_all(self, block: Block, fast: bool) -> CycleRead:
         """Return a read of all servos with a `block` longer than the state."""
         read = self._read(self._spans(block), fast)
         everybody = slice(0, len(self._ids))
-        return Asked(read, None, block, Longer.of(read, everybody, block.address, self._bus.family))
+        return CycleRead(
+            read, None, block, ExtraViews.of(read, everybody, block.address, self._bus.family)
+        )
 
-    def _alone(self, row: int) -> Asked:
+    def _alone(self, row: int) -> CycleRead:
         """Return a read in which one servo is read from its torque to its temperature registers."""
         state, check = self._blocks.state, self._blocks.check
         spans = self._spans(state)
         spans[row] = check.span(self._ids[row])
         read, at = self._read(spans), _state_of(spans, state)
-        longer = Longer.of(read, slice(row, row + 1), check.address, self._bus.family)
-        return Asked(read, at, state, longer)
+        extra = ExtraViews.of(read, slice(row, row + 1), check.address, self._bus.family)
+        return CycleRead(read, at, state, extra)
 
     def _spans(self, block: Block) -> list[Span]:
         return [block.span(id) for id in self._ids]

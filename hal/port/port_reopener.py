@@ -13,7 +13,7 @@ RETRY = 0.25
 Opener = Callable[[str, int], Port]
 
 
-class Replug:
+class PortReopener:
     """Opens one port, and reopens it after each loss; at most one port is open at a time.
 
     A device is found again by its serial number, since its path may change; a device without a
@@ -37,7 +37,7 @@ class Replug:
         self._next = 0.0
 
     @property
-    def returns(self) -> bool:
+    def can_reopen(self) -> bool:
         """Whether it is reopened; False for a network: connecting may block a loop for seconds."""
         return not self._url.startswith(NETWORK)
 
@@ -46,16 +46,16 @@ class Replug:
         self.close()
         self._next = now + RETRY
 
-    def hurry(self) -> None:
+    def retry_now(self) -> None:
         """Allow the next attempt at once, without waiting for `RETRY`."""
         self._next = 0.0
 
-    def again(self, now: float) -> Port | None:
+    def try_reopen(self, now: float) -> Port | None:
         """Reopen and return the port; None if it is missing or was tried less than `RETRY` ago.
 
-        Network ports are not tried (see `returns`).
+        Network ports are not tried (see `can_reopen`).
         """
-        if now < self._next or not self.returns:
+        if now < self._next or not self.can_reopen:
             return None
         self._next = now + RETRY
         try:

@@ -5,7 +5,7 @@ import errno
 from windup.hal.errors import WindupError
 
 
-def in_words(error: Exception) -> str:
+def error_text(error: Exception) -> str:
     """Return the message of `error`; for errors of the operating system, a readable one."""
     if isinstance(error, WindupError):
         return str(error)

@@ -5,7 +5,7 @@ from windup.hal.joints import Joints
 from windup.hal.torque_state import TorqueState
 
 
-def check_off(state: TorqueState, joints: Joints) -> None:
+def check_torque_off(state: TorqueState, joints: Joints) -> None:
     """Raise unless the torque of all joints was read back as off.
 
     Raises:

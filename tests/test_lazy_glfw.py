@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from windup.hal.late_glfw import LateModule, import_late
+from windup.hal.lazy_glfw import LazyModule, import_lazily
 
 NAME = "late_example"
 
@@ -21,18 +21,18 @@ def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 def test_it_is_loaded_by_its_first_attribute(file: Path) -> None:
     file.write_text("answer = 42")
-    import_late(NAME)
+    import_lazily(NAME)
     module = sys.modules[NAME]
-    assert isinstance(module, LateModule)
+    assert isinstance(module, LazyModule)
     assert module.answer == 42
-    assert type(module) is not LateModule
+    assert type(module) is not LazyModule
 
 
 def test_one_that_fails_says_so_each_time_and_not_that_its_attributes_are_missing(
     file: Path,
 ) -> None:
     file.write_text("raise OSError('no library')")
-    import_late(NAME)
+    import_lazily(NAME)
     module = sys.modules[NAME]
     for _ in range(2):
         with pytest.raises(OSError, match="no library"):

@@ -62,7 +62,7 @@ def _asked(items: Sequence[Status], rows: Mapping[int, int]) -> list[int]:
     return [item.id for item in items if item.id in rows]
 
 
-def in_turn(items: Sequence[Status], rows: Mapping[int, int]) -> list[Status]:
+def in_order(items: Sequence[Status], rows: Mapping[int, int]) -> list[Status]:
     """Return the replies that came once and in order; for the arguments see `newest`.
 
     A reply is in order if at least as many ids were asked before it as frames came before it, the

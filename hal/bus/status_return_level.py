@@ -11,7 +11,7 @@ from windup.hal.servos.servo_model import ServoModel
 REGISTER = "status_return_level"
 
 
-def make_answer(bus: Bus, id: int, model: ServoModel) -> str:
+def enable_answers(bus: Bus, id: int, model: ServoModel) -> str:
     """Make a servo answer reads and writes; return a description of the change, or "".
 
     Raises:

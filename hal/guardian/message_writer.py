@@ -14,7 +14,7 @@ LINES = 100
 Say = Callable[[str], None]
 
 
-class Words:
+class MessageWriter:
     """Writes lines in a thread of its own, so that the caller never waits for a reader.
 
     The descriptor is shared with other processes and must not be made non-blocking: that would
@@ -31,7 +31,7 @@ class Words:
         if descriptor is not None:
             self._thread.start()
 
-    def say(self, text: str) -> None:
+    def write_line(self, text: str) -> None:
         """Queue one line for writing."""
         self._put(f"windup guardian: {text}\n".encode(errors="replace"))
 
