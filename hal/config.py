@@ -61,7 +61,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
-        raise ConfigError(f"{path}: not TOML: this is no UTF-8 text") from None
+        raise ConfigError(f"{path}: not TOML: the text is not UTF-8") from None
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # numbers of 5000 digits, brackets 500 deep
@@ -83,10 +83,8 @@ def non_finite_numbers(data: Any) -> Iterator[tuple[str, str]]:
     for key, number in _numbers(data, ""):
         if not -LARGEST <= number <= LARGEST:
             infinite = isinstance(number, float) and not isfinite(number)
-            yield (
-                key,
-                (f"{number:g} is not finite" if infinite else f"no number is beyond {LARGEST:g}"),
-            )
+            problem = "not finite" if infinite else f"too large (maximum {LARGEST:g})"
+            yield key, f"{number:g} is {problem}"
 
 
 def _numbers(data: Any, key: str) -> Iterator[tuple[str, float]]:

@@ -41,20 +41,20 @@ def shutdown_loss(errors: tuple[str, ...]) -> Loss:
 def reduced_torque_loss(errors: tuple[str, ...]) -> Loss:
     """Return the loss for a servo whose own protection has reduced its torque."""
     return Loss(
-        "{servo} pushes with a part of the torque only: " + ", ".join(errors),
+        "{servo} has reduced its torque: " + ", ".join(errors),
         "remove the cause, then start again",
     )
 
 
 SWITCHED_OFF = Loss(
-    "somebody switched it off", "end the other program on the bus, then start again"
+    "another program switched it off", "end the other program on the bus, then start again"
 )
 UNEXPLAINED = Loss(
-    "{servo}, or somebody, switched it off",
+    "{servo} or another program switched it off",
     "check supply, load and temperature, and that no other program uses the bus",
 )
 UNPLUGGED = Loss(
-    "the port went away, and when it was back torque was switched off",
+    "the port was disconnected, and torque was switched off when it came back",
     "check the cable of the adapter, then start again",
 )
 SILENT = "check its cable and power, then run `windup health`"

@@ -217,9 +217,11 @@ class Bus:
         """
         last = self.family.dialect.last_id
         if not 0 <= new <= last:
-            raise UsageError(f"id {new} cannot be; ids go from 0 to {last}")
+            raise UsageError(f"id {new} is invalid; ids are 0 to {last}")
         if self._answers(new):
-            raise UsageError(f"id {new} on {self.port.url} is taken; two servos cannot share it")
+            raise UsageError(
+                f"id {new} on {self.port.url} belongs to another servo; give it a free id"
+            )
         register = self.family.registers["id"]
         with self._unlocked(id, after=new):
             self._link.write(id, register.address, bytes([new]))

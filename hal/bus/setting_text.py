@@ -18,13 +18,16 @@ def format_settings(found: Sequence[ServoDifferences]) -> list[str]:
         (differences.joint, change) for differences in found for change in _changes(differences)
     ]
     limits = [
-        (differences.joint, f"{limit.register.name} {limit.present} (usual: {limit.wanted})")
+        (
+            differences.joint,
+            f"{limit.register.name} {limit.present} (factory default: {limit.wanted})",
+        )
         for differences in found
         for limit in differences.limits
     ]
     lines = (
-        ("servo settings are changed", changes),
-        ("protection limits differ from the factory's", limits),
+        ("changing servo settings", changes),
+        ("protection limits differ from the factory defaults", limits),
     )
     return [f"{head}: {_grouped(pairs, len(found))}" for head, pairs in lines if pairs]
 

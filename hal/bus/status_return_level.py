@@ -34,10 +34,8 @@ def enable_answers(bus: Bus, id: int, model: ServoModel) -> str:
     try:
         now = bus.read(id, register)
     except NoAnswerError:
-        raise HardwareError(
-            "answers to pings alone, also with its status return level set"
-        ) from None
+        raise HardwareError("answers only pings, even with its status return level set") from None
     if now != wanted:
         raise HardwareError(f"{REGISTER} was set to {wanted} and reads back as {now}")
-    before = "one that answers to pings alone" if present is None else str(present)
+    before = "unreadable (answers only pings)" if present is None else str(present)
     return f"{REGISTER} {before} -> {wanted}"

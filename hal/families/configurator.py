@@ -30,9 +30,9 @@ SLACK = 10e-3
 ATTEMPTS = 3
 
 REFUSALS = {
-    1: "could not process it",
+    1: "could not process the instruction",
     2: "does not know the instruction",
-    3: "saw a wrong checksum",
+    3: "received a wrong checksum",
     4: "says the value is out of range",
     5: "says the length is wrong",
     6: "says the value is beyond its limit",
@@ -217,12 +217,14 @@ class ServoConfigurator(ABC):
         where = f"id {id} on {self._port.port.url} at {self._port.port.baud} baud"
         if result == self.timed_out and (came := self._port.port.received - before):
             raise NoAnswerError(
-                f"no answer from {where}, but {came} bytes that are none; run `windup scan`", came
+                f"no answer from {where}, but {came} bytes that do not belong to one; "
+                "run `windup scan`",
+                came,
             )
         if result == self.timed_out:
             raise NoAnswerError(f"no answer from {where}; is it powered? run `windup scan`")
         raise CorruptAnswerError(
-            f"only broken answers from {where}; a wrong baud rate, or two servos with this id?"
+            f"only corrupt answers from {where}; a wrong baud rate, or two servos with this id?"
         )
 
     @abstractmethod

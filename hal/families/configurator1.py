@@ -24,7 +24,7 @@ from windup.hal.registers import Register
 REFUSALS = {
     1: "says the goal is beyond its angle limits",
     3: "says the value is out of range",
-    4: "saw a wrong checksum",
+    4: "received a wrong checksum",
     6: "does not know the instruction",
 }
 """Bits of a Dynamixel's error byte that reject an instruction; the others report its health."""

@@ -53,7 +53,7 @@ FINDING_TEXTS = {
         "take a pose with less load, or carry less", 100.0,
     ),
     HealthKind.STALL: FindingText(
-        "stall", "blocked at full torque for {:.1f} s", "at {:.1f} s", "free what holds it"
+        "stall", "blocked at full torque for {:.1f} s", "at {:.1f} s", "remove what blocks it"
     ),
 }  # fmt: skip
 

@@ -185,7 +185,7 @@ class GuardedBackend:
         if block.shape != self._buffer.shape:
             raise UnsafeCommandError(
                 f"a command of shape {block.shape} for {len(self.joints)} joints; "
-                f"it has to be {self._buffer.shape}"
+                f"its shape has to be {self._buffer.shape}"
             )
         if self._unlimited and not isfinite(block.sum()):
             self._check_finite(block)
@@ -263,8 +263,8 @@ class GuardedBackend:
         if bad.size:
             row, joint = bad[0]
             raise UnsafeCommandError(
-                f"the controller asked joint {self.joints.names[joint]!r} for "
-                f"{FIELDS[row]} {block[row, joint]}; refused"
+                f"the controller commanded {FIELDS[row]} {block[row, joint]} for joint "
+                f"{self.joints.names[joint]!r}; give finite values"
             )
 
     def _count_clamps(self, block: Array) -> None:

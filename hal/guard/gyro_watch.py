@@ -51,12 +51,12 @@ MAX_STEP = 0.1
 """Maximum time step of the integration, s."""
 
 SPINNING = FindingText(
-    "imu spinning", "turning by its gyroscope alone, by {:.0f} degrees", "at {:.0f}", AGAIN,
+    "imu spinning",
+    "reporting a rotation of {:.0f} degrees that accelerometer or joints contradict",
+    "at {:.0f}", AGAIN,
     180.0 / pi, "the IMU",
 )  # fmt: skip
-JUMPING = SPINNING._replace(
-    state="turning by its gyroscope alone, from one sample to the next", level=""
-)
+JUMPING = SPINNING._replace(state="reporting a jump of its rates without an acceleration", level="")
 
 Vector = tuple[float, float, float]
 Verdict = tuple[FindingText, float, float]

@@ -28,7 +28,7 @@ MOVED = 0.03
 
 SILENCE = FindingText("imu silent", "silent for {:.2f} s", "at {:.2f} s", CHECK, subject="the IMU")
 STUCK = FindingText(
-    "imu frozen", "stuck at one sample for {:.1f} s", "at {:.1f} s", AGAIN, subject="the IMU"
+    "imu frozen", "repeating one sample for {:.1f} s", "at {:.1f} s", AGAIN, subject="the IMU"
 )
 NO_NUMBER = FindingText(
     "imu not a number", "not a number", "", AGAIN, subject="a reading of the IMU"

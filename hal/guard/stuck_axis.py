@@ -18,7 +18,12 @@ MIN_SAMPLES = 8
 is busy."""
 
 ONE_AXIS = FindingText(
-    "imu spinning", "stuck about one axis, at {:.1f} rad/s", "above {:.1f}", AGAIN, 1.0, "the IMU"
+    "imu spinning",
+    "repeating a rate of {:.1f} rad/s about one axis",
+    "above {:.1f}",
+    AGAIN,
+    1.0,
+    "the IMU",
 )
 
 

@@ -75,6 +75,6 @@ def _check_network(link: BusConnection) -> None:
     url, registers = link.bus.port.url, link.bus.family.registers
     if url.startswith(NETWORK) and "bus_watchdog" not in registers:
         raise UsageError(
-            f"{url}: these servos cannot watch their bus, so nobody could stop them when the "
-            "network fails; run Windup on the machine that the adapter is plugged into"
+            f"{url}: these servos have no bus watchdog, so they would not stop if the "
+            "network failed; run Windup on the machine that the adapter is plugged into"
         )

@@ -37,7 +37,8 @@ from windup.hal.port.lock import AdapterLock
 from windup.hal.servo_bus.servo_backend import ServoBackend
 
 NOT_STARTED = (
-    "the guardian that stops this robot when its program dies does not start{}; torque stays off"
+    "the guardian process, which stops this robot if its program dies, does not start{}; "
+    "torque stays off"
 )
 START_TIME = 20.0
 """Maximum time for the process to start, s."""
@@ -164,11 +165,13 @@ class Guardian:
         if not self._unread():
             self._read_at = now
         elif now - self._read_at > UNREAD_TIME:
-            raise GuardianError(f"the guardian (process {self.pid}) does not react any more")
+            raise GuardianError(f"the guardian (process {self.pid}) no longer reads its heartbeats")
         try:
             os.write(self._descriptor, byte)
         except BlockingIOError:
-            raise GuardianError(f"the guardian (process {self.pid}) reads nothing") from None
+            raise GuardianError(
+                f"the guardian (process {self.pid}) does not read its heartbeats"
+            ) from None
         except (OSError, ValueError):
             raise GuardianError(f"the guardian (process {self.pid}) has died") from None
 

@@ -51,11 +51,11 @@ class StopReason(Enum):
     """Why the guardian stops watching."""
 
     RELEASED = "released"
-    HANDED_OVER = "its program could not read its torque as off"
-    DIED = "its program died"
-    SILENT = "its program hangs"
-    CLOSED = "its program let go of its guardian"
-    WATCH_FAILED = "its guardian cannot hear its program"
+    HANDED_OVER = "the program could not read torque back as off"
+    DIED = "the program died"
+    SILENT = "the program hangs"
+    CLOSED = "the program closed the pipe to its guardian"
+    WATCH_FAILED = "the guardian failed to read the heartbeats"
 
 
 def main() -> None:
@@ -64,7 +64,7 @@ def main() -> None:
     _allow_files()
     writer, orders = MessageWriter(standard_error()), sys.stdin.fileno()
     if (line := _first_line(orders)) is None:
-        writer.write_line("its program died before it had said what to guard")
+        writer.write_line("the program died before it had sent the list of buses")
     else:
         _guard(msgspec.json.decode(line, type=GuardianOrder), orders, writer)
     writer.finish(MESSAGE_TIME)

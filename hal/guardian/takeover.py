@@ -55,13 +55,13 @@ class Takeover:
             elif policy == "crouch" and moved and all(bus.record.crouch for bus in self._buses):
                 self._crouch()
         except Exception as error:
-            self._say(f"it cannot {policy} ({error_text(error)}); torque goes off")
+            self._say(f"cannot {policy} ({error_text(error)}); torque goes off")
         self.switch_off()
 
     def wait_for(self, host: Host) -> None:
         """Wait until the host has ended, and keep torque off: the host might switch it on."""
         while not host.wait(1.0):
-            self._say(f"process {host.number} does not die; waiting for that")
+            self._say(f"process {host.number} has been killed but has not ended; waiting for it")
             self.switch_off()
 
     def _hold(self) -> None:
@@ -70,14 +70,14 @@ class Takeover:
         for bus in self._buses:
             bus.hold_position()
         self._note("holding its pose")
-        self._say(f"it holds its pose; torque goes off in {seconds:g} s")
-        why = hold(self._buses, seconds) or f"{seconds:g} s are over"
+        self._say(f"the robot holds its pose; torque goes off in {seconds:g} s")
+        why = hold(self._buses, seconds) or f"{seconds:g} s have passed"
         self._say(f"{why}; torque goes off")
 
     def _crouch(self) -> None:
         """Crouch; fails if a joint cannot be read."""
         crouch(self._buses)
-        self._say("it has crouched")
+        self._say("the crouch is complete")
 
     def switch_off_once(self) -> list[str]:
         """Switch torque off once; return the URLs of the buses where it is not read as off."""

@@ -196,7 +196,9 @@ class Bno055Link:
             if self._set_up(self.clock.now()):
                 return
             self.clock.wait_until(self._setting.due)
-        raise PortError(f"{self._imu.url}: the BNO055 does not take its mode: power it off and on")
+        raise PortError(
+            f"{self._imu.url}: the BNO055 does not enter its IMU mode: switch its power off and on"
+        )
 
     def _identity(self) -> int | None:
         try:

@@ -66,7 +66,8 @@ class AdapterLock:
             note = self.note()
             self.close()
             raise PortError(
-                f"{self.url} belongs to another armed run (process {note.pid}); stop that first"
+                f"{self.url} is in use by another armed run (process {note.pid}); "
+                "stop that run first"
             )
         write_note(self._descriptor, LockNote(os.getpid()))
         return self._descriptor
@@ -141,7 +142,7 @@ def _open(url: str) -> int:
         finally:
             os.close(number)
     except OSError as error:
-        raise PortError(f"{url} cannot be locked for this run: {error_text(error)}") from error
+        raise PortError(f"{url} cannot be locked: {error_text(error)}") from error
 
 
 def _path(url: str) -> Path:

@@ -91,7 +91,7 @@ class Port:
             try:
                 self._serial.baudrate = rate
             except (*GONE, ValueError) as error:
-                raise PortError(f"port {self.url} cannot run at {rate} baud: {error}") from None
+                raise PortError(f"port {self.url} does not support {rate} baud: {error}") from None
 
     def read(self, count: int, deadline: float) -> bytes:
         """Return `count` bytes, or those received when the clock reaches `deadline` s."""
@@ -166,7 +166,7 @@ class Port:
 
     def _gone(self, error: Exception) -> PortError:
         return PortError(
-            f"port {self.url} went away ({error}); check cable and power, then open it again"
+            f"port {self.url} was disconnected ({error}); check cable and power, then open it again"
         )
 
 

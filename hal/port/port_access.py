@@ -51,11 +51,11 @@ def permission_remedy(device: os.stat_result, person: User) -> str:
         return f"{shown}, and yours: chmod u+rw it"
     if device.st_gid == 0 or not _has(mode >> 3):
         return (
-            f"{shown}, and no group to join would help; is this the port of a servo adapter? "
+            f"{shown}, and joining a group would not help; is this the port of a servo adapter? "
             f"A udev rule can give it a group: {RULE}"
         )
     if device.st_gid in person.groups:
-        return f"{shown}, and an access list narrows it: getfacl shows it"
+        return f"{shown}, but an access control list restricts it: see getfacl"
     if device.st_gid in person.member:
         return f"you have joined its group {group} since you logged in: log in again"
     return f"join its group: sudo usermod -aG {group} $USER, then log in again"

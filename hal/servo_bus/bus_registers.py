@@ -103,7 +103,7 @@ class BusRegisters:
                 return
         stubborn = self.readout.names_at(chosen[wrong])
         raise HardwareError(
-            f"{self.readout.bus.port.url}: {stubborn} does not take {register.name}"
+            f"{self.readout.bus.port.url}: {stubborn} did not accept {register.name}"
         )
 
     def _ids(self, rows: Sequence[int] | npt.NDArray[np.intp]) -> list[int]:

@@ -65,11 +65,11 @@ class JointTorque:
     def _check_armable(self, links: Sequence[BusConnection]) -> None:
         if barred := [link.bus.port.url for link in links if link.barred]:
             raise HardwareError(
-                f"{', '.join(barred)} went away since the robot was armed; arm it again by `rearm`"
+                f"{', '.join(barred)} was disconnected after arming; arm again with `rearm`"
             )
         if lost := self.losses(links):
             raise HardwareError(
-                f"{', '.join(lost)} lost torque since the robot was armed; arm it again by `rearm`"
+                f"{', '.join(lost)} lost torque after arming; arm again with `rearm`"
             )
 
     def losses(self, links: Sequence[BusConnection]) -> dict[str, Loss]:

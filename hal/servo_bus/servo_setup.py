@@ -38,7 +38,9 @@ def common_clock(clocks: Sequence[Clock]) -> Clock:
     wall = isinstance(first, WallClock)
     for clock in clocks[1:]:
         if clock is not first and not (wall and isinstance(clock, WallClock)):
-            raise UsageError("the buses of one robot have to live in one world, on one clock")
+            raise UsageError(
+                "the buses of one robot must share one clock: one twin:// world, or real ports only"
+            )
     return first
 
 

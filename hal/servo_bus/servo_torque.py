@@ -181,7 +181,7 @@ class ServoTorque:
             if (np.abs(here - before) <= MARGIN * last).all():
                 return np.clip(here, first, last)
         raise HardwareError(
-            f"{self.readout.bus.port.url}: positions that jump or cannot be; "
+            f"{self.readout.bus.port.url}: positions jump or are out of range; "
             "hold the robot still and check the wiring"
         )
 

@@ -15,7 +15,7 @@ from windup.hal.torque_loss import (
     shutdown_loss,
 )
 
-UNNAMED = "an error that its manual does not name"
+UNNAMED = "an error without a documented name"
 
 Values = dict[int, int]
 """Maps id to the value of a register, for the servos that answered."""

@@ -107,7 +107,7 @@ def check_servos(
     if board is not None:
         bus = buses[board.bus]
         if bus.family is not DYNAMIXEL_X:
-            raise ConfigError(f"an OpenCR cannot sit on bus {board.bus!r} of {bus.family.name}")
+            raise ConfigError(f"an OpenCR cannot be on bus {board.bus!r} of {bus.family.name}")
         try:
             bus.ping(board.id)
         except HardwareError as error:
@@ -135,8 +135,8 @@ def _inspect(
         return _settings(bus, mount)
     except NoAnswerError as error:
         raise HardwareError(
-            f"answers a ping, but not every question after it{_extra_bytes(error)}; a loose cable, or "
-            "a weak supply?"
+            f"answers pings, but not all other requests{_extra_bytes(error)}; a loose cable, or a "
+            "weak supply?"
         ) from None
 
 
@@ -149,7 +149,10 @@ def _settings(
     settings = differences(bus, mount)
     locked = [str(setting) for setting in settings if setting.register.area == "eeprom"]
     if locked and bus.read(mount.id, bus.family.registers["torque_enable"]):
-        raise HardwareError(f"torque is on and {', '.join(locked)}; `windup stop` first")
+        raise HardwareError(
+            f"cannot correct {', '.join(locked)} while torque is on; "
+            "switch it off with `windup stop` first"
+        )
     return settings, limits(bus, mount.id, mount.model), repaired
 
 
@@ -177,17 +180,18 @@ def _short(error: HardwareError) -> str:
     if isinstance(error, NoAnswerError):
         return f"no answer{_extra_bytes(error)}"
     if isinstance(error, CorruptAnswerError):
-        return "only broken answers (two servos with this id?)"
+        return "only corrupt answers (two servos with this id?)"
     return str(error)
 
 
 def _extra_bytes(error: NoAnswerError) -> str:
-    return f", but {error.extra_bytes} bytes that are none" if error.extra_bytes else ""
+    return f", but {error.extra_bytes} bytes that do not belong to one" if error.extra_bytes else ""
 
 
 def _sentence(url: str, problems: list[str]) -> str:
     count = f"{len(problems)} thing{'s' if len(problems) > 1 else ''}"
-    return f"{url}: {count} not as wired: {'; '.join(problems)}; run `windup scan {quote(url)}`"
+    listed = "; ".join(problems)
+    return f"{url}: {count} not as in robot.toml: {listed}; run `windup scan {quote(url)}`"
 
 
 def row_groups(mounts: Sequence[ServoMount]) -> dict[str, list[int]]:

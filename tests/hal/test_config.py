@@ -44,10 +44,13 @@ def test_a_file_becomes_a_typed_record(tmp_path: Path) -> None:
         ),
         ('name = "cart"\nwheels = [{ radius = nan }]', "wheels[0].radius: nan is not finite"),
         ('name = "cart"\nwheels = [{ radius = -inf }]', "wheels[0].radius: -inf is not finite"),
-        ('name = "cart"\nwheels = [{ radius = 1e300 }]', "wheels[0].radius: no number is beyond"),
+        (
+            'name = "cart"\nwheels = [{ radius = 1e300 }]',
+            "wheels[0].radius: 1e+300 is too large (maximum",
+        ),
         (
             'name = "cart"\nwheels = [{ radius = 1.0, spokes = 1000000000000000000000 }]',
-            "wheels[0].spokes: no number is beyond 1e+12",
+            "is too large (maximum 1e+12)",
         ),
         ("", "cart.toml: missing: name"),
         ("wheels = [{}, {}]", "cart.toml: missing: name, wheels[0].radius, wheels[1].radius"),

@@ -12,7 +12,7 @@ from windup.hal.guard import GuardedBackend, SafetyLimits
 from windup.hal.observation import Observation
 from windup.hal.torque_loss import SWITCHED_OFF, Loss
 
-GONE = "port x went away"
+GONE = "port x was disconnected"
 
 
 @dataclass
@@ -44,7 +44,9 @@ def test_a_joint_without_torque_ends_a_run_once() -> None:
     guard = guarded(backend)
     guard.read()
     backend.lost_joints = {"l_knee": SWITCHED_OFF}
-    with pytest.raises(TorqueLostError, match="l_knee lost its torque: somebody switched it off"):
+    with pytest.raises(
+        TorqueLostError, match="l_knee lost its torque: another program switched it off"
+    ):
         guard.read()
     guard.read()
     backend.lost_joints = {}
@@ -56,7 +58,7 @@ def test_a_joint_without_torque_ends_a_run_once() -> None:
 
 def test_a_port_that_is_gone_ends_a_run_at_once_with_the_joints_behind_it() -> None:
     backend = Watched(lost={"x": GONE})
-    with pytest.raises(PortError, match=r"^no joint can be reached: port x went away$"):
+    with pytest.raises(PortError, match=r"^no joint can be reached: port x was disconnected$"):
         guarded(backend).read()
 
 

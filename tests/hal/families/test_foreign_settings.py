@@ -128,7 +128,7 @@ def test_what_is_written_is_said_first(caplog: pytest.LogCaptureFixture) -> None
     robot.serial.put(3, 63, 0, 1)
     robot.backend.configure()
     assert caplog.messages == [
-        "servo settings are changed: return_delay 250 -> 0 at all 4 joints; "
+        "changing servo settings: return_delay 250 -> 0 at all 4 joints; "
         "secondary_id 7 -> 255 at j1; shutdown 0 -> 52 at j2"
     ]
     caplog.clear()
@@ -165,7 +165,10 @@ def test_limits_of_its_owner_are_left_and_shown(caplog: pytest.LogCaptureFixture
     backend = robot(wires, [mount(sts, "body", 1), mount(sts, "body", 2)])
     backend.connect()
     backend.configure()
-    said = "protection limits differ from the factory's: overload_torque 25 (usual: 80) at j1"
+    said = (
+        "protection limits differ from the factory defaults: "
+        "overload_torque 25 (factory default: 80) at j1"
+    )
     assert said in caplog.messages
     assert wires["body"].show(2, "overload_torque") == 25
 
@@ -189,8 +192,9 @@ def test_a_temperature_limit_other_than_the_makers_is_shown(
     robot.serial.put(3, 31, 100, 1)
     robot.backend.configure()
     assert caplog.messages[-1] == (
-        "protection limits differ from the factory's: temperature_limit 30 (usual: 80) at j1; "
-        "temperature_limit 100 (usual: 80) at j2"
+        "protection limits differ from the factory defaults: "
+        "temperature_limit 30 (factory default: 80) at j1; "
+        "temperature_limit 100 (factory default: 80) at j2"
     )
 
 
@@ -205,6 +209,6 @@ def test_who_answers_half_of_what_is_asked_is_not_taken_for_one_without_power(ro
     half = f"drop:0.5:ids={KNEE[robot]}"
     with ServoBus(robot, seed=1, faults=half) as bus, pytest.raises(HardwareError) as raised:
         bus.robot()
-    assert "answers a ping, but not every question" in str(raised.value)
+    assert "answers pings, but not all other requests" in str(raised.value)
     assert "powered" not in str(raised.value)
     assert str(raised.value).count("windup scan") == 1

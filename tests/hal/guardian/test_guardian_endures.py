@@ -58,14 +58,14 @@ def test_a_policy_that_fails_in_any_way_ends_with_torque_off(
     monkeypatch.setattr(takeover, policy, fails)
     switch_on(sts_bus)
     said: list[str] = []
-    Takeover(order(sts_bus, policy), said.append).carry_out("its program died")
+    Takeover(order(sts_bus, policy), said.append).carry_out("the program died")
     assert f"it cannot {policy} (AttributeError: a bug); torque goes off" in said
     assert show(sts_bus, TORQUE) == [0, 0]
 
 
 def test_whoever_cannot_speak_switches_off(sts_bus: Path) -> None:
     switch_on(sts_bus)
-    Takeover(order(sts_bus, "crouch"), fails).carry_out("its program died")
+    Takeover(order(sts_bus, "crouch"), fails).carry_out("the program died")
     assert show(sts_bus, TORQUE) == [0, 0]
 
 
@@ -81,7 +81,7 @@ def test_a_bus_that_fails_in_any_way_is_tried_until_it_does_not(
 
     switch_on(sts_bus)
     monkeypatch.setattr(RemoteBus, "torque", fails_at_first)
-    Takeover(order(sts_bus), print).carry_out("its program died")
+    Takeover(order(sts_bus), print).carry_out("the program died")
     assert not left
     monkeypatch.undo()
     assert show(sts_bus, TORQUE) == [0, 0]
@@ -97,7 +97,7 @@ def test_a_guardian_that_cannot_hear_its_host_ends_it_and_stops_the_servos(
                 with suppress(BrokenPipeError):
                     ours.write(b"?")
         assert program.stderr is not None
-        assert "its guardian cannot hear its program" in program.stderr.read()
+        assert "the guardian failed to read the heartbeats" in program.stderr.read()
         assert program.wait() == -signal.SIGKILL
     assert show(sts_bus, TORQUE) == [0, 0]
 

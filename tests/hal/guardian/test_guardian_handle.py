@@ -103,7 +103,7 @@ def test_feetech_servos_behind_a_network_are_refused() -> None:
     backend = robot(wires, [mount(STS, "legs", 1)])
     backend.connect()
     backend.links[0].bus.port.url = "socket://bridge:4000"
-    with pytest.raises(UsageError, match="cannot watch their bus"):
+    with pytest.raises(UsageError, match="have no bus watchdog"):
         guardian_for(backend, "limp")
     backend.disconnect()
 

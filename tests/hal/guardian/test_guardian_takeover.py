@@ -38,7 +38,7 @@ def test_a_host_that_hangs_says_where_is_killed_and_its_servos_go_off(sts_bus: P
         wait_for_end(guardian)
         assert program.wait() == -signal.SIGKILL
         assert program.stderr is not None
-        assert "its program hangs" in program.stderr.read()
+        assert "the program hangs" in program.stderr.read()
     assert show(sts_bus, TORQUE) == [0, 0]
 
 

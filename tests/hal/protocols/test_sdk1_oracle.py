@@ -103,7 +103,7 @@ def test_silence_takes_virtual_time_only_and_noise_is_named(
 def test_a_short_answer_is_no_answer() -> None:
     serial, port = fake_port1({1: STS})
     serial.spoil = lambda id, frame: protocol1.status(id, b"\x07")
-    with pytest.raises(CorruptAnswerError, match="only broken answers"):
+    with pytest.raises(CorruptAnswerError, match="only corrupt answers"):
         FEETECH_STS.dialect.link(port).read(1, 56, 2)
 
 
@@ -135,7 +135,7 @@ def test_an_exception_leaves_the_port_usable() -> None:
         raise OSError("device reports readiness to read but returned no data")
 
     read, serial.read = serial.read, unplugged  # type: ignore[method-assign]
-    with pytest.raises(PortError, match="went away"):
+    with pytest.raises(PortError, match="was disconnected"):
         link.ping(1)
     serial.read = read  # type: ignore[method-assign]
     assert link.ping(1) == 777

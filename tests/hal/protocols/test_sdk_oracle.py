@@ -100,7 +100,7 @@ def test_an_exception_leaves_the_port_usable() -> None:
     serial, port = fake_port(IDS)
     link = DynamixelConfigurator(port)
     read, serial.read = serial.read, _unplugged  # type: ignore[method-assign]
-    with pytest.raises(PortError, match="went away"):
+    with pytest.raises(PortError, match="was disconnected"):
         link.ping(1)
     serial.read = read  # type: ignore[method-assign]
     assert link.ping(1) == 1020

@@ -12,8 +12,8 @@ from windup.tools.robot.robot import Robot
 AT = 3.0
 FAULTS = {
     "imu_silent": "the IMU is silent for 0.2",
-    "imu_frozen": "the IMU is stuck at one sample for 0.5 s",
-    "imu_spin:speed=10": "the IMU is stuck about one axis, at 10.0 rad/s",
+    "imu_frozen": "the IMU is repeating one sample for 0.5 s",
+    "imu_spin:speed=10": "the IMU is repeating a rate of 10.0 rad/s about one axis",
 }
 
 

@@ -11,7 +11,7 @@ def unplugged(seconds: float) -> Robot:
     """Return a duck whose adapter was pulled out while it stood."""
     faults = f"unplug:at=2.5:seconds={seconds:g}:bus=body"
     duck = Robot.open("duck", port=f"twin://duck?faults={faults}")
-    with pytest.raises(PortError, match=r"no joint can be reached: port .* went away"):
+    with pytest.raises(PortError, match=r"no joint can be reached: port .* was disconnected"):
         duck.stand(5.0)
     return duck
 

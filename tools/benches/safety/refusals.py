@@ -49,7 +49,7 @@ REFUSALS = (
         "(stop below ",
     ),
 )
-NETWORK = Refusal("Feetech behind a network", {}, 2, "cannot watch their bus", network=True)
+NETWORK = Refusal("Feetech behind a network", {}, 2, "have no bus watchdog", network=True)
 
 
 def measure_refusals(robots: Sequence[str]) -> dict[str, Any]:

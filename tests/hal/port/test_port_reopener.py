@@ -58,7 +58,7 @@ def test_when_it_is_back_torque_is_off_and_goals_wait_for_rearm() -> None:
     before = wires["legs"].show(1, "goal_position")
     hold(backend)
     assert wires["legs"].show(1, "goal_position") == before
-    with pytest.raises(HardwareError, match="legs went away since the robot was armed"):
+    with pytest.raises(HardwareError, match="legs was disconnected after arming"):
         backend.set_torque(True)
     wires["legs"].set(1, "position_d_gain", 32)  # the servo had no power meanwhile
     assert backend.rearm().all_on
@@ -84,7 +84,7 @@ def test_arming_again_without_the_port_is_refused_with_what_was_seen() -> None:
     wires, backend = armed()
     wires.unplugged.add("arms")
     ticks(backend, 3)
-    with pytest.raises(HardwareError, match="cannot arm again: port arms went away"):
+    with pytest.raises(HardwareError, match="cannot arm again: port arms was disconnected"):
         backend.rearm()
     assert backend.set_torque(False).unknown.tolist() == [False, False, True]
 
