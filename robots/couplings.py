@@ -33,7 +33,7 @@ def add_couplings(spec: mujoco.MjSpec, couplings: Iterable[CouplingEntry]) -> No
         added.data[:5] = [coupling.offset + coupling.ratio * x0 - y0, coupling.ratio, 0, 0, 0]
 
 
-def bring_in_step(model: mujoco.MjModel, qpos: Array, driven: Iterable[str]) -> None:
+def satisfy_couplings(model: mujoco.MjModel, qpos: Array, driven: Iterable[str]) -> None:
     """Set the coupled joints in `qpos` (nq,) consistent with the `driven` ones, in place.
 
     A linkage that violates its constraint would jump into place in the first physics step.

@@ -30,7 +30,7 @@ def gait_files(folder: Path) -> dict[str, Path]:
     return {path.stem: path for path in sorted((folder / GAITS).glob("*.toml"))}
 
 
-class Loaded(Generic[Made]):
+class RobotCache(Generic[Made]):
     """Keeps one object per folder.
 
     Args:

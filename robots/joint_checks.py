@@ -9,27 +9,27 @@ from windup.hal.families import family_of
 from windup.hal.servos import servo_names
 from windup.robots import mjcf
 from windup.robots.limits import travel_mistakes
-from windup.robots.mistake import SLACK, Mistake, known, unique
+from windup.robots.mistake import SLACK, Mistake, check_known, check_unique
 from windup.robots.records import JointEntry, RobotFile
 
 
 def name_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
     """Yield repeated names of joints, and names that do not exist in the MJCF."""
     entries = [joint.name for joint in robot.joint]
-    yield from unique("joint", "joint", entries)
+    yield from check_unique("joint", "joint", entries)
     for index, body in enumerate(model.jnt_bodyid.tolist()):
         if model.jnt_type[index] != mjcf.FREE and not model.joint(index).name:
             on = model.body(body).name
             yield "model", f"a joint of body {on!r} has no name in the MJCF: give it one"
     hinges, joints = mjcf.hinge_names(model), mjcf.names(model, "joint")
     for name in entries:
-        yield from known("joint", "MJCF hinge", name, hinges)
+        yield from check_known("joint", "MJCF hinge", name, hinges)
     for name in robot.passive:
-        yield from known("passive", "MJCF joint", name, joints)
+        yield from check_known("passive", "MJCF joint", name, joints)
     for coupling in robot.coupling:
         key = f"coupling {coupling.joint!r}"
-        yield from known("coupling", "MJCF joint", coupling.joint, joints)
-        yield from known(f"{key}: follows", "joint", coupling.follows, entries)
+        yield from check_known("coupling", "MJCF joint", coupling.joint, joints)
+        yield from check_known(f"{key}: follows", "joint", coupling.follows, entries)
 
 
 def joint_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
@@ -85,9 +85,9 @@ def _servo_mistakes(robot: RobotFile, joint: JointEntry) -> Iterator[Mistake]:
     if joint.servo is None or joint.bus is None or joint.id is None:
         yield key, 'needs servo, bus and id: drive.kind is "servo"'
     if joint.servo is not None:
-        yield from known(f"{key}: servo", "servo", joint.servo, servo_names())
+        yield from check_known(f"{key}: servo", "servo", joint.servo, servo_names())
     if joint.bus is not None:
-        yield from known(f"{key}: bus", "bus", joint.bus, [bus.name for bus in robot.bus])
+        yield from check_known(f"{key}: bus", "bus", joint.bus, [bus.name for bus in robot.bus])
     if joint.servo in servo_names():
         yield from _bus_mistakes(robot, joint, key)
         if not _unlimited(joint):
@@ -108,7 +108,7 @@ def _bus_mistakes(robot: RobotFile, joint: JointEntry, key: str) -> Iterator[Mis
 
 def _id_mistakes(robot: RobotFile) -> Iterator[Mistake]:
     """Yield repeated names of buses, and ids that two servos of a bus share."""
-    yield from unique("bus", "bus", [bus.name for bus in robot.bus])
+    yield from check_unique("bus", "bus", [bus.name for bus in robot.bus])
     taken: dict[tuple[str | None, int], str] = {}
     for joint in robot.joint:
         if joint.id is None:

@@ -165,7 +165,7 @@ class Imu(TomlRecord, frozen=True):
     orientation: str | None = None
 
 
-class Shares(TomlRecord, frozen=True):
+class StiffnessShares(TomlRecord, frozen=True):
     """Shares of the joints' stiffness: for joints between base and feet, and for all others.
 
     The minimum is large enough that no joint is limp.
@@ -175,7 +175,7 @@ class Shares(TomlRecord, frozen=True):
     others: Share
 
 
-class FallWay(TomlRecord, frozen=True):
+class ProtectiveFallEntry(TomlRecord, frozen=True):
     """Pose and stiffness of a protective fall in one direction.
 
     Attributes:
@@ -189,8 +189,8 @@ class FallWay(TomlRecord, frozen=True):
     toward: Annotated[float, Meta(ge=-4.0, le=4.0)]
     pose: str
     soften: Tilt
-    falling: Shares
-    impact: Shares
+    falling: StiffnessShares
+    impact: StiffnessShares
 
 
 class Fall(TomlRecord, frozen=True):
@@ -205,7 +205,7 @@ class Fall(TomlRecord, frozen=True):
     height: Length
     tilt: Tilt
     reach: Length | None = None
-    way: tuple[FallWay, ...] = ()
+    way: tuple[ProtectiveFallEntry, ...] = ()
 
 
 class Safety(JointLevels, frozen=True):
@@ -224,7 +224,7 @@ class Safety(JointLevels, frozen=True):
     idle: Wait = 10.0
     hold: Wait = 60.0
     first_speed: Annotated[float, Meta(ge=0.01, le=50.0)] = 0.6
-    first_stiffness: Shares = Shares(legs=0.6, others=0.3)
+    first_stiffness: StiffnessShares = StiffnessShares(legs=0.6, others=0.3)
     first_lag: Tilt = 0.25
 
 
@@ -286,7 +286,7 @@ class RobotFile(TomlRecord, frozen=True):
     safety: Safety = Safety()
 
     @property
-    def unmoved(self) -> tuple[str, ...]:
+    def joints_without_servo(self) -> tuple[str, ...]:
         """The joints of the MJCF without a servo, including coupled ones."""
         followers = tuple(coupling.joint for coupling in self.coupling)
         return tuple(dict.fromkeys((*self.passive, *followers)))

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from windup.robots import mjcf
-from windup.robots.mistake import Mistake, known
+from windup.robots.mistake import Mistake, check_known
 from windup.robots.records import RobotFile
 
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
@@ -20,8 +20,8 @@ def is_fixed(model: mujoco.MjModel) -> bool:
 def structure_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
     """Yield key and message of each mismatch between robot.toml and MJCF in base and joints."""
     bodies = mjcf.names(model, "body")
-    yield from known("base", "body", robot.base, bodies)
-    yield from known("torso", "body", robot.torso, bodies)
+    yield from check_known("base", "body", robot.base, bodies)
+    yield from check_known("torso", "body", robot.torso, bodies)
     if robot.base in bodies:
         yield from _of_the_base(robot, model)
     if model.nu:
@@ -62,7 +62,7 @@ def _of_the_joints(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]
         yield "joint", "is missing: a robot has at least one [[joint]], with name and, on a bus, id"
     for index, kind in enumerate(model.jnt_type):
         name = model.joint(index).name
-        passive = name in robot.unmoved
+        passive = name in robot.joints_without_servo
         if kind == mjcf.HINGE and passive and name in entries:
             key = "passive" if name in robot.passive else "coupling"
             yield key, f"{name!r} is a [[joint]] as well; it has a servo or it has none"

@@ -12,7 +12,7 @@ from math import isfinite, nan
 import numpy as np
 
 from windup.hal.guard.finding import AGAIN, CHECK, Finding, FindingText
-from windup.hal.guard.gyro_watch import LONGEST, NEXT, GyroWatch, Verdict
+from windup.hal.guard.gyro_watch import MAX_SAMPLE_GAP, MAX_STEP, GyroWatch, Verdict
 from windup.hal.guard.stuck_axis import StuckAxis
 from windup.hal.joints import Array
 from windup.hal.observation import ImuState, Observation
@@ -61,7 +61,7 @@ class ImuWatch:
             self._restart(now)
             passed = 0.0
         self._time = now
-        verdict, stop = self._judge(observation, observation.imu, min(passed, LONGEST))
+        verdict, stop = self._judge(observation, observation.imu, min(passed, MAX_STEP))
         if verdict is None:
             self._present = ""
             return None
@@ -92,7 +92,7 @@ class ImuWatch:
             return (NO_NUMBER, nan, nan), True
         same = now - self._changed
         if sample != self._sample:
-            if self._sample and (self._heard - self._taken < NEXT or self.gyro.doubted):
+            if self._sample and (self._heard - self._taken < MAX_SAMPLE_GAP or self.gyro.doubted):
                 self.gyro.compare(sample, self._sample, now)
             self._sample, self._taken = sample, self._heard
             self._changed, self._pose = now, joints.position

@@ -12,13 +12,13 @@ from windup.hal.servo_bus.coupling import Coupling, Couplings
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
 from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
-from windup.sim_twin.wire import put_world
+from windup.sim_twin.wire import register_world
 from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
-from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
-from windup.sim_twin.wire.world.families import PROTOCOLS, make_language, make_servo
+from windup.sim_twin.wire.world.bus_world import BenchPhysics, BusWorld
+from windup.sim_twin.wire.world.families import PROTOCOLS, make_protocol, make_servo
 
 BAUD = 1_000_000
 REACH = 1.0  # rad, of every joint, both ways
@@ -73,7 +73,7 @@ ANKLE: Final = Coupling("ankle_pitch", "ankle_roll", ((1.0, 0.5), (1.0, -0.5)))
 def bench_robot(places: Sequence[Place], couplings: Sequence[Coupling] = ()) -> ServoBackend:
     """Return the driver of a robot, not yet connected, and put its world where it finds it."""
     name, supply = f"bench-robot-{next(_worlds)}", _supply(places)
-    put_world(name, _world(places, supply))
+    register_world(name, _world(places, supply))
     joints = _joints(places, couplings, supply)
     mounts = [place.mount for place in places]
     ports = {
@@ -110,10 +110,10 @@ def _world(places: Sequence[Place], supply: float) -> BusWorld:
         hung.setdefault(place.bus, []).append(servo)
     languages = {place.bus: PROTOCOLS[place.model] for place in places}
     buses = {
-        name: Bus(name, devices, make_language(languages[name]), schedule, BAUD)
+        name: Bus(name, devices, make_protocol(languages[name]), schedule, BAUD)
         for name, devices in hung.items()
     }
-    return BusWorld(Bench(shafts), schedule, buses, supply)
+    return BusWorld(BenchPhysics(shafts), schedule, buses, supply)
 
 
 Opener = Callable[[], ServoBackend]

@@ -119,8 +119,8 @@ def test_a_robot_that_hangs_keeps_its_base_whatever_its_servos_do(op3: Host) -> 
     twin, physics = twin_of(op3), op3.world.physics
     assert isinstance(physics, TwinPhysics)
     twin.data.qpos[2] += 0.2
-    physics.grasp()
-    physics.hangs = True
+    physics.store_held_pose()
+    physics.stays_held = True
     before = twin.data.qpos[:7].copy()
     switch(op3, True)
     op3.wait(0.5)

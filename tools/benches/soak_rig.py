@@ -16,7 +16,7 @@ from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
 from windup.sim_twin.wire.faults.faults import Faults
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
-from windup.sim_twin.wire.world.bus_world import Bench
+from windup.sim_twin.wire.world.bus_world import BenchPhysics
 
 # Names of the families, with the servo that represents each.
 FAMILIES: Final = {
@@ -84,7 +84,7 @@ class SoakRig:
         self.backend.connect()
         self.world = wire.find_world(self.name)
         bench = self.world.physics
-        assert isinstance(bench, Bench)
+        assert isinstance(bench, BenchPhysics)
         self._shafts = bench.shafts
         self.world.physics = Puppets(self._shafts, bench.timestep)
         self._pace = 1 + rng.integers(0, FASTEST, servos)
@@ -141,7 +141,7 @@ class SoakRig:
     def close(self) -> None:
         """Close the port and remove the world."""
         self.backend.disconnect()
-        wire.drop_world(self.name)
+        wire.unregister_world(self.name)
 
     def __enter__(self) -> Self:
         return self

@@ -29,14 +29,14 @@ def in_a_world(
         return port, address.world
     name = f"{robot.name}-{next(_worlds)}"
     if around is not None:
-        wire.put_world(name, wire.build_world(address, around), address.clock)
+        wire.register_world(name, wire.build_world(address, around), address.clock)
     return f"{port}{'&' if '?' in port else '?'}world={name}", name
 
 
 def forget_world(world: str, port: str) -> None:
     """Forget a world that was made for `port`, which names none of its own."""
     if world and not wire.parse_address(port).world:
-        wire.drop_world(world)
+        wire.unregister_world(world)
 
 
 def twin_behind(world: str) -> Twin | None:

@@ -17,4 +17,4 @@ def begin_noisily(world: str, twin: Twin, noise: float, seed: int) -> None:
     twin.reset(noise=noise, seed=seed)
     physics = wire.find_world(world).physics
     if noise and isinstance(physics, TwinPhysics):
-        physics.grasp()  # hands would put it back to where they took it
+        physics.store_held_pose()  # hands would put it back to where they took it

@@ -61,7 +61,7 @@ class Stack:
         """Disconnect."""
         self.backend.disconnect()
         if self.world:
-            wire.drop_world(self.world)
+            wire.unregister_world(self.world)
 
 
 def open_stack(

@@ -17,7 +17,7 @@ from typing import Any, Self, Unpack
 
 from windup.hal.errors import PortError, UsageError
 from windup.sim_twin.wire.faults.fault_methods import FaultMethods
-from windup.sim_twin.wire.faults.fault_rule import Rule
+from windup.sim_twin.wire.faults.fault_rule import FaultRule
 from windup.sim_twin.wire.faults.fault_text import format_rule
 from windup.sim_twin.wire.world.address import BENCH
 from windup.tools.testing.bus_options import BusOptions, bus_url
@@ -45,7 +45,7 @@ class PtyFaults(FaultMethods):
         """The present time, s: 0, since times count from the call."""
         return 0.0
 
-    def add(self, rule: Rule) -> Self:
+    def add(self, rule: FaultRule) -> Self:
         """Add a fault.
 
         Raises:

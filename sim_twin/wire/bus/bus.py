@@ -10,10 +10,10 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Protocol
 
-from windup.sim_twin.wire.bus.air import Air
-from windup.sim_twin.wire.bus.heard import Heard
 from windup.sim_twin.wire.bus.inbox import Burst, Inbox
+from windup.sim_twin.wire.bus.parsed_item import ParsedItem
 from windup.sim_twin.wire.bus.timing import Timing
+from windup.sim_twin.wire.bus.traffic import Traffic
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.imu.bno055 import Bno055Registers
 from windup.sim_twin.wire.imu.imu_faults import FaultyImu
@@ -25,7 +25,7 @@ BAUD_TOLERANCE = 0.03
 PIECE = 4096  # largest number of host bytes that are parsed at once
 
 
-class Language(Protocol):
+class WireProtocol(Protocol):
     """A protocol: how bytes become frames, and what devices do with a frame.
 
     Attributes:
@@ -40,15 +40,15 @@ class Language(Protocol):
     data_at: int
     tail: int
 
-    def seal(self, frame: bytes, /) -> bytes:
+    def with_checksum(self, frame: bytes, /) -> bytes:
         """Return `frame` with the correct checksum."""
         ...
 
-    def meet(self, devices: Sequence[Device], /) -> None:
+    def set_devices(self, devices: Sequence[Device], /) -> None:
         """Register the devices; called whenever registers below 64 may have changed."""
         ...
 
-    def feed(self, chunk: bytes) -> list[Heard]:
+    def feed(self, chunk: bytes) -> list[ParsedItem]:
         """Return the frames that `chunk` completes."""
         ...
 
@@ -56,12 +56,12 @@ class Language(Protocol):
         """Discard an incomplete frame."""
         ...
 
-    def execute(self, frame: Heard, bus: "Bus") -> bool:
+    def execute(self, frame: ParsedItem, bus: "Bus") -> bool:
         """Execute a frame; return False if it was dropped."""
         ...
 
 
-class Disturbance(Protocol):
+class FaultInjector(Protocol):
     """The faults of a bus, applied to what is sent on it.
 
     Attributes:
@@ -74,7 +74,7 @@ class Disturbance(Protocol):
         """Send a status packet with the faults that hit it now; return when it ends, s."""
         ...
 
-    def asked(self, bus: "Bus") -> bool:
+    def echoes(self, bus: "Bus") -> bool:
         """Return whether the adapter echoes the host's present bytes back to it."""
         ...
 
@@ -109,14 +109,14 @@ class Bus:
         self,
         name: str,
         devices: list[Device],
-        language: Language,
+        protocol: WireProtocol,
         schedule: Schedule,
         baud: int = 1_000_000,
         timing: Timing | None = None,
     ) -> None:
-        self.name, self.devices, self.language, self.schedule = name, devices, language, schedule
+        self.name, self.devices, self.protocol, self.schedule = name, devices, protocol, schedule
         self.timing = timing or Timing()
-        self.faults: Disturbance | None = None
+        self.faults: FaultInjector | None = None
         self.heard = self.began = 0.0
         self.counts = {"frames": 0, "dropped": 0, "collisions": 0}
         self.plugged, self.plugs = True, 0
@@ -128,13 +128,13 @@ class Bus:
         self._baud = baud
         self._sent = -math.inf  # end of the host's last byte, s
         self._out = -math.inf  # time until which the adapter stays pulled out, s
-        self._air = Air()
+        self._traffic = Traffic()
         self.inbox = Inbox(self.timing.latency)
         self._by_id: dict[int, list[Device]] = {}
         self.refresh()
 
     @property
-    def disturbance(self) -> Disturbance | None:
+    def fault_injector(self) -> FaultInjector | None:
         """The faults, or None while none is active."""
         return self.faults if self.faults is not None and self.faults.active else None
 
@@ -147,11 +147,11 @@ class Bus:
     def baud(self, baud: int) -> None:
         if baud != self._baud:
             self._baud = baud
-            self.language.reset()
+            self.protocol.reset()
 
     def refresh(self) -> None:
         """Update the tables of ids and protocols from the devices."""
-        self.language.meet(self.devices)
+        self.protocol.set_devices(self.devices)
         self._by_id.clear()
         for device in self.devices:
             self._by_id.setdefault(device.identifier, []).append(device)
@@ -164,23 +164,23 @@ class Bus:
         """Send bytes from the host, now or after those that are still in transit."""
         start = max(self.schedule.now, self._sent)
         if start - self._sent > FORGET:
-            self.language.reset()
+            self.protocol.reset()
         burst = Burst(start, BITS / self._baud, bytearray(data))
         self._sent, self.began = burst.end, start
-        self.counts["collisions"] += self._air.add(burst, self.schedule.now, self._noise)
+        self.counts["collisions"] += self._traffic.add(burst, self.schedule.now, self._noise)
         if self.tap is not None:
             self.tap(">", self._baud, burst)
-        wrong = self.disturbance
-        if wrong is not None and wrong.asked(self) and self.plugged:
+        wrong = self.fault_injector
+        if wrong is not None and wrong.echoes(self) and self.plugged:
             self.inbox.append(Burst(burst.start, burst.byte, bytearray(burst.data)))
         for at in range(0, len(burst.data), PIECE):
-            for item in self.language.feed(bytes(burst.data[at : at + PIECE])):
+            for item in self.protocol.feed(bytes(burst.data[at : at + PIECE])):
                 if item.noise:
-                    self.language.execute(item, self)
+                    self.protocol.execute(item, self)
                     self.counts["dropped"] += 1
                     continue
                 end = start + (at + item.end) * burst.byte
-                self.schedule.at(end, partial(self._hear, item, burst, end))
+                self.schedule.add(end, partial(self._hear, item, burst, end))
 
     @property
     def backlog(self) -> float:
@@ -208,25 +208,25 @@ class Bus:
         """Discard the bytes that the host has received and not read."""
         self.read(self.available())
 
-    def plug(self, there: bool) -> None:
+    def set_plugged(self, there: bool) -> None:
         """Pull the host's adapter out or plug it in; ports opened before stay dead in any case."""
         if there != self.plugged:
             self.plugged = there
             self.plugs += 1
             self.inbox.clear()
-            self.language.reset()
+            self.protocol.reset()
 
     def unplug(self, seconds: float) -> None:
         """Pull the adapter out, and plug it in after some seconds (infinity: never)."""
-        self.plug(False)
+        self.set_plugged(False)
         back = self.schedule.now + seconds
         self._out = max(self._out, back)
         if back < math.inf:
-            self.schedule.at(back, self._plug_in)
+            self.schedule.add(back, self._plug_in)
 
     def _plug_in(self) -> None:
         if self.schedule.now >= self._out:  # no later call of `unplug` lasts longer
-            self.plug(True)
+            self.set_plugged(True)
 
     # The devices' side
 
@@ -235,7 +235,7 @@ class Bus:
         found = self._by_id.get(identifier)
         return [device for device in found if self.hears(device)] if found else []
 
-    def everybody(self) -> list[Device]:
+    def all_listening(self) -> list[Device]:
         """Return all devices that hear the host."""
         return [device for device in self.devices if self.hears(device)]
 
@@ -249,7 +249,7 @@ class Bus:
 
     def answer(self, data: bytes, baud: int, identifier: int) -> float:
         """Send a status packet now, with faults; return when it ends, s."""
-        wrong = self.disturbance
+        wrong = self.fault_injector
         if wrong is None:
             return self.put(data, baud)
         return wrong.answer(self, data, baud, identifier)
@@ -273,7 +273,7 @@ class Bus:
         """
         burst = Burst(self.schedule.now, BITS / baud, bytearray(data), held=held)
         end = burst.end
-        self.counts["collisions"] += self._air.add(burst, self.schedule.now, self._noise)
+        self.counts["collisions"] += self._traffic.add(burst, self.schedule.now, self._noise)
         if got is not None:
             burst.data[:] = got
         if abs(baud - self._baud) > BAUD_TOLERANCE * self._baud:
@@ -284,9 +284,9 @@ class Bus:
                 self.tap("<", baud, burst)
         return end
 
-    def _hear(self, item: Heard, burst: Burst, end: float) -> None:
+    def _hear(self, item: ParsedItem, burst: Burst, end: float) -> None:
         """Execute a frame of the host, unless a collision has corrupted it since."""
-        if end > burst.ruined or not self.language.execute(item, self):
+        if end > burst.corrupted or not self.protocol.execute(item, self):
             self.counts["dropped"] += 1
             return
         self.counts["frames"] += 1

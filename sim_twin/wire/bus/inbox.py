@@ -13,14 +13,14 @@ class Burst:
         start: Start of the first byte, s.
         byte: Duration of each byte, s.
         data: The bytes.
-        ruined: Time from which a collision has corrupted them, s.
+        corrupted: Time from which a collision has corrupted them, s.
         held: Time before which the host's adapter does not deliver them, s.
     """
 
     start: float
     byte: float
     data: bytearray
-    ruined: float = math.inf
+    corrupted: float = math.inf
     held: float = 0.0
 
     @property

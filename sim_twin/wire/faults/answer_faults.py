@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from functools import partial
 
 from windup.sim_twin.wire.bus.bus import Bus
+from windup.sim_twin.wire.bus.corruption import corrupt_packet
 from windup.sim_twin.wire.bus.inbox import Burst
-from windup.sim_twin.wire.bus.spoilt import spoil
 
 
 @dataclass
-class Fate:
+class PacketFaults:
     """The faults that apply to one status packet.
 
     Attributes:
@@ -30,7 +30,7 @@ class Fate:
     glued: float = 0.0
     torn: tuple[int, float] | None = None
 
-    def suffer(self, kind: str, seconds: float, bus: Bus, dice: random.Random) -> None:
+    def apply(self, kind: str, seconds: float, bus: Bus, rng: random.Random) -> None:
         """Apply one fault of `fault_rule.ANSWERS`."""
         if kind == "late":
             self.late += seconds
@@ -39,11 +39,11 @@ class Fate:
         elif kind == "glue":
             self.glued = seconds
         elif kind == "late_byte":
-            self.torn = dice.randrange(len(self.got)), seconds
+            self.torn = rng.randrange(len(self.got)), seconds
         elif kind == "stale":
             self.got = self.before
         else:
-            self.got = spoil(kind, self.got, bus.language, dice)
+            self.got = corrupt_packet(kind, self.got, bus.protocol, rng)
 
 
 class Sender:
@@ -52,16 +52,16 @@ class Sender:
     def __init__(self) -> None:
         self._glued: dict[str, Burst] = {}
 
-    def send(self, bus: Bus, data: bytes, baud: int, fate: Fate) -> float:
+    def send(self, bus: Bus, data: bytes, baud: int, fate: PacketFaults) -> float:
         """Send a status packet; return when it ends, s."""
         put = partial(self._put, bus, data, baud, fate)
         if fate.late <= 0.0:
             return put()
         start = bus.schedule.now + fate.late
-        bus.schedule.at(start, put)
+        bus.schedule.add(start, put)
         return start + len(data) * 10.0 / baud
 
-    def _put(self, bus: Bus, data: bytes, baud: int, fate: Fate) -> float:
+    def _put(self, bus: Bus, data: bytes, baud: int, fate: PacketFaults) -> float:
         """Send it now; a packet glued to it is delivered together with its last byte."""
         if fate.torn is not None:
             return self._tear(bus, data, baud, fate)
@@ -75,10 +75,10 @@ class Sender:
             burst.held = max(burst.held, end)
         if fate.glued:
             self._glued[bus.name] = burst
-            bus.schedule.at(end + fate.glued, partial(_release, burst, end + fate.glued))
+            bus.schedule.add(end + fate.glued, partial(_release, burst, end + fate.glued))
         return end
 
-    def _tear(self, bus: Bus, data: bytes, baud: int, fate: Fate) -> float:
+    def _tear(self, bus: Bus, data: bytes, baud: int, fate: PacketFaults) -> float:
         """Send it now; the adapter delivers the bytes from `torn` on later."""
         assert fate.torn is not None
         at, seconds = fate.torn

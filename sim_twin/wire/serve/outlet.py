@@ -15,7 +15,7 @@ ON_THE_WIRE: Final = 0.010  # longest time of a program's bytes that the bus que
 
 
 @dataclass
-class Outlet:
+class BusOutlet:
     """A bus, its link, and the bytes that wait between them.
 
     Bytes from a program are read from its link at once, so that a program that flushes its output

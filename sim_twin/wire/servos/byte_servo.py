@@ -4,7 +4,7 @@ import math
 from abc import ABC, abstractmethod
 
 from windup.sim_twin.wire.servos.byte_table import ByteTable, Writes
-from windup.sim_twin.wire.servos.health import AMBIENT, warmed
+from windup.sim_twin.wire.servos.health import AMBIENT, motor_temperature
 from windup.sim_twin.wire.servos.motor_loop import MotorLoop
 
 BOOT_SECONDS = 0.3  # time without answers after a reset, s, assumed
@@ -147,7 +147,7 @@ class ByteServo(ABC):
     def read(self, address: int, count: int, now: float) -> tuple[int, bytes]:
         """Return the error byte and the data of a read instruction."""
         if address + count > self.live:
-            self.show(now, address + count <= self.live_motion)
+            self.write_sample(now, address + count <= self.live_motion)
         return self.errors, self.table.read(address, count)
 
     def write(self, address: int, data: bytes, now: float) -> int:
@@ -156,8 +156,8 @@ class ByteServo(ABC):
         if not error:
             for field, value in writes:
                 self.table.set(field.name, value)
-                self.keep(field.name)
-            self.act({field.name for field, _ in writes}, now)
+                self.save_field(field.name)
+            self.apply_fields({field.name for field, _ in writes}, now)
         return self.errors | error
 
     def register_write(self, address: int, data: bytes) -> int:
@@ -207,7 +207,7 @@ class ByteServo(ABC):
         loop = self.loop
         loop.sample()
         current = loop.effort / loop.constant if self.driving else 0.0
-        warm = warmed(self.temperature, current, loop.resistance, dt)
+        warm = motor_temperature(self.temperature, current, loop.resistance, dt)
         self.temperature = max(warm, self.floor)
         self.protect(now, dt)
 
@@ -242,12 +242,12 @@ class ByteServo(ABC):
         self._registered = None
         self.loop.release()
         self.loop.hold_here()
-        self.begin()
+        self.init_registers()
 
     # Differences between the families
 
     @abstractmethod
-    def begin(self) -> None:
+    def init_registers(self) -> None:
         """Set the registers that are not constant at power-up."""
 
     @abstractmethod
@@ -255,15 +255,15 @@ class ByteServo(ABC):
         """Return the error of a write, and the fields that it would set."""
 
     @abstractmethod
-    def keep(self, name: str) -> None:
+    def save_field(self, name: str) -> None:
         """Save a field that has been written, unless the EEPROM is locked."""
 
     @abstractmethod
-    def act(self, names: set[str], now: float) -> None:
+    def apply_fields(self, names: set[str], now: float) -> None:
         """Apply the effects of fields that have been written together."""
 
     @abstractmethod
-    def show(self, now: float, motion: bool) -> None:
+    def write_sample(self, now: float, motion: bool) -> None:
         """Write the last sample to the registers; with `motion`, only position, speed, load."""
 
     @abstractmethod

@@ -22,7 +22,7 @@ from windup.sim_twin.wire.servos.x_series import (
     PWM_FULL,
     VELOCITY,
     VELOCITY_UNIT,
-    Model,
+    XSeriesModel,
 )
 from windup.sim_twin.wire.shafts.shaft import Shaft
 
@@ -47,7 +47,12 @@ class ControlLoop:
     """
 
     def __init__(
-        self, model: Model, servo: ServoModel, registers: RegisterFile, shaft: Shaft, supply: float
+        self,
+        model: XSeriesModel,
+        servo: ServoModel,
+        registers: RegisterFile,
+        shaft: Shaft,
+        supply: float,
     ) -> None:
         self.registers, self.servo, self.shaft, self.supply = registers, servo, shaft, supply
         self.encoder = Encoder()
@@ -90,7 +95,7 @@ class ControlLoop:
     def release(self) -> None:
         """Switch the motor off: the shaft turns freely."""
         self.busy = False
-        self.shaft.off()
+        self.shaft.release()
 
     def update(self, now: float, dt: float = 0.0) -> None:
         """Command the shaft for now; `dt` s have passed since the last step."""
@@ -105,10 +110,10 @@ class ControlLoop:
             self._regulate(now, dt, most)
         elif mode == PWM:
             self.busy = False
-            self.shaft.push(self.encoder.sign * math.copysign(volts, get("goal_pwm")))
+            self.shaft.apply_voltage(self.encoder.sign * math.copysign(volts, get("goal_pwm")))
         elif mode == CURRENT:
             self.busy = False
-            self.shaft.pull(self.encoder.sign * self._goal_torque(), volts)
+            self.shaft.apply_torque(self.encoder.sign * self._goal_torque(), volts)
 
     def _goal_torque(self) -> float:
         return (self.torque_unit or 0.0) * self.registers.get("goal_current")
@@ -118,7 +123,7 @@ class ControlLoop:
         gain = self.registers.get("position_p_gain")
         stiffness = gain * self._stiffness_unit * self.supply
         most = abs(self._goal_torque()) if self.mode == CURRENT_POSITION else math.inf
-        self.shaft.drive(angle, stiffness, volts, most)
+        self.shaft.hold_goal(angle, stiffness, volts, most)
 
     def _regulate(self, now: float, dt: float, most: int) -> None:
         """Velocity loop: PWM = P/128 e + I/65536 sum(e), e in units of 0.229 rev/min."""
@@ -130,7 +135,7 @@ class ControlLoop:
         if abs(pwm) < most:
             self._integral += step
         pwm = max(-most, min(most, pwm))
-        self.shaft.push(sign * pwm / PWM_FULL * self.supply)
+        self.shaft.apply_voltage(sign * pwm / PWM_FULL * self.supply)
 
     def _plan_position(self, now: float) -> None:
         get = self.registers.get

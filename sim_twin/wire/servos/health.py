@@ -18,7 +18,7 @@ OVERLOAD_LEVEL = 0.8  # share of the stall torque at the present supply
 OVERLOAD_TIME = 1.0  # s
 
 
-def warmed(temperature: float, current: float, resistance: float, dt: float) -> float:
+def motor_temperature(temperature: float, current: float, resistance: float, dt: float) -> float:
     """Return the temperature of a motor after `dt` s at a current in A, degrees C."""
     heat = current * current * resistance - (temperature - AMBIENT) / HEAT_RESISTANCE
     return temperature + dt * heat / HEAT_CAPACITY
@@ -61,7 +61,7 @@ class Health:
         get = loop.registers.get
         torque = abs(torque) if driving else 0.0
         current = torque / loop.constant
-        warm = warmed(self.temperature, current, loop.resistance, dt)
+        warm = motor_temperature(self.temperature, current, loop.resistance, dt)
         self.temperature = max(warm, self.floor)
         stall = loop.constant / loop.resistance * loop.supply
         strained = driving and torque >= OVERLOAD_LEVEL * stall

@@ -88,15 +88,15 @@ class MotorLoop:
         self._profile = Profile(present, 0.0, speed, rise, 0.0)
         self._since = now
 
-    def press(self, duty: float) -> None:
+    def apply_duty(self, duty: float) -> None:
         """Apply a share of the supply voltage to the motor, regardless of the position."""
         self.busy = False
-        self.shaft.push(max(-self.most, min(self.most, duty)) * self.supply)
+        self.shaft.apply_voltage(max(-self.most, min(self.most, duty)) * self.supply)
 
     def release(self) -> None:
         """Switch the motor off: the shaft turns freely."""
         self.busy, self._running = False, None
-        self.shaft.off()
+        self.shaft.release()
 
     def update(self, now: float, dt: float = 0.0) -> None:
         """Command the shaft for now; `dt` s have passed since the last step."""
@@ -107,7 +107,7 @@ class MotorLoop:
             target = (self._profile.at(now - self._since)[0] - self.centre) / self.per_rad
         self.busy = self._running is not None or self.moving(now)
         stiffness = self.gain * self.supply * self.constant / self.resistance
-        self.shaft.drive(target, stiffness, self.most * self.supply, self.torque)
+        self.shaft.hold_goal(target, stiffness, self.most * self.supply, self.torque)
 
     def duty(self) -> float:
         """Return the duty that yields the last sample's torque at its speed."""
@@ -120,7 +120,7 @@ class MotorLoop:
         """Return the current of the last sample, A; negative against the counts."""
         return self.effort / (self.servo.torque_constant or self.constant * TORQUE_SHARE)
 
-    def strain(self) -> float:
+    def relative_torque(self) -> float:
         """Return the last sample's torque as a share of the present stall torque."""
         stall = self.constant / self.resistance * self.supply
         return abs(self.effort) / stall if stall > 0.0 else 0.0

@@ -4,7 +4,7 @@ from typing import Final
 
 from windup.hal.errors import UnknownNameError, UsageError
 from windup.hal.servos import servo_model
-from windup.sim_twin.wire.bus.bus import Language
+from windup.sim_twin.wire.bus.bus import WireProtocol
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.protocols.dynamixel import Dynamixel
 from windup.sim_twin.wire.protocols.protocol1 import DYNAMIXEL1, FEETECH, Protocol1
@@ -36,7 +36,7 @@ def full_name(name: str) -> str:
     raise UnknownNameError("servo model", name, PROTOCOLS)
 
 
-def make_language(protocol: str) -> Language:
+def make_protocol(protocol: str) -> WireProtocol:
     """Return a new protocol instance."""
     if protocol == "dynamixel2":
         return Dynamixel()

@@ -12,7 +12,7 @@ from windup.hal.families import family_of
 from windup.hal.families.feetech import USUAL
 from windup.hal.families.usual import protective_limits
 from windup.hal.imu.opencr import OpenCr
-from windup.hal.servo_bus.servo_setup import power_up
+from windup.hal.servo_bus.servo_setup import switch_servo_power_on
 from windup.hal.servos import servo_model
 from windup.tools.testing.servo_bus import ServoBus
 
@@ -28,7 +28,7 @@ def left_with(bus: ServoBus, robot: str, **values: int) -> None:
     with bus.port(baud=BAUD[robot]) as port:
         host = Bus(port, family)
         if robot == "op3":
-            power_up(host, OpenCr("bus"))
+            switch_servo_power_on(host, OpenCr("bus"))
         if "lock" in table:
             host.write(KNEE[robot], table["lock"], 0)
         for name, value in values.items():

@@ -45,14 +45,14 @@ class Placed:
         turn: (4,) orientation of the base, wxyz.
         lift: Height of its lowest point above the floor, m.
         held: Whether it is held until its servos are driven; else it lies, limp.
-        hangs: Whether its base is held for ever.
+        stays_held: Whether its base is held for ever.
     """
 
     pose: Array
     turn: Array
     lift: float = 0.0
     held: bool = True
-    hangs: bool = False
+    stays_held: bool = False
 
 
 def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator) -> Placed:
@@ -73,7 +73,7 @@ def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator
         towards = float(rng.uniform(-np.pi, np.pi))
         tilt = turned([np.cos(towards), np.sin(towards), 0.0], float(rng.uniform(0.0, LEAN)))
         pose = float(rng.uniform(0.0, 1.0)) * robot.stance + 2.0 * jitter
-        return Placed(inside(pose), after(around, tilt), lift=0.2, hangs=True)
+        return Placed(inside(pose), after(around, tilt), lift=0.2, stays_held=True)
     if kind == "sitting":
         pose = inside(np.asarray(find_gait(robot, "sit").graph.pose[-1]) + jitter)
         return Placed(pose, after(around, _leaning_back(robot, pose)))

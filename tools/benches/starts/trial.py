@@ -131,8 +131,8 @@ def _place(robot: Robot, world: BusWorld, placed: Placed) -> None:
     mujoco.mj_forward(twin.model, twin.data)
     twin.data.qpos[2] += placed.lift - _lowest(twin)
     mujoco.mj_forward(twin.model, twin.data)
-    physics.held, physics.hangs = placed.held, placed.hangs
-    physics.grasp()
+    physics.held, physics.stays_held = placed.held, placed.stays_held
+    physics.store_held_pose()
     clock = robot.backend.clock
     clock.wait_until(clock.now() + LIE)
 
@@ -153,7 +153,7 @@ def _break(world: BusWorld, broken: Broken) -> None:
     physics = world.physics
     assert isinstance(physics, TwinPhysics)
     if broken.fault == "jam":
-        physics.grasp()
+        physics.store_held_pose()
         physics.jammed[list(broken.joints)] = True
     if broken.fault == "motor":
         for shaft in physics.shafts:

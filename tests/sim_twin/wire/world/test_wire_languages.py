@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from tests.sim_twin.wire.wire_host1 import PING, open_host1, statuses
 from windup.hal.servos import servo_model
-from windup.sim_twin.wire import drop_world, put_world
+from windup.sim_twin.wire import register_world, unregister_world
 from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.protocols.frames import encode as encode2
@@ -16,8 +16,8 @@ from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
 from windup.sim_twin.wire.world.address import parse_address
 from windup.sim_twin.wire.world.build import build_world
-from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
-from windup.sim_twin.wire.world.families import PROTOCOLS, make_language, make_servo
+from windup.sim_twin.wire.world.bus_world import BenchPhysics, BusWorld
+from windup.sim_twin.wire.world.families import PROTOCOLS, make_protocol, make_servo
 
 MIX = {"legs": "STS3215-12V", "arms": "AX-12A", "head": "XL430-W250", "face": "SCS0009"}
 
@@ -30,12 +30,12 @@ def mixed() -> BusWorld:
         shafts.append(InertiaShaft(sheet.motor(supply), sheet.armature))
         servo = make_servo(name, shafts[-1], 1, 1_000_000, supply, 0)
         devices: list[Device] = [servo]
-        buses[bus] = Bus(bus, devices, make_language(PROTOCOLS[name]), schedule)
-    return BusWorld(Bench(shafts), schedule, buses)
+        buses[bus] = Bus(bus, devices, make_protocol(PROTOCOLS[name]), schedule)
+    return BusWorld(BenchPhysics(shafts), schedule, buses)
 
 
 def test_four_families_on_four_buses_of_one_world() -> None:
-    put_world("mix", mixed())
+    register_world("mix", mixed())
     try:
         for bus in ("legs", "arms", "face"):
             with open_host1(f"twin://any?world=mix&bus={bus}") as host:
@@ -45,11 +45,11 @@ def test_four_families_on_four_buses_of_one_world() -> None:
             assert len(host.raw(encode2(1, 1))) == 14
             assert host.raw(encode(1, 1)) == b""
     finally:
-        drop_world("mix")
+        unregister_world("mix")
 
 
 def test_buses_of_different_languages_do_not_wait_for_each_other() -> None:
-    put_world("mix", mixed())
+    register_world("mix", mixed())
     try:
         with (
             open_host1("twin://any?world=mix&bus=legs") as legs,
@@ -61,7 +61,7 @@ def test_buses_of_different_languages_do_not_wait_for_each_other() -> None:
             assert len(legs.port.read(12)) == len(arms.port.read(12)) == 12
             assert legs.now - began == pytest.approx(20e-5)
     finally:
-        drop_world("mix")
+        unregister_world("mix")
 
 
 @pytest.mark.parametrize(
@@ -79,7 +79,7 @@ def test_what_cannot_hang_on_a_bus_is_refused(url: str, message: str) -> None:
 
 def test_a_robot_may_be_shafts_alone_in_its_stance() -> None:
     world = build_world(parse_address("twin://op3?physics=inertia"))
-    assert isinstance(world.physics, Bench)
+    assert isinstance(world.physics, BenchPhysics)
     assert len(world.physics.shafts) == 20
     assert any(shaft.position for shaft in world.physics.shafts)
 

@@ -37,7 +37,7 @@ def test_a_plants_servos_are_stiffer_and_have_its_supply() -> None:
     assert world.devices[0].supply == 10.8
     mount = OP3.servos[0]
     assert mount is not None
-    TwinShaft(twin, 0, mount).drive(0.0, 10.0, 10.8)
+    TwinShaft(twin, 0, mount).hold_goal(0.0, 10.0, 10.8)
     assert twin.model.actuator_gainprm[0, KP] == pytest.approx(12.0)
 
 

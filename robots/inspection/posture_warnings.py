@@ -17,7 +17,7 @@ DIRECTIONS = np.radians(np.arange(0.0, 360.0, 2.0))
 AROUND = np.column_stack((np.cos(DIRECTIONS), np.sin(DIRECTIONS)))
 
 
-def posture_doubts(
+def posture_warnings(
     robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData
 ) -> Iterator[str]:
     """Yield warnings about a robot in its stance.

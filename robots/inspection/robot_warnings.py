@@ -7,8 +7,8 @@ import numpy as np
 
 from windup.hal.geometry.gravity import GRAVITY
 from windup.robots.description import RobotDescription
-from windup.robots.inspection.posture_doubts import posture_doubts
-from windup.robots.inspection.servo_doubts import servo_doubts
+from windup.robots.inspection.posture_warnings import posture_warnings
+from windup.robots.inspection.servo_warnings import servo_warnings
 from windup.robots.inspection.stance import in_stance
 
 POINTS = (int(mujoco.mjtGeom.mjGEOM_SPHERE), int(mujoco.mjtGeom.mjGEOM_ELLIPSOID))
@@ -17,7 +17,7 @@ DEEP = 1e-3
 DOWN = (0.0, 0.0, -GRAVITY)
 
 
-def doubts(robot: RobotDescription) -> list[str]:
+def robot_warnings(robot: RobotDescription) -> list[str]:
     """Return warnings about a robot's MJCF and robot.toml, one line each, with a remedy."""
     model, data = in_stance(robot)
     return [
@@ -26,8 +26,8 @@ def doubts(robot: RobotDescription) -> list[str]:
         *_points(robot, model, data),
         *_armature(robot, model),
         *_neighbours(model, data),
-        *servo_doubts(robot),
-        *posture_doubts(robot, model, data),
+        *servo_warnings(robot),
+        *posture_warnings(robot, model, data),
     ]
 
 

@@ -15,7 +15,7 @@ _BEHIND = struct.Struct("<iiHB")  # at 136: trajectories, voltage, temperature
 MOTION = range(126, 136)
 
 
-class Present:
+class PresentRegisters:
     """Samples a shaft, and writes the sample into the registers when they are read.
 
     Attributes:

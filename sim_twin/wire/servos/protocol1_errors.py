@@ -31,7 +31,7 @@ _BITS: Final = {
 }
 
 
-def old_error(error: int, hardware: int, names: Iterable[str] = ()) -> int:
+def protocol1_error(error: int, hardware: int, names: Iterable[str] = ()) -> int:
     """Return the error byte of protocol 1.
 
     Args:

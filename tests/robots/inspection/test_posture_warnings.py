@@ -7,8 +7,8 @@ import pytest
 
 from tests.shapes import THIRTY, write_shape
 from windup.robots import load_robot, robot_names
-from windup.robots.inspection.doubts import doubts
-from windup.robots.inspection.posture_doubts import balance_margin
+from windup.robots.inspection.posture_warnings import balance_margin
+from windup.robots.inspection.robot_warnings import robot_warnings
 
 SQUARE = np.array([[0.1, 0.1], [0.1, -0.1], [-0.1, 0.1], [-0.1, -0.1]])
 
@@ -21,7 +21,7 @@ def doubted(folder: Path, file: str, *changes: tuple[str, str]) -> str:
         assert old in text
         text = text.replace(old, new)
     path.write_text(text)
-    return "\n".join(doubts(load_robot(path.parent)))
+    return "\n".join(robot_warnings(load_robot(path.parent)))
 
 
 @pytest.mark.parametrize(("x", "margin"), [(0.0, 0.1), (0.06, 0.04), (0.13, -0.03)])
@@ -35,7 +35,7 @@ def test_a_robot_that_stands_raises_no_doubt(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", robot_names())
 def test_robots_of_the_package_stand_in_their_stance(name: str) -> None:
-    said = "\n".join(doubts(load_robot(name)))
+    said = "\n".join(robot_warnings(load_robot(name)))
     for words in ("in the stance", "is called left", "put it in the middle", "counts as fallen"):
         assert words not in said
 

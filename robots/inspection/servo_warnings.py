@@ -8,7 +8,7 @@ SLACK = 1.02
 """Factor by which a joint may exceed its rounded data sheet."""
 
 
-def servo_doubts(robot: RobotDescription) -> Iterator[str]:
+def servo_warnings(robot: RobotDescription) -> Iterator[str]:
     """Yield a warning for each joint whose torque or velocity exceeds that of its servo."""
     supply = robot.drive.supply
     for joint, servo in zip(robot.joints.joints, robot.servos, strict=True):

@@ -3,7 +3,7 @@
 from typing import Protocol
 
 
-class Heard(Protocol):
+class ParsedItem(Protocol):
     """A frame or a dropped item, and where in the parsed chunk it ends."""
 
     @property

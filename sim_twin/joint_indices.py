@@ -4,11 +4,11 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-Place = slice | npt.NDArray[np.intp]
+Index = slice | npt.NDArray[np.intp]
 """Indices into an array: a slice (which gives a view) where they are consecutive."""
 
 
-def places(addresses: npt.ArrayLike) -> Place:
+def as_index(addresses: npt.ArrayLike) -> Index:
     """Return `addresses` (k,) as indices into an array: a slice when they are consecutive."""
     at = np.asarray(addresses, dtype=np.intp)
     first = int(at[0]) if at.size else 0
@@ -17,7 +17,7 @@ def places(addresses: npt.ArrayLike) -> Place:
     return at
 
 
-class JointPlaces:
+class JointIndices:
     """Indices of n joints in qpos and qvel, among passive joints and a free base.
 
     Args:
@@ -35,4 +35,4 @@ class JointPlaces:
         joints = np.array([model.joint(name).id for name in names], dtype=np.intp)
         self.qpos = model.jnt_qposadr[joints].astype(np.intp)
         self.dofs = model.jnt_dofadr[joints].astype(np.intp)
-        self.position, self.velocity = places(self.qpos), places(self.dofs)
+        self.position, self.velocity = as_index(self.qpos), as_index(self.dofs)

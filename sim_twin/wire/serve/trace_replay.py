@@ -6,24 +6,24 @@ from functools import partial
 from pathlib import Path
 
 from windup.sim_twin.wire.bus.bus import BITS, Bus
-from windup.sim_twin.wire.bus.heard import Heard
 from windup.sim_twin.wire.bus.inbox import Burst
+from windup.sim_twin.wire.bus.parsed_item import ParsedItem
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.serve.trace import (
     FROM_HOST,
     TO_HOST,
-    Line,
     TraceError,
+    TraceLine,
     difference,
     read_trace,
 )
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
-from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
+from windup.sim_twin.wire.world.bus_world import BenchPhysics, BusWorld
 
 
 @dataclass
-class Tape:
+class TraceReplay:
     """The protocol of a bus that answers from a trace.
 
     Attributes:
@@ -32,7 +32,7 @@ class Tape:
     """
 
     path: Path
-    lines: list[Line]
+    lines: list[TraceLine]
     bus: Bus = field(init=False, repr=False)
     id_at: int = 0
     length_at: int = 0
@@ -40,19 +40,19 @@ class Tape:
     tail: int = 1
     _at: int = 0
 
-    def seal(self, frame: bytes) -> bytes:
+    def with_checksum(self, frame: bytes) -> bytes:
         """Return `frame` unchanged."""
         return frame
 
-    def meet(self, devices: Sequence[Device]) -> None:
+    def set_devices(self, devices: Sequence[Device]) -> None:
         """Do nothing: there are no devices."""
 
-    def feed(self, chunk: bytes) -> list[Heard]:
+    def feed(self, chunk: bytes) -> list[ParsedItem]:
         """Compare the host's bytes with the trace, and schedule the recorded answer."""
         bus, lines = self.bus, self.lines
         wanted = lines[self._at] if self._at < len(lines) else None
-        got = Line(bus.began, bus.name, FROM_HOST, bus.baud, 0.0, chunk)
-        if wanted is None or not wanted.same(got):
+        got = TraceLine(bus.began, bus.name, FROM_HOST, bus.baud, 0.0, chunk)
+        if wanted is None or not wanted.matches(got):
             raise TraceError(difference(self.path, lines, self._at, got))
         self._at += 1
         self.answer()
@@ -63,13 +63,13 @@ class Tape:
         while self._at < len(self.lines) and self.lines[self._at].direction == TO_HOST:
             line = self.lines[self._at]
             burst = Burst(line.time, BITS / line.baud, bytearray(line.data), held=line.held)
-            self.bus.schedule.at(line.time, partial(self.bus.inbox.append, burst))
+            self.bus.schedule.add(line.time, partial(self.bus.inbox.append, burst))
             self._at += 1
 
     def reset(self) -> None:
         """Do nothing: there is no partial frame."""
 
-    def execute(self, frame: Heard, bus: Bus) -> bool:
+    def execute(self, frame: ParsedItem, bus: Bus) -> bool:
         """Do nothing; return False."""
         return False
 
@@ -83,17 +83,17 @@ class Tape:
             raise TraceError(difference(self.path, self.lines, self._at, None))
 
 
-def tape_world(path: Path) -> BusWorld:
+def replay_world(path: Path) -> BusWorld:
     """Return a world that answers from a trace and raises a `TraceError` at a wrong byte."""
     lines = read_trace(path)
     schedule, buses = Schedule(), {}
     for name in dict.fromkeys(line.bus for line in lines):
         mine = [line for line in lines if line.bus == name]
-        tape = Tape(path, mine)
+        tape = TraceReplay(path, mine)
         tape.bus = buses[name] = Bus(name, [], tape, schedule, mine[0].baud)
         tape.answer()
     nothing: list[InertiaShaft] = []
-    return BusWorld(Bench(nothing), schedule, buses)
+    return BusWorld(BenchPhysics(nothing), schedule, buses)
 
 
 def check_played(world: BusWorld) -> None:
@@ -103,5 +103,5 @@ def check_played(world: BusWorld) -> None:
         TraceError: The host stopped before a trace ends.
     """
     for bus in world.buses.values():
-        if isinstance(bus.language, Tape):
-            bus.language.finish()
+        if isinstance(bus.protocol, TraceReplay):
+            bus.protocol.finish()

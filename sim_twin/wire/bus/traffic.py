@@ -10,7 +10,7 @@ EPSILON: Final = 1e-9
 """Shorter overlaps do not count as collisions, s."""
 
 
-class Air:
+class Traffic:
     """The bursts that are or soon will be in transit on a wire."""
 
     def __init__(self) -> None:
@@ -36,7 +36,7 @@ class Air:
                 last = min(len(burst.data), math.ceil((end - burst.start) / burst.byte))
                 if last > first:
                     burst.data[first:last] = noise(last - first)
-                    burst.ruined = min(burst.ruined, start)
+                    burst.corrupted = min(burst.corrupted, start)
         air.append(new)
         self._bursts = air
         return collisions
