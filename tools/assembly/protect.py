@@ -36,7 +36,7 @@ class Protection:
 
     def around(self, controller: Controller) -> "Protected":
         """Return `controller`, protected; one at a time, for they share what foresees a fall."""
-        from windup.control.falling.protection import Protected, ProtectiveFall
+        from windup.control.falling.protection import Protected
 
         return Protected(controller, self._predictor, self._ways, self.robot.joints)
 
