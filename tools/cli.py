@@ -74,7 +74,7 @@ def _quiet_mujoco() -> None:
 
 def _say_warnings(ended_by: str = "") -> None:
     """Print what there was to warn about, but for the kind of what ended the run."""
-    if said := NOTES.said(ended_by):
+    if said := NOTES.summary(ended_by):
         say(f"warning: {said}")
 
 

@@ -33,14 +33,14 @@ SWING = 0.3  # amplitude around the middle, as a share of the encoder's range
 _worlds = count()
 
 
-def open_untold(url: str, baud: int) -> Port:
+def open_without_latency(url: str, baud: int) -> Port:
     """Open a port whose driver does not report the adapter's latency."""
     port = open_port(url, baud)
     port.latency = LATENCY
     return port
 
 
-class Puppets:
+class PositionedShafts:
     """Physics in which the shafts move only when their positions are set."""
 
     def __init__(self, shafts: tuple[InertiaShaft, ...], timestep: float) -> None:
@@ -79,14 +79,14 @@ class SoakRig:
         joints = Joints(tuple(Joint(f"servo {id}", -2.0, 2.0, stiffness, 0.1) for id in ids))
         mounts = [ServoMount(model, "body", id, 1, model.middle, 1.0) for id in ids]
         ports = {"body": BusPort(self.url, BAUD)}
-        opener = open_untold if latency else open_port
+        opener = open_without_latency if latency else open_port
         self.backend = ServoBackend(joints, mounts, ports, supply=self._supply, opener=opener)
         self.backend.connect()
         self.world = wire.find_world(self.name)
         bench = self.world.physics
         assert isinstance(bench, BenchPhysics)
         self._shafts = bench.shafts
-        self.world.physics = Puppets(self._shafts, bench.timestep)
+        self.world.physics = PositionedShafts(self._shafts, bench.timestep)
         self._pace = 1 + rng.integers(0, FASTEST, servos)
         self._phase = rng.integers(0, model.encoder_counts, servos)
         self._reach = int(SWING * model.encoder_counts)

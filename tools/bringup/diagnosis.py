@@ -1,4 +1,4 @@
-"""Diagnoses a run: compares its telemetry with limits, and advises on every complaint.
+"""Diagnoses a run: compares its telemetry with limits, and advises on every problem.
 
 Supply, temperature, load, stall and IMU are checked by the same watches as during the run.
 """
@@ -66,15 +66,19 @@ class Limits:
 
 
 @dataclass(frozen=True)
-class Complaint:
-    """One complaint: the subject, what is wrong, and what to do."""
+class HealthProblem:
+    """One problem of a run, with the part concerned and the remedy."""
 
-    who: str
-    what: str
-    do: str
+    subject: str
+    problem: str
+    remedy: str
 
     def __str__(self) -> str:
-        return f"{self.who}: {self.what}; {self.do}"
+        return f"{self.subject}: {self.problem}; {self.remedy}"
+
+    def record(self) -> dict[str, str]:
+        """Return the problem as plain data."""
+        return {"who": self.subject, "what": self.problem, "do": self.remedy}
 
 
 @dataclass
@@ -87,7 +91,7 @@ class Diagnosis:
         ended: Reason why the run ended, or None.
         limits: Limits of a healthy run.
         now: Present time, s since 1970.
-        complaints: What is not healthy.
+        problems: What is not healthy.
     """
 
     header: Header
@@ -95,7 +99,7 @@ class Diagnosis:
     ended: str | None
     limits: Limits
     now: float
-    complaints: list[Complaint] = field(default_factory=list, init=False)
+    problems: list[HealthProblem] = field(default_factory=list, init=False)
 
     @classmethod
     def of(cls, reader: TelemetryReader, limits: Limits, now: float) -> "Diagnosis":
@@ -120,8 +124,8 @@ class Diagnosis:
 
     @property
     def healthy(self) -> bool:
-        """True when there are no complaints."""
-        return not self.complaints
+        """True when there are no problems."""
+        return not self.problems
 
     @property
     def state(self) -> str:
@@ -219,29 +223,29 @@ class Diagnosis:
             "joints": self.joints(),
             "warnings": [finding.record() for finding in self.findings] + self.slowness.records(),
             "limits": self.limits.record(),
-            "complaints": [vars(complaint) for complaint in self.complaints],
+            "complaints": [problem.record() for problem in self.problems],
         }
 
     def _judge_loop(self) -> None:
         if self.state == "dead":
             what = f"process {self.header.pid} died without ending its run"
-            self._complain("loop", what, "torque may be on: switch it off with `windup stop`")
+            self._add_problem("loop", what, "torque may be on: switch it off with `windup stop`")
         elif self.state == "standing still":
             what = f"no tick for {self.silence:.1f} s"
-            self._complain("loop", what, f"is process {self.header.pid} stopped or swapped out?")
+            self._add_problem("loop", what, f"is process {self.header.pid} stopped or swapped out?")
         if slow := self.slowness:
-            self._complain("loop", slow.what, slow.do)
+            self._add_problem("loop", slow.description, slow.remedy)
         age = float(self.ticks["imu_age"].max())
         if age > self.limits.age:
             what = f"silent for {age:.2f} s (limit {self.limits.age:g} s)"
-            self._complain("imu", what, "check its cable")
+            self._add_problem("imu", what, "check its cable")
 
     def _judge_bus(self) -> None:
         port = self.header.port or "URL"
         for kind, count in self.bus_errors().items():
             if count > self.limits.errors * len(self.ticks):
                 what = f"{kind!r} {count} times in {len(self.ticks)} ticks"
-                self._complain(
+                self._add_problem(
                     "bus", what, f"check cables and power, then `windup scan {quote(port)}`"
                 )
 
@@ -251,20 +255,20 @@ class Diagnosis:
             name = row["name"]
             if row["alerts"]:
                 what = f"its servo signals: {', '.join(row['alerts'])}"
-                self._complain(name, what, "remove the cause before it shuts down")
+                self._add_problem(name, what, "remove the cause before it shuts down")
             if row["age_max_s"] > limits.age:
                 what = f"silent for {row['age_max_s']:.2f} s (limit {limits.age:g} s)"
-                self._complain(name, what, "check its cable and power")
+                self._add_problem(name, what, "check its cable and power")
             if row["clamped_share"] > limits.clamped:
                 what = f"clamped in {row['clamped_share']:.0%} of the ticks"
-                self._complain(name, what, "ask for less, or widen its limits in robot.toml")
+                self._add_problem(name, what, "ask for less, or widen its limits in robot.toml")
 
         for finding in self.findings:
             who = format_names(finding.joints) or finding.text.subject
-            self._complain(who, finding.description, finding.text.remedy)
+            self._add_problem(who, finding.description, finding.text.remedy)
 
-    def _complain(self, who: str, what: str, do: str) -> None:
-        self.complaints.append(Complaint(who, what, do))
+    def _add_problem(self, subject: str, problem: str, remedy: str) -> None:
+        self.problems.append(HealthProblem(subject, problem, remedy))
 
     def _alerts(self, bits: float) -> list[str]:
         return [kind for bit, kind in enumerate(self.header.alerts) if int(bits) >> bit & 1]

@@ -7,17 +7,17 @@ from windup.hal.port.port import BITS, Port
 from windup.hal.protocols import protocol1, protocol2
 from windup.hal.protocols.protocol2 import Status
 
-TIME = 5e-3
+ANSWER_TIME = 5e-3
 """Longest time for a servo to answer, including its return delay, s."""
-LISTEN = 0.05
+LISTEN_TIME = 0.05
 """Time for which the bus is listened to before the first ping, s."""
-ROOM = 64
+MAX_BYTES = 64
 """Largest number of bytes read for an answer, with a margin."""
 PING_PARAMS = 3
 """Parameters in an answer to a protocol 2 ping: model number and firmware version."""
 
 
-class Strange(NamedTuple):
+class InvalidAnswer(NamedTuple):
     """An answer to a ping that is not a servo's.
 
     Attributes:
@@ -31,28 +31,28 @@ class Strange(NamedTuple):
     whole: bool = False
 
 
-def strange_answers(port: Port, family: Family) -> list[Strange]:
+def invalid_answers(port: Port, family: Family) -> list[InvalidAnswer]:
     """Return the invalid answers on a port, at its present baud rate, for a family of servos.
 
     On a bus with unasked bytes or an echo, that is the only result.
     """
     port.flush_input()
-    if unasked := port.read(ROOM, port.clock.now() + LISTEN):
-        return [Strange(None, unasked)]
+    if unasked := port.read(MAX_BYTES, port.clock.now() + LISTEN_TIME):
+        return [InvalidAnswer(None, unasked)]
     found = []
     for id in range(family.dialect.last_id + 1):
         request = _request(family, id)
         data = _exchange(port, request)
         if data.startswith(request):
-            return [Strange(None, data)]
+            return [InvalidAnswer(None, data)]
         if data and not _is_answer(family, id, data):
             whole = any(frame.id == id for frame in _frames(family, data))
-            found.append(Strange(id, data, whole))
+            found.append(InvalidAnswer(id, data, whole))
     return found
 
 
 def is_echo(data: bytes) -> bool:
-    """Return whether `data` is the echo of the first ping of `strange_answers`."""
+    """Return whether `data` is the echo of the first ping of `invalid_answers`."""
     return data.startswith((protocol1.ping(0), protocol2.ping(0)))
 
 
@@ -65,7 +65,7 @@ def _exchange(port: Port, request: bytes) -> bytes:
     port.flush_input()
     port.write(request)
     wire = (len(request) + protocol2.OVERHEAD + PING_PARAMS) * BITS / port.baud
-    return port.read(ROOM, port.clock.now() + wire + 2.0 * port.latency + TIME)
+    return port.read(MAX_BYTES, port.clock.now() + wire + 2.0 * port.latency + ANSWER_TIME)
 
 
 def _is_answer(family: Family, id: int, data: bytes) -> bool:

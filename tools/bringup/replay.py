@@ -24,9 +24,9 @@ def findings(
     stops: dict[str, Finding] = {}
     watched = bool(np.isfinite(levels.torque).any())
     for tick in ticks:
-        observation = observed(tick)
+        observation = observation_of(tick)
         if watched:
-            found = health.update(observation, told(tick))
+            found = health.update(observation, command_of(tick))
             if found is not None:
                 stops.setdefault(found.text.name, found)
         if header.estimated:
@@ -35,7 +35,7 @@ def findings(
         yield stops.get(warning.text.name, warning)
 
 
-def observed(tick: np.void) -> Observation:
+def observation_of(tick: np.void) -> Observation:
     """Return the observation of a tick, without the base state."""
     joints = JointState(*(tick[name] for name in JOINTS))
     imu = None
@@ -49,7 +49,7 @@ def observed(tick: np.void) -> Observation:
     return Observation(float(tick["time"]), joints, imu, tick["contacts"], None)
 
 
-def told(tick: np.void) -> JointCommand:
+def command_of(tick: np.void) -> JointCommand:
     """Return the command of a tick, as far as telemetry contains it."""
     block = np.zeros((len(FIELDS), len(tick["command"])))
     block[FIELDS.index("position")] = tick["command"]

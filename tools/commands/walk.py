@@ -126,10 +126,10 @@ class Walk(TwinOptions, Common):
         if show:
             console.print(str(report), markup=False, soft_wrap=True)
         if self.learn is not None:
-            with NOTES.losing():
+            with NOTES.collecting_output_errors():
                 keep_learnt(self.learn, report, as_typed(self, ("learn", "json", "plot")))
         if self.plot is not None and show:
-            with NOTES.losing():
+            with NOTES.collecting_output_errors():
                 plot_walk(self.plot, report, trace)
                 console.print(f"picture: {self.plot}", markup=False, soft_wrap=True)
         return report.result()

@@ -9,7 +9,7 @@ from windup.control.loop import LoopReport, Until
 from windup.control.motions.first_motion import Approach
 from windup.hal.observation import Observation
 from windup.tools.robot.stopping import INTERRUPTED, LAY
-from windup.tools.stopping.interrupts import Asked
+from windup.tools.stopping.interrupts import StopRequests
 
 if TYPE_CHECKING:  # not needed by robots that do not fall
     from windup.control.falling.protection import Protected
@@ -34,7 +34,7 @@ class RunEnd:
         protected: Protection against falls; a run with a fall goes on until the robot lies still.
     """
 
-    asked: Asked
+    asked: StopRequests
     wishes: Sequence[Callable[[], str | None]]
     fallen: Callable[[], bool]
     loop: LoopReport

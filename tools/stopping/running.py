@@ -5,7 +5,7 @@ from types import TracebackType
 
 from windup.hal.errors import UsageError
 
-PATIENCE = 3.0
+STOP_TIME = 3.0
 """Longest time for a run to react to a request and to stop its robot, s."""
 
 
@@ -57,4 +57,4 @@ class Running:
         thread = self.end(by)
         if thread is None:
             return False
-        return thread is threading.current_thread() or self._idle.wait(PATIENCE)
+        return thread is threading.current_thread() or self._idle.wait(STOP_TIME)

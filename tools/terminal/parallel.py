@@ -26,7 +26,7 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
-def side_by_side(
+def run_parallel(
     work: Callable[[Item], Result],
     items: list[Item],
     *,

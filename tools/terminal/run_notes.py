@@ -62,7 +62,7 @@ class RunNotes:
         self._rows.append(row)
 
     @contextmanager
-    def losing(self) -> Iterator[None]:
+    def collecting_output_errors(self) -> Iterator[None]:
         """Record a failure to write a result, and continue: there may be other results."""
         try:
             yield
@@ -80,7 +80,7 @@ class RunNotes:
         ]
         return own + late + others
 
-    def said(self, ended_by: str = "") -> str:
+    def summary(self, ended_by: str = "") -> str:
         """Return the warnings in one line, or "".
 
         Args:

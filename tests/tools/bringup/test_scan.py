@@ -13,8 +13,8 @@ from windup.hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FAMILIES, FEETECH_STS
 from windup.hal.port.open_port import open_port
 from windup.hal.port.port import Port
 from windup.hal.protocols import protocol1, protocol2
-from windup.tools.bringup.scan_said import complaints, narrow_lines, table
-from windup.tools.bringup.survey import Survey, places
+from windup.tools.bringup.scan_text import narrow_lines, problems_found, table
+from windup.tools.bringup.survey import Survey, scan_targets
 
 BAUD = 1_000_000
 Answer = Any
@@ -69,7 +69,7 @@ def survey(answer: Answer, baud: int | None = BAUD, *, bridge: bool = False) -> 
 
 
 def said(found: Survey, missing: tuple[str, ...] = ()) -> str:
-    return " | ".join(complaints(found, "URL", list(missing)))
+    return " | ".join(problems_found(found, "URL", list(missing)))
 
 
 def clone(request: bytes) -> bytes:
@@ -135,7 +135,7 @@ def test_an_x_that_speaks_protocol_1_is_told_by_its_model() -> None:
 
 
 def test_protocol_1_is_looked_for_at_the_baud_rates_of_the_x_series_too() -> None:
-    rates = {rate for family, rate in places(port_of(lambda _: b"")) if family is DYNAMIXEL_1}
+    rates = {rate for family, rate in scan_targets(port_of(lambda _: b"")) if family is DYNAMIXEL_1}
     assert rates == {*DYNAMIXEL_1.bauds, *DYNAMIXEL_X.bauds}
 
 
@@ -165,14 +165,14 @@ def test_behind_a_bridge_without_baud_rates_every_servo_is_one_row() -> None:
 
     found = survey(servo, None, bridge=True)
     assert [(row["id"], row["baud"]) for row in found.servos] == [(1, None)]
-    assert [family for family, _ in places(found.port)] == list(FAMILIES)
+    assert [family for family, _ in scan_targets(found.port)] == list(FAMILIES)
 
 
 def test_every_baud_rate_is_a_step_of_the_progress() -> None:
     steps: list[str] = []
     port = port_of(lambda _: b"")
     Survey(port, {}).update(None, steps.append)
-    assert len(steps) == len(list(places(port))) > 10
+    assert len(steps) == len(list(scan_targets(port))) > 10
     assert steps[0] == f"{DYNAMIXEL_X.name}, {next(iter(DYNAMIXEL_X.bauds))} baud"
     assert port.baud == BAUD
 

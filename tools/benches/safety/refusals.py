@@ -6,7 +6,7 @@ from typing import Any
 
 from windup.tools.benches.safety.attempt import trial
 from windup.tools.benches.safety.moment import Moment
-from windup.tools.benches.safety.row import Row
+from windup.tools.benches.safety.row import Ending
 from windup.tools.benches.safety.trial import PATIENCE
 from windup.tools.terminal.output import console
 
@@ -64,7 +64,7 @@ def measure_refusals(robots: Sequence[str]) -> dict[str, Any]:
 
 
 def _refused(robot: str, refusal: Refusal) -> dict[str, Any]:
-    row = Row("refusal", _nothing, (refusal.status,), network=refusal.network)
+    row = Ending("refusal", _nothing, (refusal.status,), network=refusal.network)
     faults = refusal.faults.get(robot, refusal.faults.get("", ""))
     with trial(robot, row, AT_REST, refusal.arm, faults) as running:
         running.program.join(PATIENCE)

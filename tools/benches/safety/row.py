@@ -22,7 +22,7 @@ SLACK = 0.15
 
 
 @dataclass(frozen=True)
-class Row:
+class Ending:
     """A way to end a run.
 
     Attributes:

@@ -37,7 +37,7 @@ TURNS: dict[str, tuple[Array, float]] = {
 
 
 @dataclass(frozen=True)
-class Placed:
+class StartPosture:
     """The initial state of a robot.
 
     Attributes:
@@ -55,7 +55,7 @@ class Placed:
     stays_held: bool = False
 
 
-def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator) -> Placed:
+def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator) -> StartPosture:
     """Return a random posture of a robot, with a random heading."""
     joints = robot.joints
     jitter = JITTER * rng.normal(size=len(joints))
@@ -68,17 +68,17 @@ def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator
         low = robot.stance if robot.crouch is None else robot.crouch
         depth = float(rng.uniform(0.3, 1.0)) if kind == "squatting" else 0.0
         pose, level = on_feet(robot, robot.stance + depth * (low - robot.stance) + jitter)
-        return Placed(inside(pose), after(around, level))
+        return StartPosture(inside(pose), after(around, level))
     if kind == "hanging":
         towards = float(rng.uniform(-np.pi, np.pi))
         tilt = turned([np.cos(towards), np.sin(towards), 0.0], float(rng.uniform(0.0, LEAN)))
         pose = float(rng.uniform(0.0, 1.0)) * robot.stance + 2.0 * jitter
-        return Placed(inside(pose), after(around, tilt), lift=0.2, stays_held=True)
+        return StartPosture(inside(pose), after(around, tilt), lift=0.2, stays_held=True)
     if kind == "sitting":
         pose = inside(np.asarray(find_gait(robot, "sit").graph.pose[-1]) + jitter)
-        return Placed(pose, after(around, _leaning_back(robot, pose)))
+        return StartPosture(pose, after(around, _leaning_back(robot, pose)))
     side = str(rng.choice([name for name, _ in SIDES], p=[share for _, share in SIDES]))
-    return Placed(inside(2.0 * jitter), after(around, turned(*TURNS[side])), held=False)
+    return StartPosture(inside(2.0 * jitter), after(around, turned(*TURNS[side])), held=False)
 
 
 def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Array]:

@@ -5,7 +5,7 @@ from math import inf
 from multiprocessing.connection import Connection
 
 
-class Begin:
+class FaultTimer:
     """The beginning of the activity, and the time at which the fault is due.
 
     Args:

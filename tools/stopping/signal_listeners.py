@@ -11,21 +11,21 @@ from threading import current_thread, main_thread
 from typing import Any, Protocol
 from weakref import WeakSet
 
-from windup.tools.stopping.interrupts import WORDS
+from windup.tools.stopping.interrupts import SIGNAL_NAMES
 
 
-class Listener(Protocol):
+class SignalListener(Protocol):
     """An object that is notified of signals."""
 
-    def hear(self, by: str) -> None:
+    def on_signal(self, by: str) -> None:
         """Process a signal, given its name."""
         ...
 
 
-_listeners: "WeakSet[Listener]" = WeakSet()
+_listeners: "WeakSet[SignalListener]" = WeakSet()
 
 
-class _Overheard:
+class _NotifyingHandler:
     """A signal handler that notifies the listeners, and then calls the previous handler."""
 
     def __init__(self, before: Callable[[int, Any], Any]) -> None:
@@ -33,11 +33,11 @@ class _Overheard:
 
     def __call__(self, number: int, frame: Any) -> None:
         for listener in tuple(_listeners):
-            listener.hear(WORDS[signal.Signals(number)])
+            listener.on_signal(SIGNAL_NAMES[signal.Signals(number)])
         self.before(number, frame)
 
 
-def overhear(listener: Listener) -> None:
+def add_signal_listener(listener: SignalListener) -> None:
     """Notify a listener of the signals that this program handles, from now on.
 
     A signal without a handler ends the process at once, and the guardian takes over. Outside of the
@@ -46,18 +46,18 @@ def overhear(listener: Listener) -> None:
     _listeners.add(listener)
     if current_thread() is not main_thread():
         return
-    for number in WORDS:
+    for number in SIGNAL_NAMES:
         before = signal.getsignal(number)
-        if callable(before) and not isinstance(before, _Overheard):
-            signal.signal(number, _Overheard(before))
+        if callable(before) and not isinstance(before, _NotifyingHandler):
+            signal.signal(number, _NotifyingHandler(before))
 
 
-def forget(listener: Listener) -> None:
+def remove_signal_listener(listener: SignalListener) -> None:
     """Stop notifying a listener; after the last one, restore the previous handlers."""
     _listeners.discard(listener)
     if _listeners or current_thread() is not main_thread():
         return
-    for number in WORDS:
+    for number in SIGNAL_NAMES:
         handler = signal.getsignal(number)
-        if isinstance(handler, _Overheard):
+        if isinstance(handler, _NotifyingHandler):
             signal.signal(number, handler.before)

@@ -6,7 +6,7 @@ from typing import Any, Final
 from rich.table import Table
 
 from windup.hal.servo_bus.wiring import PROTOCOL_1
-from windup.tools.bringup.raw_answers import Strange
+from windup.tools.bringup.raw_answers import InvalidAnswer
 from windup.tools.bringup.survey import Survey
 
 WIDE: Final = 78
@@ -49,7 +49,7 @@ def narrow_lines(rows: list[dict[str, Any]], width: int) -> Iterator[str]:
         yield from (f"id {row['id']}: {row['error']}" for row in rows if row["error"])
 
 
-def complaints(survey: Survey, url: str, missing: list[str]) -> Iterator[str]:
+def problems_found(survey: Survey, url: str, missing: list[str]) -> Iterator[str]:
     """Yield a line for each problem found."""
     for one in survey.unknown:
         numbers = " or ".join(f"{number} ({family})" for family, number in one["numbers"].items())
@@ -58,21 +58,21 @@ def complaints(survey: Survey, url: str, missing: list[str]) -> Iterator[str]:
     for one in survey.protocol_1:
         at = "" if one["baud"] is None else f" at {one['baud']} baud"
         yield f"id {one['id']}{at}: {one['model']} {PROTOCOL_1}"
-    if survey.doubled:
-        ids = ", ".join(map(str, survey.doubled))
+    if survey.duplicate_ids:
+        ids = ", ".join(map(str, survey.duplicate_ids))
         yield (
             f"id {ids}: only broken answers: are there two servos with this id? "
             "Connect one of them alone, and give it another"
         )
     if survey.echo:
         yield f"{url} sends back what it is sent: switch the echo of the adapter off"
-    elif strange := [one for _, _, one in survey.strange if one.whole or one.id is None]:
-        yield f"something answers on {url} that is not understood (first bytes {_hex(strange[0])})"
+    elif invalid := [one for _, _, one in survey.invalid if one.whole or one.id is None]:
+        yield f"something answers on {url} that is not understood (first bytes {_hex(invalid[0])})"
     if missing:
         yield f"silent: {', '.join(missing)}"
-    if not (survey.servos or survey.unknown or survey.protocol_1 or survey.strange or survey.echo):
+    if not (survey.servos or survey.unknown or survey.protocol_1 or survey.invalid or survey.echo):
         yield f"nobody answers on {url}: is the servo power on, and this the right port?"
 
 
-def _hex(strange: Strange) -> str:
-    return f"{strange.data[:SHOWN].hex(' ')}{' ..' if len(strange.data) > SHOWN else ''}"
+def _hex(invalid: InvalidAnswer) -> str:
+    return f"{invalid.data[:SHOWN].hex(' ')}{' ..' if len(invalid.data) > SHOWN else ''}"
