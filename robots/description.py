@@ -147,7 +147,7 @@ class RobotDescription:
         steps = whole_steps(rate, self.timestep) if rate > 0.0 else None
         if steps is None:
             raise UsageError(
-                f"a rate of {rate:g} Hz is no whole number of physics steps of "
+                f"a rate of {rate:g} Hz is not a whole number of physics steps of "
                 f"{1e3 * self.timestep:g} ms; {self.rate_hz:g} Hz is"
             )
         return steps

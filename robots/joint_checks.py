@@ -47,7 +47,7 @@ def _without_limits(robot: RobotFile, hinges: tuple[str, ...]) -> Iterator[Mista
     lost = [joint.name for joint in robot.joint if joint.name in hinges and _unlimited(joint)]
     if lost:
         names = ", ".join(repr(name) for name in lost)
-        extended = 'mode = "extended" where a Dynamixel X shall turn on and on'
+        extended = 'mode = "extended" for a Dynamixel X that turns further'
         yield (
             f"joint {names}",
             "no range in the MJCF, and no lower and upper here: give both, at most one turn "

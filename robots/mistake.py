@@ -21,4 +21,4 @@ def check_unique(key: str, kind: str, names: Iterable[str]) -> Iterator[Mistake]
     names = list(names)
     for name in dict.fromkeys(names):
         if names.count(name) > 1:
-            yield key, f"{kind} {name!r} stands there twice"
+            yield key, f"{kind} {name!r} is given twice"

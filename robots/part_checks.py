@@ -24,7 +24,7 @@ def foot_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
     yield from check_unique("foot", "sensor", [name for foot in feet for name in foot.sensors])
     if len(feet) == 2 and feet[0].side and feet[0].side == feet[1].side:
         one, other = (foot.name for foot in feet)
-        yield "foot", f"{one!r} and {other!r} are both {feet[0].side}: give them a side"
+        yield "foot", f"{one!r} and {other!r} are both {feet[0].side}: give each its `side`"
     for foot, entry in zip(feet, robot.foot, strict=True):
         key = f"foot {foot.name!r}"
         bodies, sites = mjcf.names(model, "body"), mjcf.names(model, "site")

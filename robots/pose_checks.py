@@ -31,7 +31,7 @@ def stop_mistakes(robot: RobotFile) -> Iterator[Mistake]:
     if fall.way and fall.reach is None:
         yield "fall.way", "needs fall.reach: how far outside its soles it can step, m"
     if fall.way and not robot.foot:
-        yield "fall.way", "needs a [[foot]]: where the soles are tells when it falls"
+        yield "fall.way", "needs a [[foot]]: falls are predicted from the positions of the soles"
     for way in fall.way:
         yield from check_known("fall.way.pose", "pose", way.pose, robot.poses)
 

@@ -116,7 +116,7 @@ class Twin:
             UsageError: The robot is fixed to the ground.
         """
         if self.robot.fixed:
-            raise UsageError(f"{self.robot.name} is fixed to the ground and cannot lie")
+            raise UsageError(f"{self.robot.name} is fixed to the ground and cannot be laid down")
         self.reset(pose, noise=noise, seed=seed)
         turn = np.random.default_rng([1, seed]).uniform(-np.pi, np.pi)
         level, around = np.empty(4), np.empty(4)

@@ -43,7 +43,7 @@ def _floor(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:
     solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
     if not robot.fixed and not (solid & (model.body_weldid[model.geom_bodyid] == 0)).any():
         plane = '<geom type="plane" size="0 0 0.05"/>'
-        yield f"no floor: the robot falls for ever; add {plane} to the <worldbody>"
+        yield f"no floor: the robot falls without end; add {plane} to the <worldbody>"
 
 
 def _points(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData) -> Iterator[str]:
@@ -58,7 +58,7 @@ def _points(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData)
         lowest = int(kinds[data.geom_xpos[geoms, 2].argmin()])
         if lowest in POINTS and np.isin(kinds, POINTS).sum() < 3:
             bears = "a box for its sole does"
-            yield f"foot {foot.name!r} stands on points, which bear no moment; {bears}"
+            yield f"foot {foot.name!r} stands on points, which cannot support a moment; {bears}"
 
 
 def _armature(robot: RobotDescription, model: mujoco.MjModel) -> Iterator[str]:

@@ -153,7 +153,7 @@ def test_robots_of_the_package_raise_no_doubts_about_feet_and_neighbours() -> No
 def test_no_floor_is_doubted(tmp_path: Path) -> None:
     plane = '<geom type="plane" size="0 0 0.05" contype="1" conaffinity="0"/>'
     folder = changed(tmp_path, QUADRUPED, "model.xml", plane, "")
-    assert "no floor: the robot falls for ever" in robot_warnings(load_robot(folder))[0]
+    assert "no floor: the robot falls without end" in robot_warnings(load_robot(folder))[0]
 
 
 def test_zero_armature_points_and_neighbours_are_doubted(tmp_path: Path) -> None:

@@ -110,7 +110,7 @@ class Diagnosis:
         """
         ticks = _last_run(reader.since())
         if not len(ticks):
-            raise TelemetryError(f"{reader.path}: no tick was written yet")
+            raise TelemetryError(f"{reader.path}: no tick has been written yet")
         return cls(reader.header, ticks, reader.ended, limits, now)
 
     def __post_init__(self) -> None:
@@ -228,7 +228,7 @@ class Diagnosis:
 
     def _judge_loop(self) -> None:
         if self.state == "dead":
-            what = f"process {self.header.pid} died without ending its run"
+            what = f"process {self.header.pid} died during its run"
             self._add_problem("loop", what, "torque may be on: switch it off with `windup stop`")
         elif self.state == "standing still":
             what = f"no tick for {self.silence:.1f} s"
@@ -254,14 +254,16 @@ class Diagnosis:
         for row in self.joints():
             name = row["name"]
             if row["alerts"]:
-                what = f"its servo signals: {', '.join(row['alerts'])}"
+                what = f"its servo reports: {', '.join(row['alerts'])}"
                 self._add_problem(name, what, "remove the cause before it shuts down")
             if row["age_max_s"] > limits.age:
                 what = f"silent for {row['age_max_s']:.2f} s (limit {limits.age:g} s)"
                 self._add_problem(name, what, "check its cable and power")
             if row["clamped_share"] > limits.clamped:
                 what = f"clamped in {row['clamped_share']:.0%} of the ticks"
-                self._add_problem(name, what, "ask for less, or widen its limits in robot.toml")
+                self._add_problem(
+                    name, what, "command smaller values, or widen its limits in robot.toml"
+                )
 
         for finding in self.findings:
             who = format_names(finding.joints) or finding.text.subject

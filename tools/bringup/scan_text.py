@@ -54,24 +54,27 @@ def problems_found(survey: Survey, url: str, missing: list[str]) -> Iterator[str
     for one in survey.unknown:
         numbers = " or ".join(f"{number} ({family})" for family, number in one["numbers"].items())
         at = "" if one["baud"] is None else f" at {one['baud']} baud"
-        yield f"id {one['id']}{at}: unknown model {numbers}; no servo of Windup's has this number"
+        yield f"id {one['id']}{at}: unknown model {numbers}; no supported servo has this number"
     for one in survey.protocol_1:
         at = "" if one["baud"] is None else f" at {one['baud']} baud"
         yield f"id {one['id']}{at}: {one['model']} {PROTOCOL_1}"
     if survey.duplicate_ids:
         ids = ", ".join(map(str, survey.duplicate_ids))
         yield (
-            f"id {ids}: only broken answers: are there two servos with this id? "
-            "Connect one of them alone, and give it another"
+            f"id {ids}: only corrupt answers: are there two servos with this id? "
+            "Connect one of them alone and change its id"
         )
     if survey.echo:
-        yield f"{url} sends back what it is sent: switch the echo of the adapter off"
+        yield f"{url} echoes all bytes sent: switch the echo of the adapter off"
     elif invalid := [one for _, _, one in survey.invalid if one.whole or one.id is None]:
-        yield f"something answers on {url} that is not understood (first bytes {_hex(invalid[0])})"
+        yield (
+            f"something answers on {url} with frames that no supported servo sends "
+            f"(first bytes {_hex(invalid[0])})"
+        )
     if missing:
         yield f"silent: {', '.join(missing)}"
     if not (survey.servos or survey.unknown or survey.protocol_1 or survey.invalid or survey.echo):
-        yield f"nobody answers on {url}: is the servo power on, and this the right port?"
+        yield f"no servo answers on {url}: is the servo power on, and this the right port?"
 
 
 def _hex(invalid: InvalidAnswer) -> str:

@@ -109,7 +109,7 @@ def twin_stack(
     What is odd about the twin's `world` nobody is told.
 
     Raises:
-        UsageError: The delay is no whole number of physics steps.
+        UsageError: The delay is not a whole number of physics steps.
     """
     _check_delay(delay, robot)
     twin = Twin(robot, delay=delay, world=world)

@@ -26,7 +26,7 @@ from windup.tools.terminal.say import say
 
 INTERRUPTED = "interrupted"
 """The reason of a run that somebody ended."""
-LAY = "it lay there before: put it on its feet"
+LAY = "it was already lying down: put it on its feet"
 """Why a run of a robot that had fallen before ends without a tick."""
 
 

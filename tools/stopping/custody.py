@@ -98,7 +98,7 @@ class Custody:
             return
         guardian.hand_over()
         logging.getLogger(__name__).warning(
-            "the guardian (process %d) has %s now: it goes on until torque has been read as off",
+            "the guardian (process %d) has %s now: it continues until torque has been read as off",
             guardian.pid,
             self._robot.name,
         )

@@ -18,7 +18,7 @@ from windup.hal.errors import UsageError
 SIGNAL_NAMES = {
     signal.SIGTSTP: "Ctrl-Z",
     signal.SIGQUIT: "Ctrl-\\",
-    signal.SIGHUP: "the end of its terminal",
+    signal.SIGHUP: "the end of the terminal",
     signal.SIGTERM: "SIGTERM",
     signal.SIGINT: "Ctrl-C",
 }
@@ -169,6 +169,6 @@ def check_not_interrupted() -> None:
     """
     if _stopped_by:
         raise UsageError(
-            f"{_stopped_by} has stopped this program: no torque comes on by itself any more; "
-            "call robot.arm() to go on all the same"
+            f"{_stopped_by} has stopped this program, so torque is not switched on automatically; "
+            "call robot.arm() to continue"
         )

@@ -30,7 +30,9 @@ class Running:
             UsageError: Another run is in progress.
         """
         if not self._lock.acquire(blocking=False):
-            raise UsageError("this robot is in a run already: wait until it is over, or stop() it")
+            raise UsageError(
+                "this robot is already running: wait for the end of the run, or call stop()"
+            )
         self.asked = ""
         self._thread = threading.current_thread()
         self._idle.clear()

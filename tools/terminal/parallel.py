@@ -102,7 +102,7 @@ class Workers:
                 yield futures[future], future.result()
         except BrokenProcessPool:
             raise WindupError(
-                "a worker process died (out of memory?); run again to go on"
+                "a worker process died (out of memory?); run the command again to continue"
             ) from None
 
     def say(self, text: str) -> None:

@@ -132,7 +132,7 @@ class ServoPty:
         """Send an order and return the answer; see `_hear`."""
         stdin = self._process.stdin
         if stdin is None or stdin.closed:
-            raise UsageError("these servos are closed; nothing can be asked of them any more")
+            raise UsageError("these servos are closed; open them again with servo_pty(...)")
         with suppress(BrokenPipeError):  # the answer says that the process has ended
             stdin.write(json.dumps(order) + "\n")
             stdin.flush()
@@ -163,7 +163,7 @@ class ServoPty:
         status = self._process.poll()
         if status is None:
             return f"runs, and has not answered for {PATIENCE:g} s; is the machine busy?"
-        return f"has ended (exit status {status}); see its last words"
+        return f"has ended (exit status {status}); see its output"
 
     def __enter__(self) -> Self:
         return self

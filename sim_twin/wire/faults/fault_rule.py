@@ -111,7 +111,7 @@ class FaultRule:
         there = {id for name, ids in buses.items() if self.bus in (None, name) for id in ids}
         if self.ids is not None and not self.ids & there:
             given, known = (", ".join(map(str, sorted(ids))) for ids in (self.ids, there))
-            raise UsageError(f"faults: {self.kind}: nobody has id {given}; there are {known}")
+            raise UsageError(f"faults: {self.kind}: no servo has id {given}; ids here: {known}")
 
     def hits(self, rng: random.Random, bus: str, identifier: int, now: float) -> bool:
         """Return whether it hits the answer that a device begins at `now`, s."""
@@ -156,7 +156,7 @@ def make_rule(
         times: list[float] = []
     else:
         if rate is not None:
-            raise UsageError(f"faults: {kind}: a rate or a time, not both")
+            raise UsageError(f"faults: {kind}: give a rate or a time, not both")
         times = sorted(at) if isinstance(at, Sequence) else [at]
     for time in times:
         check_number(f"faults: {kind}: at", time, TIME)
@@ -167,7 +167,9 @@ def make_rule(
         takers = ", ".join(other for other in KINDS if SECONDS[other])
         raise UsageError(f"faults: {kind}: takes no seconds; these do: {takers}")
     if ids is not None and kind in REQUESTS:
-        raise UsageError(f"faults: {kind}: takes no ids; it concerns all that the host sends")
+        raise UsageError(
+            f"faults: {kind}: takes no ids; it applies to all bytes that the host sends"
+        )
     who = None if ids is None else frozenset(ids)
     return FaultRule(kind, rate or 0.0, times, who, bus, lasts, **_extra(kind, extra))
 

@@ -122,7 +122,7 @@ class Faults(FaultMethods):
                 what = (
                     "IMU" if rule.kind in OF_IMU else "OpenCR" if rule.kind == "button" else "servo"
                 )
-                raise UsageError(f"faults: {rule.kind}: there is no {what} that it could hit")
+                raise UsageError(f"faults: {rule.kind}: there is no {what} in this world")
 
     def noise(self, count: int) -> bytes:
         """Return random bytes, as received in a collision or at a wrong baud rate."""

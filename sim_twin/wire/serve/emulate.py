@@ -84,7 +84,7 @@ class Emulator:
             UsageError: The text is wrong or cannot happen in this world, or the emulator has ended.
         """
         if not self._running:
-            raise UsageError("the emulator has ended; nothing can be injected any more")
+            raise UsageError("the emulator has ended; faults cannot be injected")
         rules = parse_rules(text, live=True)
         self.world.faults.check(rules)
         self._queue_call(partial(self._begin, rules))
@@ -209,7 +209,7 @@ def emulate(
         events: See `Emulator`.
     """
     if (pty is None) == (tcp is None):
-        raise UsageError("an emulated bus needs a --pty PATH or a --tcp PORT, one of them")
+        raise UsageError("give either --pty PATH or --tcp PORT")
     emulator = Emulator(build_world(address), journal, events)
     with contextlib.closing(emulator):
         serial = [name for name, bus in emulator.world.buses.items() if bus.chip is None]

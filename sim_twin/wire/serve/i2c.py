@@ -31,7 +31,7 @@ class TwinI2c:
         chip = self._bus.chip
         if chip is None:
             release_world(self._running)
-            raise UsageError(f"{url}: there is no chip on I2C in this world")
+            raise UsageError(f"{url}: this world has no chip on I2C")
         self._chip: Bno055Registers = chip
         self._open = True
 

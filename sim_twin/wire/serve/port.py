@@ -90,7 +90,9 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
                 target = min(limit, max(schedule.next, now))
             if target == math.inf or now > patience:
                 if not isinstance(clock, RealClock) and limit == math.inf:
-                    raise serial.SerialException("a read without a time-out, and nobody answers")
+                    raise serial.SerialException(
+                        "a read without a time-out on a bus without an answer would never return"
+                    )
                 target = min(target, now + 0.001)
             clock.wait_until(target)
             self._check_plug()

@@ -151,7 +151,7 @@ def difference(path: Path, lines: list[TraceLine], at: int, got: TraceLine | Non
     text = [f"{path}, line {at + 2}: {_first_difference(wanted, got)}"]
     text += [f"  {line}" for line in lines[max(0, at - CONTEXT) : at]]
     text.append(f"- {wanted}" if wanted else "- (the trace ends)")
-    text.append(f"+ {got}" if got else "+ (nothing happens any more)")
+    text.append(f"+ {got}" if got else "+ (no further bytes)")
     if wanted and got and wanted.data != got.data:
         before = str(wanted)[: -len(wanted.data.hex(" "))]
         text.append(" " * (2 + len(before) + 3 * _place(wanted.data, got.data)) + "^^")
@@ -160,7 +160,7 @@ def difference(path: Path, lines: list[TraceLine], at: int, got: TraceLine | Non
 
 def _first_difference(wanted: TraceLine | None, got: TraceLine | None) -> str:
     if wanted is None or got is None:
-        return "more happened than" if wanted is None else "less happened than" + " recorded"
+        return f"{'more' if wanted is None else 'fewer'} bytes than recorded"
     for name in ("bus", "direction", "baud"):
         if getattr(wanted, name) != getattr(got, name):
             return f"{name} {getattr(got, name)!r}, recorded {getattr(wanted, name)!r}"

@@ -24,7 +24,7 @@ def build_world(address: Address, environment: "Environment | None" = None) -> B
         UsageError: The robot has no servos on a bus, or `environment` is given without a twin.
     """
     if environment is not None and (address.robot == BENCH or address.physics != "mujoco"):
-        raise UsageError("only a robot with physics=mujoco has another ground or plant")
+        raise UsageError("ground and plant options need a robot with physics=mujoco")
     world = bench_world(address) if address.robot == BENCH else _robot(address, environment)
     for swing in parse_hands(address.hand):
         world.hand(swing)

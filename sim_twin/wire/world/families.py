@@ -69,7 +69,7 @@ def make_servo(
     name = full_name(name)
     spoken = PROTOCOLS[name]
     if protocol not in (None, spoken):
-        raise UsageError(f"servo {name} {identifier} speaks {spoken}, its bus {protocol}")
+        raise UsageError(f"servo {name} {identifier} uses protocol {spoken}, its bus {protocol}")
     sheet = servo_model(name)
     registers = {} if return_delay < 0 else {"return_delay_time": return_delay}
     try:
@@ -82,4 +82,4 @@ def make_servo(
         mx = dynamixel1_tables.MODELS[name]
         return Dynamixel1Servo(mx, sheet, shaft, identifier, baud, supply, **registers)
     except (KeyError, ValueError):
-        raise UsageError(f"servo {name} {identifier} has no baud rate of {baud}") from None
+        raise UsageError(f"servo {name} {identifier} does not support {baud} baud") from None

@@ -35,7 +35,9 @@ def robot_world(address: Address, environment: Environment | None = None) -> Bus
     """
     robot, environment = load_robot(address.robot), environment or Environment()
     if not any(robot.servos):
-        raise UsageError(f"robot {robot.name!r} has no servos on a wire; 'windup walk' takes it")
+        raise UsageError(
+            f"robot {robot.name!r} has no servos on a bus; omit the port to run its twin"
+        )
     builder = WorldBuilder(address)
     supply = address.supply or environment.plant.supply or robot.drive.supply
     twin = None

@@ -188,7 +188,7 @@ def test_bus_errors_alerts_and_clamps_are_told(bench: Bench) -> None:
     bench.ticks(50, first=51)
     assert bench.problems() == [
         "bus: 'no answer' 9 times in 100 ticks",
-        "l_knee: its servo signals: overload",
+        "l_knee: its servo reports: overload",
         "l_knee: clamped in 20% of the ticks",
     ]
     assert bench.diagnose().result()["clamps"] == {"position": 20}

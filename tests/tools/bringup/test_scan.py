@@ -92,14 +92,15 @@ def foreign(request: bytes) -> bytes:
 
 
 def test_silence_asks_for_the_power() -> None:
-    assert said(survey(lambda _: b"")).startswith("nobody answers on URL: is the servo power on")
+    assert said(survey(lambda _: b"")).startswith("no servo answers on URL: is the servo power on")
 
 
 def test_an_answer_that_is_none_is_no_silence() -> None:
     found = survey(clone)
     assert found.servos == []
     assert said(found) == (
-        "something answers on URL that is not understood (first bytes ff ff fd 00 01 08 00 55 ..)"
+        "something answers on URL with frames that no supported servo sends "
+        "(first bytes ff ff fd 00 01 08 00 55 ..)"
     )
 
 
@@ -107,7 +108,7 @@ def test_an_unknown_model_is_called_by_its_number() -> None:
     found = survey(foreign)
     assert "id 1 at 1000000 baud: unknown model " in said(found)
     assert "784 (Feetech STS)" in said(found)
-    assert "nobody answers" not in said(found)
+    assert "no servo answers" not in said(found)
 
 
 def test_somebody_who_talks_unasked_is_heard() -> None:
@@ -142,7 +143,7 @@ def test_protocol_1_is_looked_for_at_the_baud_rates_of_the_x_series_too() -> Non
 def test_an_echo_is_called_one_and_nothing_is_made_of_it() -> None:
     found = survey(lambda request: request)
     assert found.servos == []
-    assert said(found) == "URL sends back what it is sent: switch the echo of the adapter off"
+    assert said(found) == "URL echoes all bytes sent: switch the echo of the adapter off"
 
 
 def test_two_servos_with_one_id_are_named(shell: Windup) -> None:
@@ -150,7 +151,7 @@ def test_two_servos_with_one_id_are_named(shell: Windup) -> None:
     ran = shell("scan", url, "--baud", BAUD, "--json", "-")
     assert ran.status == 3
     assert (ran.json["doubled_ids"], [row["id"] for row in ran.json["servos"]]) == ([2], [1])
-    assert "id 2: only broken answers: are there two servos with this id?" in " ".join(
+    assert "id 2: only corrupt answers: are there two servos with this id?" in " ".join(
         ran.err.split()
     )
 

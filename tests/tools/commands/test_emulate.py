@@ -103,7 +103,7 @@ def test_what_was_unplugged_can_be_opened_again(tmp_path: Path) -> None:
         (["op3", "--tcp", "0", "--supply", "0"], "give more than 0, up to 60 V"),
         (["op3", "--tcp", "0", "--hand", "r_knee"], "a joint, degrees and seconds, as in"),
         (["op3", "--tcp", "0", "--hand", "r_kne:20:3s"], "did you mean 'r_knee'"),
-        ([STS, "--pty", "/dev/null"], "/dev/null exists and is not the link of an emulator"),
+        ([STS, "--pty", "/dev/null"], "/dev/null exists and is not the link of an emulated port"),
     ],
 )
 def test_what_cannot_be_is_said(

@@ -33,7 +33,7 @@ def press(number: int = signal.SIGINT, times: int = 1) -> None:
     [
         (signal.SIGINT, "Ctrl-C"),
         (signal.SIGTERM, "SIGTERM"),
-        (signal.SIGHUP, "the end of its terminal"),
+        (signal.SIGHUP, "the end of the terminal"),
         (signal.SIGQUIT, "Ctrl-\\"),
         (signal.SIGTSTP, "Ctrl-Z"),
     ],

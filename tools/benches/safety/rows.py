@@ -75,7 +75,9 @@ KILLS = (
         robots=X_SERVOS,
     ),
     Ending("SIGKILL program, adapter", kill("program", "emulator"), KILLED, end="unknown"),
-    Ending("SIGKILL planner, guardian", kill("planner", "guardian"), (1, 3), activities=("walking",)),
+    Ending(
+        "SIGKILL planner, guardian", kill("planner", "guardian"), (1, 3), activities=("walking",),
+    ),
     Ending(
         "SIGKILL planner, adapter", kill("planner", "emulator"), (1, 3), end="unknown",
         activities=("walking",),

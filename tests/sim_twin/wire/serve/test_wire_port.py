@@ -27,7 +27,7 @@ from windup.sim_twin.wire.world.bus_world import BenchPhysics, BusWorld
         ("twin://bench?faults=drop:2", "rate 2: give 0 .. 1"),
         ("twin://bench?bus=legs", "unknown bus 'legs'"),
         ("twin://opp3", "unknown robot 'opp3'; did you mean 'op3'?"),
-        ("twin://human", "has no servos on a wire"),
+        ("twin://human", "has no servos on a bus"),
     ],
 )
 def test_a_wrong_address_says_what_is_wrong(url: str, message: str) -> None:
@@ -85,7 +85,7 @@ def test_writes_only_schedule_and_reads_let_time_pass() -> None:
 def test_a_read_that_can_never_end_is_an_error() -> None:
     with open_host() as host:
         host.port.timeout = None
-        with pytest.raises(serial.SerialException, match="nobody answers"):
+        with pytest.raises(serial.SerialException, match="without an answer"):
             host.port.read(1)
 
 

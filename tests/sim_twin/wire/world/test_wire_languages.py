@@ -67,8 +67,11 @@ def test_buses_of_different_languages_do_not_wait_for_each_other() -> None:
 @pytest.mark.parametrize(
     ("url", "message"),
     [
-        ("twin://bench?servos=STS3215:1,AX-12A:2", "AX-12A 2 speaks dynamixel1, its bus feetech"),
-        ("twin://bench?servos=STS3215:1&baud=2000000", "has no baud rate of 2000000"),
+        (
+            "twin://bench?servos=STS3215:1,AX-12A:2",
+            "AX-12A 2 uses protocol dynamixel1, its bus feetech",
+        ),
+        ("twin://bench?servos=STS3215:1&baud=2000000", "does not support 2000000 baud"),
         ("twin://bench?servos=STS3216:1", "unknown servo model 'STS3216'; did you mean"),
     ],
 )
