@@ -125,7 +125,7 @@ class RobotDescription:
     @cached_property
     def health(self) -> HealthLevels:
         """Warning and stop levels of the joints' health."""
-        return HealthLevels.of(self.servos, self.drive.supply, self.safety.given())
+        return HealthLevels.of(self.servos, self.drive.supply, self.safety.configured())
 
     def spec(self) -> mujoco.MjSpec:
         """Return a new parse of the MJCF, completed with sensors; callers may change it."""

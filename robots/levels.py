@@ -35,14 +35,14 @@ class JointLevels(TomlRecord, frozen=True):
     load: Level | None = None
     stall: Level | None = None
 
-    def given(self) -> dict[HealthKind, tuple[float, float]]:
+    def configured(self) -> dict[HealthKind, tuple[float, float]]:
         """Return the warning and stop levels that are given, by kind."""
         levels = {kind: getattr(self, kind.name.lower()) for kind in HealthKind}
         return {kind: (level.warn, level.stop) for kind, level in levels.items() if level}
 
     def mistakes(self, supply: float) -> Iterator[tuple[str, str]]:
         """Yield key and message of each mistake, for a robot with a supply of `supply` V."""
-        for kind, (warn, stop) in self.given().items():
+        for kind, (warn, stop) in self.configured().items():
             key, low = kind.name.lower(), kind is HealthKind.SUPPLY_LOW
             if warn < stop if low else warn > stop:
                 yield key, f"the warning at {warn:g} would come after the stop at {stop:g}"

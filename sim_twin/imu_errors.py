@@ -61,7 +61,7 @@ class ImuErrors:
         self._filter = LowPass(kind.lag, timestep)
         bandwidth = 0.5 * pi * kind.cutoff
         self._noise = np.repeat(kind.noise, 3) * bandwidth**0.5
-        self._unit = np.repeat(kind.unit, 3)
+        self._unit = np.repeat(kind.count_size, 3)
         self.bias = self._random.normal(size=6) * np.repeat(kind.bias, 3)
 
     def filter_motion(self, motion: Array) -> None:

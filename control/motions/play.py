@@ -73,7 +73,7 @@ class GraphPlayer:
         self._begun = True
         nothing = np.zeros((1, 0))
         state = PolicyInput(nothing, nothing, nothing, nothing, observation.contacts[None])
-        return self._hold.at(self._tracker.step(state, dt)[0])
+        return self._hold.with_position(self._tracker.step(state, dt)[0])
 
     @property
     def finished(self) -> bool:

@@ -80,7 +80,7 @@ class StagedPlayer:
         goal = self._goal
         if self._upright is not None:
             goal = self._upright.apply(goal, observation, self._state)
-        return self._hold.at(goal)
+        return self._hold.with_position(goal)
 
     def _enter(self, state: int) -> None:
         self._state, self._elapsed, self._from = state, 0.0, self._goal

@@ -133,7 +133,7 @@ class Stepper:
         goals = self._before + part * (self.stance - self._before)
         self._height = self._above + part * (self.footing.height - self._above)
         self._pose(goals, now)
-        return self._hold.at(goals)
+        return self._hold.with_position(goals)
 
     @property
     def stepping_foot(self) -> int:

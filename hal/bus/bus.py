@@ -67,7 +67,7 @@ class Bus:
         The latency and echo measured on the old port are assumed for the new one.
         """
         before = self.port
-        port.echoes, port.known = before.echoes, before.known
+        port.echoes, port.is_measured = before.echoes, before.is_measured
         port.latency = max(port.latency, before.latency)
         self.port = port
         self.exchange.move_to(port)

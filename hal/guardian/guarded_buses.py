@@ -48,7 +48,7 @@ def guarded_bus(
             id: (float(hot), float(low)) for id, hot, low in zip(readout.ids, *stop, strict=True)
         }
     return GuardedBus(
-        url=stable_url(port.place),
+        url=stable_url(port.absolute_url),
         baud=port.baud,
         servos={mount.id: mount.model.name for mount in readout.mounts},
         crouch={id: int(np.rint(count)) for id, count in counts.items()},

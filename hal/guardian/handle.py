@@ -65,16 +65,16 @@ class Guardian:
         self._locks: list[AdapterLock] = []
         try:
             with ExitStack() as undo:  # also on Ctrl-C, which the program may catch
-                told = tuple(self._lock(record, undo) for record in buses)
+                locked = tuple(self._lock(record, undo) for record in buses)
                 show_traceback_on_signal()
                 with signals_blocked():
-                    self._process = launch([record.lock for record in told])
-                    undo.callback(self._give_up)
+                    self._process = launch([record.lock for record in locked])
+                    undo.callback(self._kill)
                 assert self._process.stdin is not None
                 self._pipe: IO[bytes] = self._process.stdin
                 self._descriptor = self._pipe.fileno()
                 self._read_at = time.monotonic()
-                self._start(GuardianOrder(host=os.getpid(), policy=policy, buses=told, hold=hold))
+                self._start(GuardianOrder(host=os.getpid(), policy=policy, buses=locked, hold=hold))
                 undo.pop_all()
         except OSError as error:
             raise HardwareError(NOT_STARTED.format(f" ({error_text(error)})")) from error
@@ -99,7 +99,7 @@ class Guardian:
         Raises:
             GuardianError: The guardian has died, or does not read its heartbeats.
         """
-        self._say(FIRST if first else TICK)
+        self._send(FIRST if first else TICK)
 
     def idle(self) -> None:
         """Send a heartbeat while no loop runs; the next one is due within 1 s.
@@ -107,7 +107,7 @@ class Guardian:
         Raises:
             GuardianError: The guardian has died, or does not read its heartbeats.
         """
-        self._say(IDLE)
+        self._send(IDLE)
 
     def release(self) -> None:
         """End the guardian after torque has been read back as off."""
@@ -144,14 +144,14 @@ class Guardian:
         os.set_blocking(self._descriptor, False)
         answer = self._process.stdout
         assert answer is not None
-        heard = select.poll()
-        heard.register(answer, select.POLLIN)
-        ready = heard.poll(START_TIME * 1e3) and os.read(answer.fileno(), 1)
+        poller = select.poll()
+        poller.register(answer, select.POLLIN)
+        ready = poller.poll(START_TIME * 1e3) and os.read(answer.fileno(), 1)
         answer.close()
         if ready != READY:
             raise HardwareError(NOT_STARTED.format(""))
 
-    def _give_up(self) -> None:
+    def _kill(self) -> None:
         """Kill a guardian that has not begun to watch; torque is still off."""
         with signals_blocked():
             self._process.kill()
@@ -160,7 +160,7 @@ class Guardian:
                 with suppress(OSError):
                     pipe.close()
 
-    def _say(self, byte: bytes) -> None:
+    def _send(self, byte: bytes) -> None:
         now = time.monotonic()
         if not self._unread():
             self._read_at = now

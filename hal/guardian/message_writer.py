@@ -11,7 +11,7 @@ from threading import Thread
 LINES = 100
 """Maximum number of queued lines; beyond it the oldest are dropped."""
 
-Say = Callable[[str], None]
+WriteLine = Callable[[str], None]
 
 
 class MessageWriter:

@@ -97,12 +97,12 @@ def watch(orders: int, host: Host) -> tuple[StopReason, bool]:
     Returns:
         The reason, and whether the first motion was complete; before it, the pose is arbitrary.
     """
-    heard, patience, moved = time.monotonic(), MAX_SILENCE[IDLE], False
+    last_heartbeat, allowed, moved = time.monotonic(), MAX_SILENCE[IDLE], False
     poller = select.poll()
     for descriptor in (orders, *host.descriptors):
         poller.register(descriptor, select.POLLIN)
     while True:
-        due = heard + patience
+        due = last_heartbeat + allowed
         wait = max(due - time.monotonic(), 0.0)
         ready = [descriptor for descriptor, _ in poller.poll(wait * 1e3)]
         if orders in ready:
@@ -111,11 +111,11 @@ def watch(orders: int, host: Host) -> tuple[StopReason, bool]:
                 return ending, moved
             if ticks := data.replace(IDLE, b""):
                 moved = ticks.endswith(TICK)
-            heard, patience = time.monotonic(), MAX_SILENCE[data[-1:]]
+            last_heartbeat, allowed = time.monotonic(), MAX_SILENCE[data[-1:]]
         elif ready:
             return StopReason.DIED, moved
         elif time.monotonic() - due > STALL_TIME:
-            heard, patience = time.monotonic(), STALL_GRACE
+            last_heartbeat, allowed = time.monotonic(), STALL_GRACE
         else:
             return StopReason.SILENT, moved
 

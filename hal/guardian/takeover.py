@@ -8,7 +8,7 @@ from windup.hal.error_text import error_text
 from windup.hal.guardian.crouch import crouch
 from windup.hal.guardian.hold import hold
 from windup.hal.guardian.host import Host
-from windup.hal.guardian.message_writer import Say
+from windup.hal.guardian.message_writer import WriteLine
 from windup.hal.guardian.order import GuardianOrder
 from windup.hal.guardian.remote_bus import RemoteBus
 from windup.hal.port.lock import LockNote, write_note
@@ -29,8 +29,8 @@ class Takeover:
         write_line: Writes a message without blocking.
     """
 
-    def __init__(self, order: GuardianOrder, say: Say) -> None:
-        self._order, self._tell = order, say
+    def __init__(self, order: GuardianOrder, write_line: WriteLine) -> None:
+        self._order, self._write_line = order, write_line
         # Built now, so that an invalid order fails at the start and not during a takeover.
         self._buses = [RemoteBus(record) for record in order.buses]
         self._said = time.monotonic()
@@ -108,7 +108,7 @@ class Takeover:
     def _say(self, text: str) -> None:
         """Write a message; a failure to write is ignored."""
         with suppress(Exception):
-            self._tell(text)
+            self._write_line(text)
 
     def _note(self, doing: str) -> None:
         for record in self._order.buses:

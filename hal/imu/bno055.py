@@ -243,6 +243,6 @@ BNO055 = ImuKind(
     cutoff=32.0,  # the gyroscope's; the accelerometer's is 62.5 Hz (table 3-4)
     noise=(radians(0.014), 150e-6 * STANDARD_GRAVITY),  # typical, table 0-2
     bias=(radians(0.3), 0.05),  # our guess of the residual after its continuous calibration
-    unit=(GYRO, ACCELERATION),
+    count_size=(GYRO, ACCELERATION),
     driver=Bno055,
 )

@@ -199,7 +199,7 @@ BNO08X_RVC = ImuKind(
     cutoff=CUTOFF,
     noise=(0.0, 0.0),  # below the resolution of a frame
     bias=(0.0, 0.05),  # our guess of the residual after calibration at rest
-    unit=(DEGREE / PERIOD, ACCELERATION),
+    count_size=(DEGREE / PERIOD, ACCELERATION),
     gyroscope=False,
     driver=_mounted,
 )

@@ -83,6 +83,6 @@ OPENCR = ImuKind(
     cutoff=CUTOFF,
     noise=(radians(0.01), 300e-6 * STANDARD_GRAVITY),  # data sheet of the MPU9250, tables 1 and 2
     bias=(radians(0.3), 0.05),  # our guess of the residual after calibration at rest
-    unit=(GYRO, ACCELERATION),
+    count_size=(GYRO, ACCELERATION),
     axes=IN_OP3.axes,
 )

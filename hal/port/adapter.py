@@ -56,7 +56,7 @@ def measure_adapter(
             unchanged.
         heartbeat: Called before each request.
     """
-    if port.known:
+    if port.is_measured:
         return
     echoed = 0
     for silent, probe in enumerate(probes, 1):
@@ -78,7 +78,7 @@ def measure_adapter(
 
 def _note(port: Port, times: list[float]) -> None:
     """Set the latency from the second longest time, so that one outlier is ignored."""
-    port.known = True
+    port.is_measured = True
     longest = sorted(times)[-2:][0]
     if longest > LATENCY + SETUP:
         port.latency = max(port.latency, MARGIN * longest)

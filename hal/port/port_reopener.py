@@ -33,7 +33,7 @@ class PortReopener:
         self._baud, self._opener = baud, opener
         self.opened = opener(url, baud)
         self.port: Port | None = self.opened
-        self._url = stable_url(self.opened.place)
+        self._url = stable_url(self.opened.absolute_url)
         self._next = 0.0
 
     @property

@@ -30,7 +30,7 @@ class BusReadout:
         bus: The bus.
         ids: Ids of the servos.
         rows: Indices of their joints in the robot.
-        where: The same as an index, a slice if possible.
+        row_index: The same as an index, a slice if possible.
         mounts: Mounts of the servos.
         names: Names of their joints; () if unknown.
         reads: Selects the read of each cycle.
@@ -38,9 +38,9 @@ class BusReadout:
         imu: The last bytes read from the OpenCR, or None before any.
         imu_fresh: Whether they came with the last answers.
         answered: (servos,) bool: servos that answered the last cycle, plausibly or not.
-        calm: Whether all servos answered plausibly, and none signals an error or lacks torque.
-        slack: (servos,) bool: servos whose registers showed no torque, or a restart; cleared by
-            `TorqueCheck`.
+        all_well: Whether all servos answered plausibly, and none signals an error or lacks torque.
+        without_torque: (servos,) bool: servos whose registers showed no torque, or a restart;
+            cleared by `TorqueCheck`.
         goals: Sync write of goal positions, counts.
         gains: Gain register, rows of its servos, and the sync write, for each gain register.
     """
@@ -59,12 +59,12 @@ class BusReadout:
         self.rows: npt.NDArray[np.intp] = np.array(rows, dtype=np.intp)
         # Usually there is one bus in joint order; a slice is faster than an index array.
         whole = self.rows.tolist() == list(range(len(self.ids)))
-        self.where: Rows = slice(len(self.ids)) if whole else self.rows
+        self.row_index: Rows = slice(len(self.ids)) if whole else self.rows
         self.names, self.board = tuple(names), board
         self.imu: bytes | None = None
-        self.imu_fresh = self.calm = False
+        self.imu_fresh = self.all_well = False
         self.answered: Mask = np.zeros(len(self.ids), dtype=bool)
-        self.slack: Mask = np.zeros(len(self.ids), dtype=bool)
+        self.without_torque: Mask = np.zeros(len(self.ids), dtype=bool)
         self._volt = bus.family.registers["present_voltage"].unit
         self._volts: deque[tuple[float, float]] = deque(maxlen=100)
         family = bus.family
@@ -102,7 +102,7 @@ class BusReadout:
         """
         asked, servos = self._asked, len(self.ids)
         answered = self.bus.exchange.collect()
-        self.calm = False
+        self.all_well = False
         if not answered.size:
             self.imu_fresh = False
             self.answered = np.zeros(servos, dtype=bool)
@@ -120,7 +120,7 @@ class BusReadout:
 
     def errors(self, error: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
         """Return the (servos,) error bytes of this bus from those of all joints (n,)."""
-        return error[self.where]
+        return error[self.row_index]
 
     def lowest_supply(self) -> float:
         """Return the lowest supply read in the last `LOWEST_OF` s, V; NaN without a reading."""
@@ -141,7 +141,7 @@ class BusReadout:
     def reset(self) -> None:
         """Reset the plausibility check and the fast read: servos may have moved, or be missing."""
         self.reads.broken_chain = True
-        self.calm = self.imu_fresh = False
+        self.all_well = self.imu_fresh = False
         if self.check is not None:
             self.check.reset()
 
@@ -157,12 +157,12 @@ class BusReadout:
             valid = self.check.accept(position, velocity, valid, self.bus.port.clock.now())
             complete = bool(valid.all())
             self.bus.exchange.errors["implausible"] = self.check.rejected
-        rows: Rows = self.where
+        rows: Rows = self.row_index
         if not complete:
             rows = self.rows[valid]
             position, velocity, effort = position[valid], velocity[valid], effort[valid]
             errors = errors[valid]
-        self.calm = complete and not errors.any()
+        self.all_well = complete and not errors.any()
         counts[0, rows] = position
         counts[1, rows] = velocity
         counts[2, rows] = effort
@@ -190,5 +190,5 @@ class BusReadout:
         for counts, restarted in extra.torque:
             gone = fresh & ((counts == 0) | (counts == restarted))
             if gone.any():
-                self.slack[extra.rows] |= gone
-                self.calm = False
+                self.without_torque[extra.rows] |= gone
+                self.all_well = False

@@ -41,9 +41,11 @@ class JointReadings:
         """Collect and timestamp the answers on one bus; error bytes are stored in `error` (n,)."""
         valid: Mask = link.collect(self._counts, self._health, error)
         readout = link.readout
-        self.answered[readout.where if readout.calm else readout.rows[valid]] = link.heard
+        self.answered[readout.row_index if readout.all_well else readout.rows[valid]] = (
+            link.answered_at
+        )
         if readout.imu_fresh:
-            self._imu_at = link.heard
+            self._imu_at = link.answered_at
 
     def read_health(self, links: Sequence[BusConnection]) -> None:
         """Read voltage and temperature of all servos now; later the cycle refreshes them."""

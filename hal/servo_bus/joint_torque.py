@@ -63,9 +63,9 @@ class JointTorque:
         return self._joined(links, states)
 
     def _check_armable(self, links: Sequence[BusConnection]) -> None:
-        if barred := [link.bus.port.url for link in links if link.barred]:
+        if lost_ports := [link.bus.port.url for link in links if link.goals_withheld]:
             raise HardwareError(
-                f"{', '.join(barred)} was disconnected after arming; arm again with `rearm`"
+                f"{', '.join(lost_ports)} was disconnected after arming; arm again with `rearm`"
             )
         if lost := self.losses(links):
             raise HardwareError(
@@ -114,4 +114,4 @@ class JointTorque:
 def _worth_waiting(links: Sequence[BusConnection], states: Sequence[TorqueState]) -> bool:
     """Return whether a servo that is not read back as off may still answer this process."""
     pairs = zip(links, states, strict=True)
-    return any(not state.all_off and not link.gone_for_good for link, state in pairs)
+    return any(not state.all_off and not link.port_is_lost_for_good for link, state in pairs)

@@ -188,11 +188,11 @@ class ServoBackend:
 
     def collect(self) -> Observation:
         """Wait for the state last requested and return it."""
-        calm = True
+        all_well = True
         for link in self.links:
             self.readings.collect(link, self._alerts.errors)
-            calm &= link.calm
-        if not calm or self._alerts.now:
+            all_well &= link.all_well
+        if not all_well or self._alerts.now:
             self._see_to(self.links)
         if self.board is not None:
             self.button.update(self.links)
@@ -270,7 +270,7 @@ class ServoBackend:
         self.set_torque(False)
         self.configure()
         for link in self.links:
-            link.rearmed()
+            link.end_withholding()
         self.lost_joints = {}
         return self.set_torque(True)
 
@@ -285,7 +285,7 @@ class ServoBackend:
     def _see_to(self, links: Sequence[BusConnection]) -> None:
         """Update losses, watchdogs and alerts after silence, an error or a loss of torque."""
         self.lost_joints = self._torque.losses(links)
-        if any(link.check.woke for link in links):
+        if any(link.check.watchdog_may_have_fired for link in links):
             self.watchdog_trips += sum(link.clear_watchdogs() for link in links)
         self._alerts.update(links)
 

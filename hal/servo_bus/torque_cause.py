@@ -78,10 +78,10 @@ def find_torque_losses(
     """
     bus, family = readout.bus, readout.bus.family
     back = _read_back(bus, [suspect.id for suspect in suspects])
-    slack = [id for id, seen in back.items() if _is_slack(family, seen)]
-    if slack and family.dialect.weak:  # one corrupt frame in 256 passes the checksum
-        again = _read_back(bus, slack)
-        back = {id: seen for id, seen in back.items() if id not in slack} | again
+    without_torque = [id for id, seen in back.items() if _is_without_torque(family, seen)]
+    if without_torque and family.dialect.weak:  # one corrupt frame in 256 passes the checksum
+        again = _read_back(bus, without_torque)
+        back = {id: seen for id, seen in back.items() if id not in without_torque} | again
     unclear = [suspect for suspect in suspects if _is_unclear(family, back.get(suspect.id))]
     found: dict[int, Loss | None] = dict.fromkeys(back)
     for suspect in unclear:
@@ -120,7 +120,7 @@ def _read_back(bus: Bus, ids: Sequence[int]) -> dict[int, Readback]:
     return found
 
 
-def _is_slack(family: Family, seen: Readback) -> bool:
+def _is_without_torque(family: Family, seen: Readback) -> bool:
     """Return whether a servo has no torque, or has restarted and may move to an old goal."""
     mark = family.mark
     again = mark is not None and seen.values.get(mark.name) == mark.restarted
@@ -129,7 +129,9 @@ def _is_slack(family: Family, seen: Readback) -> bool:
 
 def _is_unclear(family: Family, seen: Readback | None) -> bool:
     """Return whether more registers are needed to judge the torque of a servo that answered."""
-    return seen is not None and (_is_slack(family, seen) or bool(seen.bits & family.weakening))
+    return seen is not None and (
+        _is_without_torque(family, seen) or bool(seen.bits & family.weakening)
+    )
 
 
 def _evidence(

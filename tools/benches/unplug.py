@@ -107,7 +107,7 @@ def watch(backend: ServoBackend, times: int) -> UnplugCounts:
     hold = JointCommand.hold(backend.joints, backend.read().joints.position)
     since = due = backend.clock.now()
     with console.status("") as status:
-        while seen.lost < times or gone or link.barred:
+        while seen.lost < times or gone or link.goals_withheld:
             due = max(due + PERIOD, backend.clock.now())
             backend.clock.wait_until(due)
             backend.read()
@@ -117,7 +117,7 @@ def watch(backend: ServoBackend, times: int) -> UnplugCounts:
                 status.update(f"pulled out {seen.lost} times of {times}")
                 if not gone:
                     _examine(backend, hold, seen)
-            elif link.barred and not gone:
+            elif link.goals_withheld and not gone:
                 with suppress(PortError, HardwareError):  # it may be unplugged meanwhile
                     seen.armed += bool(backend.rearm().all_on)
                     since = due

@@ -165,7 +165,7 @@ class Session(Armed):
             self._get_ready(down, asked)
             self.loop = LoopReport()
             end = RunEnd(
-                asked=asked, wishes=[wanted, lambda: self._running.asked],
+                asked=asked, wishes=[wanted, lambda: self._running.requested_by],
                 fallen=lambda: self.fallen, loop=self.loop, opened=self.backend.clock.now(),
                 seconds=seconds, until=until, down=down, approach=approach, protected=protected,
             )  # fmt: skip

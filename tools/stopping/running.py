@@ -13,11 +13,11 @@ class Running:
     """A context that is active during a run; only one run is possible at a time.
 
     Attributes:
-        asked: Name of the request to end the run; "" if there is none.
+        requested_by: Name of the request to end the run; "" if there is none.
     """
 
     def __init__(self) -> None:
-        self.asked = ""
+        self.requested_by = ""
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
         self._idle = threading.Event()
@@ -33,7 +33,7 @@ class Running:
             raise UsageError(
                 "this robot is already running: wait for the end of the run, or call stop()"
             )
-        self.asked = ""
+        self.requested_by = ""
         self._thread = threading.current_thread()
         self._idle.clear()
 
@@ -51,7 +51,7 @@ class Running:
         """Request the end of the run at its next tick; return its thread, or None without a run."""
         thread = self._thread
         if thread is not None:
-            self.asked = self.asked or by
+            self.requested_by = self.requested_by or by
         return thread
 
     def end_and_wait(self, by: str) -> bool:

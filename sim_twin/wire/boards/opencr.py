@@ -227,7 +227,7 @@ class OpenCr:
     def control(self, now: float, dt: float) -> None:
         """Do nothing: there is no control loop."""
 
-    def watch(self, now: float, dt: float, heard: float) -> None:
+    def watch(self, now: float, dt: float, last_instruction: float) -> None:
         """Do nothing: there is no watchdog."""
 
     def set_supply(self, volts: float, now: float) -> None:

@@ -47,7 +47,7 @@ def yaw_pitch_roll(quaternion: Array) -> tuple[float, float, float]:
     )
 
 
-class Mute:
+class SendOnlyProtocol:
     """The protocol of a bus whose only device ignores all bytes from the host."""
 
     id_at, length_at, data_at, tail = 2, 2, 3, 1

@@ -93,7 +93,7 @@ class Bus:
         schedule: The schedule of the world.
         timing: Latencies.
         faults: The faults; set by the world.
-        heard: Time at which the last valid instruction ended, s.
+        last_instruction: Time at which the last valid instruction ended, s.
         began: Time at which the host's last bytes began, s.
         counts: Numbers of "frames" executed, frames "dropped", and "collisions".
         plugged: Whether the host's adapter is plugged in.
@@ -117,7 +117,7 @@ class Bus:
         self.name, self.devices, self.protocol, self.schedule = name, devices, protocol, schedule
         self.timing = timing or Timing()
         self.faults: FaultInjector | None = None
-        self.heard = self.began = 0.0
+        self.last_instruction = self.began = 0.0
         self.counts = {"frames": 0, "dropped": 0, "collisions": 0}
         self.plugged, self.plugs = True, 0
         self.spoken: int | None = None
@@ -172,15 +172,15 @@ class Bus:
             self.tap(">", self._baud, burst)
         wrong = self.fault_injector
         if wrong is not None and wrong.echoes(self) and self.plugged:
-            self.inbox.append(Burst(burst.start, burst.byte, bytearray(burst.data)))
+            self.inbox.append(Burst(burst.start, burst.byte_time, bytearray(burst.data)))
         for at in range(0, len(burst.data), PIECE):
             for item in self.protocol.feed(bytes(burst.data[at : at + PIECE])):
                 if item.noise:
                     self.protocol.execute(item, self)
                     self.counts["dropped"] += 1
                     continue
-                end = start + (at + item.end) * burst.byte
-                self.schedule.add(end, partial(self._hear, item, burst, end))
+                end = start + (at + item.end) * burst.byte_time
+                self.schedule.add(end, partial(self._execute_frame, item, burst, end))
 
     @property
     def backlog(self) -> float:
@@ -262,20 +262,22 @@ class Bus:
         """Send status packets without gaps and faults, at the host's baud rate."""
         self.put(b"".join(data), self._baud)
 
-    def put(self, data: bytes, baud: int, got: bytes | None = None, held: float = 0.0) -> float:
+    def put(
+        self, data: bytes, baud: int, received: bytes | None = None, held_until: float = 0.0
+    ) -> float:
         """Send bytes of a device now; return when they end, s.
 
         Args:
             data: The bytes that the device sends.
             baud: Baud rate of the device.
-            got: The bytes that the host receives instead, if a fault changed them.
-            held: Time before which the host's adapter does not deliver them, s.
+            received: The bytes that the host receives instead, if a fault changed them.
+            held_until: Time before which the host's adapter does not deliver them, s.
         """
-        burst = Burst(self.schedule.now, BITS / baud, bytearray(data), held=held)
+        burst = Burst(self.schedule.now, BITS / baud, bytearray(data), held_until=held_until)
         end = burst.end
         self.counts["collisions"] += self._traffic.add(burst, self.schedule.now, self._noise)
-        if got is not None:
-            burst.data[:] = got
+        if received is not None:
+            burst.data[:] = received
         if abs(baud - self._baud) > BAUD_TOLERANCE * self._baud:
             burst.data[:] = self._noise(len(burst.data))
         if burst.data and self.plugged:
@@ -284,10 +286,10 @@ class Bus:
                 self.tap("<", baud, burst)
         return end
 
-    def _hear(self, item: ParsedItem, burst: Burst, end: float) -> None:
+    def _execute_frame(self, item: ParsedItem, burst: Burst, end: float) -> None:
         """Execute a frame of the host, unless a collision has corrupted it since."""
         if end > burst.corrupted or not self.protocol.execute(item, self):
             self.counts["dropped"] += 1
             return
         self.counts["frames"] += 1
-        self.heard = end
+        self.last_instruction = end

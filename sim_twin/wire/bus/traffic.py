@@ -32,8 +32,8 @@ class Traffic:
                 continue
             collisions += 1
             for burst in (old, new):
-                first = max(0, int((start - burst.start) / burst.byte))
-                last = min(len(burst.data), math.ceil((end - burst.start) / burst.byte))
+                first = max(0, int((start - burst.start) / burst.byte_time))
+                last = min(len(burst.data), math.ceil((end - burst.start) / burst.byte_time))
                 if last > first:
                     burst.data[first:last] = noise(last - first)
                     burst.corrupted = min(burst.corrupted, start)

@@ -135,7 +135,7 @@ class Faults(FaultMethods):
         for rule in [*self._rules]:
             if rule.kind in REQUESTS:
                 continue
-            if not rule.hits(self._dice, bus.name, identifier, now) or not fate.got:
+            if not rule.hits(self._dice, bus.name, identifier, now) or not fate.received:
                 continue  # a packet that is lost already cannot be hit again
             if rule.kind in EVENTS:
                 self._begin(rule, bus, identifier, fate)
@@ -161,7 +161,7 @@ class Faults(FaultMethods):
             return
         self._apply(rule, bus, identifier)
         if rule.kind in SILENCING:
-            fate.got = b""
+            fate.received = b""
 
     def _script(self, rule: FaultRule) -> None:
         """Schedule the timed events of a fault."""

@@ -31,11 +31,11 @@ class TraceLine(NamedTuple):
     bus: str
     direction: str
     baud: int
-    held: float
+    held_until: float
     data: bytes
 
     def __str__(self) -> str:
-        held = f"{self.held:.9f}" if self.held else "-"
+        held = f"{self.held_until:.9f}" if self.held_until else "-"
         return (
             f"{self.time:.9f} {self.bus} {self.direction} {self.baud} {held} {self.data.hex(' ')}"
         )
@@ -46,7 +46,7 @@ class TraceLine(NamedTuple):
             self[1:4] == other[1:4]
             and self.data == other.data
             and abs(self.time - other.time) < SAME_TIME
-            and abs(self.held - other.held) < SAME_TIME
+            and abs(self.held_until - other.held_until) < SAME_TIME
         )
 
 
@@ -101,7 +101,9 @@ class Tap:
 
     def _take(self) -> None:
         bus, direction, baud, burst = self._pending.popleft()
-        self.handle(TraceLine(burst.start, bus, direction, baud, burst.held, bytes(burst.data)))
+        self.handle(
+            TraceLine(burst.start, bus, direction, baud, burst.held_until, bytes(burst.data))
+        )
 
 
 class Recorder(Tap):

@@ -62,7 +62,9 @@ class TraceReplay:
         """Schedule the recorded bytes up to the host's next ones."""
         while self._at < len(self.lines) and self.lines[self._at].direction == TO_HOST:
             line = self.lines[self._at]
-            burst = Burst(line.time, BITS / line.baud, bytearray(line.data), held=line.held)
+            burst = Burst(
+                line.time, BITS / line.baud, bytearray(line.data), held_until=line.held_until
+            )
             self.bus.schedule.add(line.time, partial(self.bus.inbox.append, burst))
             self._at += 1
 

@@ -200,8 +200,8 @@ class ByteServo(ABC):
         if self.driving:
             self.loop.update(now, dt)
 
-    def watch(self, now: float, dt: float, heard: float) -> None:
-        """Update temperature and protection, periodically; `heard` is unused without a watchdog."""
+    def watch(self, now: float, dt: float, last_instruction: float) -> None:
+        """Update temperature and protection, periodically; there is no watchdog."""
         if not self.powered:
             return
         loop = self.loop

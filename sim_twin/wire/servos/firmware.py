@@ -123,12 +123,12 @@ class Firmware:
         if self.driving:
             self.loop.update(now, dt)
 
-    def watch(self, now: float, dt: float, heard: float) -> None:
-        """Check watchdog and health, periodically; `heard` is the last instruction's time, s."""
+    def watch(self, now: float, dt: float, last_instruction: float) -> None:
+        """Check watchdog and health, periodically; `last_instruction` is a time, s."""
         if not self.powered:
             return
         timeout = self.registers.memory[98]
-        if 0 < timeout < 128 and self.driving and now - heard > timeout * WATCHDOG_UNIT:
+        if 0 < timeout < 128 and self.driving and now - last_instruction > timeout * WATCHDOG_UNIT:
             self._trip(now)
         before = self.health.errors
         self.health.watch(dt, self.loop.shaft.torque, self.driving)

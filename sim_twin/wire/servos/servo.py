@@ -229,9 +229,9 @@ class Servo:
         """Run one step of the control loop; needed while `busy`."""
         self.firmware.control(now, dt)
 
-    def watch(self, now: float, dt: float, heard: float) -> None:
-        """Check watchdog and health, periodically; `heard` is the last instruction's time, s."""
-        self.firmware.watch(now, dt, heard)
+    def watch(self, now: float, dt: float, last_instruction: float) -> None:
+        """Check watchdog and health, periodically; `last_instruction` is a time, s."""
+        self.firmware.watch(now, dt, last_instruction)
 
     def set_supply(self, volts: float, now: float) -> None:
         """Change the supply voltage, V; at 0 V the servo is off, and boots when powered again."""

@@ -188,15 +188,15 @@ class TwinPhysics:
 
     A robot without torque would fall before its host has connected, so it is held: the base, and
     each joint whose servo has not been driven yet, keep their pose until all servos have been
-    driven once. From then on it is free, unless `again` is set: then it is held again whenever no
-    servo is driven, in its present pose or, if it has fallen, in its initial one.
+    driven once. From then on it is free, unless `hold_again` is set: then it is held again whenever
+    no servo is driven, in its present pose or, if it has fallen, in its initial one.
 
     Attributes:
         twin: The twin.
         driven: (n,) bool: whether the servo of this joint has been driven.
         held: Whether the robot is held now.
         stays_held: Whether the base stays held for ever, whatever the servos do.
-        again: Whether the robot is held again when none of its servos is driven any more.
+        hold_again: Whether the robot is held again when none of its servos is driven any more.
         jammed: (n,) bool: whether the joint is blocked.
         shafts: The horns of the servos.
     """
@@ -204,7 +204,7 @@ class TwinPhysics:
     twin: Twin
     held: bool = True
     stays_held: bool = False
-    again: bool = False
+    hold_again: bool = False
     shafts: Sequence[TwinShaft] = ()
 
     def __post_init__(self) -> None:
@@ -221,10 +221,10 @@ class TwinPhysics:
 
     def step(self) -> None:
         """Advance by one step."""
-        if self.held or self.again:
+        if self.held or self.hold_again:
             prm = self.twin.model.actuator_gainprm
             driven = (prm[:, KP] != 0.0) | (prm[:, KD] != 0.0)
-            self._take_or_let_go(driven)
+            self._hold_or_release(driven)
         self.twin.step(1)
         if self.held:
             self._hold()
@@ -237,7 +237,7 @@ class TwinPhysics:
         data.qpos[at] = self._qpos[at] = angle
         data.qvel[self.twin.indices.dofs[joint]] = rate
 
-    def _take_or_let_go(self, driven: Mask) -> None:
+    def _hold_or_release(self, driven: Mask) -> None:
         """Release the robot when all servos have been driven; hold it again when it is limp."""
         if self.held:
             self.driven |= driven

@@ -130,7 +130,7 @@ class BusWorld:
         now, step = self.physics_time, self.physics.timestep
         if now - self._watched >= WATCH_PERIOD - EPSILON:
             for bus, device in self._devices:
-                device.watch(now, now - self._watched, bus.heard)
+                device.watch(now, now - self._watched, bus.last_instruction)
             self._watched = now
         for _, device in self._devices:
             if device.busy:

@@ -56,7 +56,7 @@ def robot_world(address: Address, environment: Environment | None = None) -> Bus
     physics = TwinPhysics(
         twin,
         held=address.hold != "no",
-        again=address.hold == "always",
+        hold_again=address.hold == "always",
         shafts=[shaft for shaft in shafts if isinstance(shaft, TwinShaft)],
     )
     if isinstance(source, TwinImu):

@@ -4,7 +4,7 @@ from windup.hal.imu.bno08x_rvc import BNO08X_RVC
 from windup.hal.imu.kind import ImuKind
 from windup.hal.imu.mounting import STRAIGHT
 from windup.sim_twin.wire.boards.rvc import BAUD as RVC_BAUD
-from windup.sim_twin.wire.boards.rvc import Mute, start_rvc
+from windup.sim_twin.wire.boards.rvc import SendOnlyProtocol, start_rvc
 from windup.sim_twin.wire.bus.bus import Bus, WireProtocol
 from windup.sim_twin.wire.bus.timing import Timing
 from windup.sim_twin.wire.device import Device
@@ -45,7 +45,7 @@ class WorldBuilder:
 
     def imu(self, source: ImuSource, kind: ImuKind = BNO08X_RVC) -> None:
         """Add the port of an IMU that streams by itself, or the I2C bus of one that is polled."""
-        bus = self.bus(IMU, [], Mute(), RVC_BAUD)
+        bus = self.bus(IMU, [], SendOnlyProtocol(), RVC_BAUD)
         bus.imu = FaultyImu(source, self.schedule)
         felt: ImuSource = bus.imu
         if kind.mounting.axes != STRAIGHT:

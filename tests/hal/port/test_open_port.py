@@ -78,7 +78,7 @@ def test_a_port_is_found_from_every_working_folder(
     monkeypatch.chdir(tmp_path)
     with open_port("bus") as port:
         monkeypatch.chdir("/")
-        assert (port.url, port.place) == ("bus", str(tmp_path / "bus"))
+        assert (port.url, port.absolute_url) == ("bus", str(tmp_path / "bus"))
 
 
 def test_a_port_whose_number_select_does_not_take_is_read_all_the_same(

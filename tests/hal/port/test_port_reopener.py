@@ -139,5 +139,5 @@ def test_a_device_is_found_again_from_another_working_folder(
     replug = PortReopener("bus", 1_000_000, open_port)
     monkeypatch.chdir("/")
     replug.lose(0.0)
-    assert replug.again(1.0) is not None
+    assert replug.try_reopen(1.0) is not None
     replug.close()

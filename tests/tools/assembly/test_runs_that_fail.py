@@ -92,7 +92,7 @@ def test_nan_in_mid_walk_is_status_1(shell: Windup, monkeypatch: pytest.MonkeyPa
 
         def broken(observation: Observation, dt: float) -> JointCommand:
             command = step(observation, dt)
-            return command.at(np.full(20, np.nan)) if observation.time > 0.5 else command
+            return command.with_position(np.full(20, np.nan)) if observation.time > 0.5 else command
 
         walker.step = broken  # type: ignore[method-assign]
         return walker
