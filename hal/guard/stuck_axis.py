@@ -41,7 +41,7 @@ class StuckAxis:
     def update(
         self, sample: Sequence[float], now: float
     ) -> tuple[FindingText, float, float] | None:
-        """Return (saying, rate, limit) if an axis is stuck in a new (6,) sample, else None.
+        """Return (text, rate, limit) if an axis is stuck in a new (6,) sample, else None.
 
         The first three values are the angular rates, rad/s.
         """

@@ -11,8 +11,9 @@ class AnswerFaultMethods(ABC):
     """Adds faults of status packets in transit, and of the bytes that the host sends.
 
     Each method adds one fault and returns the object, so that calls can be chained:
-    ``bus.faults.drop(rate=0.02, ids=[7]).corrupt(rate=0.001)``. All take the keywords of `Who`:
-    ``rate`` (share of the answers, 0 to 1; 0.01 by default) or ``at`` (s), ``ids``, ``bus``.
+    ``bus.faults.drop(rate=0.02, ids=[7]).corrupt(rate=0.001)``. All take
+    the keywords of `TargetKeywords`: ``rate`` (share of the answers, 0 to 1; 0.01 by default) or
+    ``at`` (s), ``ids``, ``bus``.
     """
 
     @abstractmethod

@@ -13,9 +13,9 @@ from windup.hal.port.lock import AdapterLock, LockNote, wait_while_guarded, writ
 
 ACTING = """
 import sys, time
-from windup.hal.port.lock import AdapterLock, Note, write_note
-number = AdapterLock(sys.argv[1]).take()
-write_note(number, Note(1234, "switching the torque off"))
+from windup.hal.port.lock import AdapterLock, LockNote, write_note
+number = AdapterLock(sys.argv[1]).acquire()
+write_note(number, LockNote(1234, "switching the torque off"))
 print("taken", flush=True)
 time.sleep(0.3)
 """

@@ -97,12 +97,12 @@ def runs(number: int) -> bool:
 HOST = """
 import sys, time
 from windup.hal.guardian.handle import Guardian
-from windup.hal.guardian.order import Charge
+from windup.hal.guardian.order import GuardedBus
 from tests.hal.guardian.two_servos import IDS, switch_on
 path, policy, hold = sys.argv[1:]
 crouch = {1: 1800, 2: 2300}
-charge = Charge(url=path, baud=1_000_000, servos=IDS, crouch=crouch)
-guardian = Guardian([charge], policy, float(hold))
+record = GuardedBus(url=path, baud=1_000_000, servos=IDS, crouch=crouch)
+guardian = Guardian([record], policy, float(hold))
 switch_on(path)
 guardian.tick()
 print(guardian.pid, flush=True)
