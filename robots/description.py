@@ -167,7 +167,7 @@ def load_robot(name_or_path: str | Path) -> RobotDescription:
         return known
     robot = _load(folder)
     if mjcf.is_self_contained(robot.model_path):
-        _loaded.keep(folder, (folder / FILE, robot.model_path), robot)
+        _loaded.put(folder, (folder / FILE, robot.model_path), robot)
     return robot
 
 

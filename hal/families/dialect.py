@@ -111,7 +111,7 @@ class Protocol2(ServoProtocol):
         slots = PING_SLOT * protocol2.LAST_ID + 2.0 * port.latency
         longest = (protocol2.LAST_ID + 1) * (protocol2.OVERHEAD + 3)
         stream = port.read(longest, port.clock.now() + slots + longest * 10.0 / port.baud)
-        answers = {item.id: item.params for item in protocol2.salvage(stream)}
+        answers = {item.id: item.params for item in protocol2.find_packets(stream)}
         return [
             Answered(id, int.from_bytes(params[:2], "little"), params[2])
             for id, params in sorted(answers.items())
@@ -247,4 +247,4 @@ def _pongs(port: Port, id: int) -> set[int]:
     wire = (len(request) + protocol1.OVERHEAD) * BITS / port.baud
     deadline = port.clock.now() + wire + 2.0 * port.latency + PING_TIME
     stream = port.read(protocol1.OVERHEAD, deadline)
-    return {item.id for item in protocol1.salvage(stream, {}, (0,))}
+    return {item.id for item in protocol1.find_packets(stream, {}, (0,))}

@@ -14,7 +14,7 @@ from windup.hal.errors import GuardianError, PortError, UnsafeCommandError
 from windup.hal.geometry.smooth_step import smooth_step
 from windup.hal.guard.arming import check_health, read_fresh
 from windup.hal.guard.limits import SafetyLimits, StopPolicy
-from windup.hal.guard.presence import Presence
+from windup.hal.guard.presence_check import PresenceCheck
 from windup.hal.guard.torque_off_check import check_torque_off
 from windup.hal.guard.watch import HealthWatch
 from windup.hal.heartbeat import no_heartbeat
@@ -63,7 +63,7 @@ class GuardedBackend:
         self._buffer = np.empty_like(self.limits.lower)
         # An infinite value is not clamped where the limit is infinite, so it is checked for.
         self._unlimited = not np.isfinite([self.limits.lower, self.limits.upper]).all()
-        self._presence = Presence(self.backend)
+        self._presence = PresenceCheck(self.backend)
         # Bound methods, looked up once: they are called on every tick.
         self._send: Callable[[JointCommand], JointCommand] = self.backend.write
         self._collect: Callable[[], Observation] = self.backend.collect

@@ -12,8 +12,8 @@ from windup.hal.command import JointCommand
 from windup.hal.errors import UnhealthyError
 from windup.hal.guard.finding import FINDING_TEXTS, Finding
 from windup.hal.guard.levels import HealthKind, HealthLevels
+from windup.hal.guard.load_monitor import LoadMonitor
 from windup.hal.guard.persistence import SIGNS, Persistence
-from windup.hal.guard.strain import Strain
 from windup.hal.joints import Array, Joints, Mask
 from windup.hal.observation import JointState, Observation
 
@@ -36,7 +36,7 @@ class HealthWatch:
         self.levels, self._names, self._look = levels, joints.names, look
         # Rows in the order of `HealthKind`, signed so that more is worse.
         self._values: Array = np.full((len(HealthKind), len(joints)), np.nan)
-        self._strain = Strain(
+        self._load_monitor = LoadMonitor(
             levels.torque, self._values[HealthKind.LOAD], self._values[HealthKind.STALL]
         )
         self._persistence = Persistence(levels)
@@ -61,11 +61,11 @@ class HealthWatch:
         if 0.0 <= passed < PERIOD:
             return None
         if passed < 0.0:  # the clock was reset
-            self._strain.reset()
+            self._load_monitor.reset()
             self._persistence.reset()
         self._time = now
         _health(joints, self._values)
-        self._strain.update(joints, command, min(abs(passed), MAX_STEP))
+        self._load_monitor.update(joints, command, min(abs(passed), MAX_STEP))
         due = self._persistence.due(self._values, now, joints.health_age)
         if due is None:
             return None

@@ -62,7 +62,7 @@ class AdapterLock:
         Raises:
             PortError: Another process holds it.
         """
-        if not self.free():
+        if not self.try_acquire():
             note = self.note()
             self.close()
             raise PortError(
@@ -72,7 +72,7 @@ class AdapterLock:
         write_note(self._descriptor, LockNote(os.getpid()))
         return self._descriptor
 
-    def free(self) -> bool:
+    def try_acquire(self) -> bool:
         """Take the lock if it is free, and return whether this process holds it now."""
         while True:
             try:
@@ -113,7 +113,7 @@ def wait_while_guarded(url: str) -> None:
         return
     lock, said = AdapterLock(url), -MESSAGE_PERIOD
     try:
-        while not lock.free():
+        while not lock.try_acquire():
             note = lock.note()
             if not note.doing:
                 return  # an armed run; opening the port will report it

@@ -57,8 +57,8 @@ class BlockRead(CyclicRead):
         if self.fast:
             if stream.count(FAST_HEAD) > 1:
                 return []  # the stream contains an earlier answer
-            return list(protocol2.salvage_fast(stream, self.spans[0].size, self._rows))
-        return list(protocol2.salvage(stream, self.longest))
+            return list(protocol2.find_fast_packets(stream, self.spans[0].size, self._rows))
+        return list(protocol2.find_packets(stream, self.longest))
 
     def _lay_out(self, answer: bytes) -> None:
         """Compute the layout from an `answer` whose error bytes, parameters and CRCs are 0."""

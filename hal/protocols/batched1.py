@@ -56,7 +56,7 @@ class StatusRead(CyclicRead):
         return bool((sums == FRAME_SUM).all())
 
     def _statuses(self, stream: bytes) -> list[Status]:
-        return list(protocol1.salvage(stream, self._sizes, self._others))
+        return list(protocol1.find_packets(stream, self._sizes, self._others))
 
 
 class ChainRead(CyclicRead):
@@ -97,7 +97,7 @@ class ChainRead(CyclicRead):
 
     def _statuses(self, stream: bytes) -> list[Status]:
         sizes = {span.id: span.size for span in self.spans}
-        return list(protocol1.salvage(stream, sizes))
+        return list(protocol1.find_packets(stream, sizes))
 
 
 def sync_read(spans: Sequence[Span]) -> StatusRead:

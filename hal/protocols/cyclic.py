@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from windup.hal.joints import Mask
 from windup.hal.protocols.protocol2 import Span, Status
-from windup.hal.protocols.reply_order import in_order, newest
+from windup.hal.protocols.reply_order import current_replies, in_order
 
 NO_SERVO = -1
 """Id given to a reply that does not match any requested span."""
@@ -82,7 +82,7 @@ class CyclicRead(ABC):
                     self.valid.fill(True)
                     self.complete, self.doubted = True, frozenset()
                 return self.valid
-        self._salvage(stream)
+        self._decode_found(stream)
         return self.valid
 
     @abstractmethod
@@ -97,14 +97,14 @@ class CyclicRead(ABC):
     def _statuses(self, stream: bytes) -> Iterable[Status]:
         """Return the valid replies in a stream that may contain other bytes."""
 
-    def _salvage(self, stream: bytes) -> None:
+    def _decode_found(self, stream: bytes) -> None:
         """Decode the valid replies of a stream that may contain an echo of the request."""
         self.valid.fill(False)
         stream = stream.replace(self.request, b"")
         found = self._told_apart(self._statuses(stream))
         self.doubted = frozenset()
         if self.owed:
-            sure = newest(found, self._rows, self.owed)
+            sure = current_replies(found, self._rows, self.owed)
             if not sure:
                 self.doubted = frozenset(item.id for item in found if item.id in self._rows)
             found = sure

@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from windup.hal.protocols.protocol2 import Status
 
 
-def newest(
+def current_replies(
     items: Sequence[Status], rows: Mapping[int, int], owed: Mapping[int, int]
 ) -> list[Status]:
     """Return the replies that certainly do not belong to an earlier request.
@@ -63,7 +63,7 @@ def _asked(items: Sequence[Status], rows: Mapping[int, int]) -> list[int]:
 
 
 def in_order(items: Sequence[Status], rows: Mapping[int, int]) -> list[Status]:
-    """Return the replies that came once and in order; for the arguments see `newest`.
+    """Return the replies that came once and in order; for the arguments see `current_replies`.
 
     A reply is in order if at least as many ids were asked before it as frames came before it, the
     same holds after it, and between it and the other accepted replies. If there are several longest

@@ -54,7 +54,7 @@ class JointReadings:
 
     def observe(self, now: float, links: Sequence[BusConnection]) -> Observation:
         """Return the observation for the time `now`, s."""
-        position, velocity, torque = self._units.si(self._counts)
+        position, velocity, torque = self._units.to_si(self._counts)
         voltage, temperature, measured = self._health.copy()
         answered = self.answered
         if self._couplings:

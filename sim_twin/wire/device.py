@@ -20,7 +20,7 @@ class Device(Protocol):
         ...
 
     @property
-    def shadow(self) -> int:
+    def secondary_id(self) -> int:
         """Secondary id, whose instructions it executes without answering; 253 and up: none."""
         ...
 

@@ -145,7 +145,7 @@ class Diagnosis:
     @property
     def slowness(self) -> Slowness:
         """Late ticks and plans over the ring."""
-        missed, plans, late = (int(self.change(name)) for name in COUNTERS)
+        missed, plans, late = (int(self.growth(name)) for name in COUNTERS)
         return Slowness(
             self.header.rate_hz,
             ticks=len(self.ticks),
@@ -159,26 +159,26 @@ class Diagnosis:
         """Share of the ticks that were late."""
         return self.slowness.missed_share
 
-    def change(self, name: str) -> Any:
+    def growth(self, name: str) -> Any:
         """Return the growth of a counter over the ring."""
         return self.newest[name] - self.ticks[0][name]
 
     def bus_errors(self) -> dict[str, int]:
         """Return the number of bus errors by kind, over the ring."""
-        return {k: int(n) for k, n in zip(self.header.errors, self.change("errors"), strict=True)}
+        return {k: int(n) for k, n in zip(self.header.errors, self.growth("errors"), strict=True)}
 
     def clamps(self) -> dict[str, int]:
         """Return the number of commands changed by each clamp, over the ring."""
-        return {k: int(n) for k, n in zip(self.header.clamps, self.change("clamps"), strict=True)}
+        return {k: int(n) for k, n in zip(self.header.clamps, self.growth("clamps"), strict=True)}
 
     def driver_clamps(self) -> dict[str, int]:
         """Return the number of commands changed by each clamp of the driver, over the ring."""
-        counts = self.change("driver_clamps")
+        counts = self.growth("driver_clamps")
         return {k: int(n) for k, n in zip(self.header.driver_clamps, counts, strict=True)}
 
     def joints(self) -> list[dict[str, Any]]:
         """Return one row per joint: present values, largest age and share of clamped ticks."""
-        ages, clamped = self.ticks["age"].max(axis=0), self.change("clamped") / len(self.ticks)
+        ages, clamped = self.ticks["age"].max(axis=0), self.growth("clamped") / len(self.ticks)
         columns = zip(
             self.header.joints,
             ages,

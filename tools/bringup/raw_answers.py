@@ -75,5 +75,5 @@ def _is_answer(family: Family, id: int, data: bytes) -> bool:
 
 
 def _frames(family: Family, data: bytes) -> list[Status]:
-    salvage = protocol1.salvage if family.dialect.weak else protocol2.salvage
-    return list(salvage(data))
+    find_packets = protocol1.find_packets if family.dialect.weak else protocol2.find_packets
+    return list(find_packets(data))

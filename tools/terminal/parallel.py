@@ -105,7 +105,7 @@ class Workers:
                 "a worker process died (out of memory?); run the command again to continue"
             ) from None
 
-    def say(self, text: str) -> None:
+    def set_status(self, text: str) -> None:
         """Set the status text of the progress bar."""
         self._progress.update(self._bar, said=text)
 

@@ -106,7 +106,7 @@ class OpenCr:
         return self.registers.memory[3]
 
     @property
-    def shadow(self) -> int:
+    def secondary_id(self) -> int:
         """No secondary id."""
         return 255
 

@@ -155,8 +155,8 @@ class Bus:
         self._by_id.clear()
         for device in self.devices:
             self._by_id.setdefault(device.identifier, []).append(device)
-            if device.shadow < 253 and device.shadow != device.identifier:
-                self._by_id.setdefault(device.shadow, []).append(device)
+            if device.secondary_id < 253 and device.secondary_id != device.identifier:
+                self._by_id.setdefault(device.secondary_id, []).append(device)
 
     # The host's side
 

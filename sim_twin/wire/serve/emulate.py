@@ -67,7 +67,7 @@ class Emulator:
     def connect(self, bus: str, make: Callable[[], Link]) -> None:
         """Connect a bus to the link that `make` makes, now and after each unplugging."""
         self.outlets.append(BusOutlet(self.world.bus(bus), make))
-        self.outlets[-1].settle()
+        self.outlets[-1].update_link()
 
     def stop(self) -> None:
         """End `run`; signal handlers and threads may call this."""
@@ -147,7 +147,7 @@ class Emulator:
         world.step()
         for outlet in self.outlets:
             if outlet.bus.plugged is (outlet.link is None):
-                outlet.settle()
+                outlet.update_link()
         self._watcher.update(now)
         return True
 

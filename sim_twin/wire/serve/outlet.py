@@ -39,7 +39,7 @@ class BusOutlet:
     sent: float = -math.inf
     waiting: bytearray = field(default_factory=bytearray)
 
-    def settle(self) -> None:
+    def update_link(self) -> None:
         """Open or close the link, according to whether the bus is plugged in."""
         if self.bus.plugged and self.link is None:
             self.link = self.make()

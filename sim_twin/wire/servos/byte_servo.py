@@ -40,7 +40,7 @@ class ByteServo(ABC):
         torque_on: Whether torque is enabled.
         powered: Whether it has a supply voltage.
         temperature: Temperature of its motor, degrees C.
-        floor: Lowest temperature of the motor, set by a heat fault, degrees C.
+        minimum_temperature: Lowest temperature of the motor, set by a heat fault, degrees C.
         errors: Bits of the error byte of its status packets.
     """
 
@@ -62,7 +62,7 @@ class ByteServo(ABC):
         self.model, self.table, self.loop = name, table, loop
         self.torque_on = False
         self.powered = True
-        self.temperature, self.floor = AMBIENT, -math.inf
+        self.temperature, self.minimum_temperature = AMBIENT, -math.inf
         self.errors = 0
         self._ready = 0.0
         self._strained = 0.0
@@ -86,7 +86,7 @@ class ByteServo(ABC):
         return self.table.get("id")
 
     @property
-    def shadow(self) -> int:
+    def secondary_id(self) -> int:
         """No secondary id."""
         return NO_ID
 
@@ -181,7 +181,7 @@ class ByteServo(ABC):
 
     def factory_reset(self, option: int, broadcast: bool, now: float) -> int:
         """Restore the factory values, including id and baud rate, and reboot."""
-        self.table.factory()
+        self.table.reset_to_factory()
         self.reboot(now)
         return 0
 
@@ -208,12 +208,12 @@ class ByteServo(ABC):
         loop.sample()
         current = loop.effort / loop.constant if self.driving else 0.0
         warm = motor_temperature(self.temperature, current, loop.resistance, dt)
-        self.temperature = max(warm, self.floor)
+        self.temperature = max(warm, self.minimum_temperature)
         self.protect(now, dt)
 
     def heat(self, degrees: float) -> None:
         """Keep the motor at least this hot, degrees C; -inf lets it cool again."""
-        self.floor = degrees
+        self.minimum_temperature = degrees
         self.temperature = max(self.temperature, degrees)
 
     def voltage_is_wrong(self) -> bool:

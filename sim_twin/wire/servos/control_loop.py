@@ -75,7 +75,7 @@ class ControlLoop:
 
     def trajectory(self, now: float) -> tuple[float, float]:
         """Return the profile's position, counts, and velocity, velocity units."""
-        value, rate = self.profile.at(now - self._since)
+        value, rate = self.profile.state_at(now - self._since)
         if self.mode == VELOCITY:
             return 0.0, value
         return value, rate / (VELOCITY_UNIT * COUNTS_PER_RAD)
@@ -119,7 +119,7 @@ class ControlLoop:
         return (self.torque_unit or 0.0) * self.registers.get("goal_current")
 
     def _hold(self, now: float, volts: float) -> None:
-        angle = self.encoder.angle(self.profile.at(now - self._since)[0])
+        angle = self.encoder.angle(self.profile.state_at(now - self._since)[0])
         gain = self.registers.get("position_p_gain")
         stiffness = gain * self._stiffness_unit * self.supply
         most = abs(self._goal_torque()) if self.mode == CURRENT_POSITION else math.inf
@@ -129,7 +129,9 @@ class ControlLoop:
         """Velocity loop: PWM = P/128 e + I/65536 sum(e), e in units of 0.229 rev/min."""
         get = self.registers.get
         sign = self.encoder.sign
-        error = self.profile.at(now - self._since)[0] - sign * self.shaft.velocity / VELOCITY_UNIT
+        error = (
+            self.profile.state_at(now - self._since)[0] - sign * self.shaft.velocity / VELOCITY_UNIT
+        )
         step = get("velocity_i_gain") / 65536.0 * error * dt * VELOCITY_RATE
         pwm = get("velocity_p_gain") / 128.0 * error + self._integral + step
         if abs(pwm) < most:
@@ -140,7 +142,7 @@ class ControlLoop:
     def _plan_position(self, now: float) -> None:
         get = self.registers.get
         goal, top, rise = get("goal_position"), get("profile_velocity"), get("profile_acceleration")
-        position, velocity = self.profile.at(now - self._since)
+        position, velocity = self.profile.state_at(now - self._since)
         if get("drive_mode") & TIME_BASED:
             self.profile = Profile.timed(position, goal, top / 1e3, rise / 1e3)
         else:
@@ -151,7 +153,7 @@ class ControlLoop:
     def _plan_velocity(self, now: float) -> None:
         get = self.registers.get
         present, goal, rise = (
-            self.profile.at(now - self._since)[0],
+            self.profile.state_at(now - self._since)[0],
             get("goal_velocity"),
             get("profile_acceleration"),
         )

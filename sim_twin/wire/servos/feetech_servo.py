@@ -122,7 +122,7 @@ class FeetechServo(ByteServo):
 
     def factory_reset(self, option: int, broadcast: bool, now: float) -> int:
         """Restore the factory values of all but the id, and reboot (FT-SCS protocol, 0x06)."""
-        self.table.factory(keep=("id",))
+        self.table.reset_to_factory(keep=("id",))
         self.reboot(now)
         return 0
 

@@ -203,7 +203,7 @@ class Firmware:
             return BAD_ACCESS
         return OK
 
-    def written(self, name: str, value: int, now: float) -> None:
+    def apply_write(self, name: str, value: int, now: float) -> None:
         """Apply the effect of one register that has just been written."""
         if name in GOALS:
             self._new_goal(name, value, now)

@@ -62,8 +62,8 @@ class MotorLoop:
     def goal(self, now: float) -> tuple[float, float]:
         """Return the profile's position, counts, and velocity, counts/s."""
         if self._running is not None:
-            return self.counts(self._running), self._profile.at(now - self._since)[0]
-        return self._profile.at(now - self._since)
+            return self.counts(self._running), self._profile.state_at(now - self._since)[0]
+        return self._profile.state_at(now - self._since)
 
     def moving(self, now: float) -> bool:
         """Return whether the profile is still in progress."""
@@ -104,7 +104,7 @@ class MotorLoop:
             self._run_on(now, dt)
             target = self._running
         else:
-            target = (self._profile.at(now - self._since)[0] - self.centre) / self.per_rad
+            target = (self._profile.state_at(now - self._since)[0] - self.centre) / self.per_rad
         self.busy = self._running is not None or self.moving(now)
         stiffness = self.gain * self.supply * self.constant / self.resistance
         self.shaft.hold_goal(target, stiffness, self.most * self.supply, self.torque)
@@ -129,7 +129,7 @@ class MotorLoop:
         """Advance a continuously moving goal by `dt` s."""
         angle = self.shaft.position
         lead = self.most / self.gain if self.gain > 0.0 else 0.0
-        speed = self._profile.at(now - self._since)[0] / self.per_rad
+        speed = self._profile.state_at(now - self._since)[0] / self.per_rad
         ahead = (self._running or 0.0) + speed * dt
         self._running = max(angle - lead, min(angle + lead, ahead))
 

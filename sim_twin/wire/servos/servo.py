@@ -66,7 +66,7 @@ class Servo:
         return self.registers.memory[7]
 
     @property
-    def shadow(self) -> int:
+    def secondary_id(self) -> int:
         """Secondary id, whose instructions it executes without answering; 253 and up: none."""
         return self.registers.memory[12]
 
@@ -148,7 +148,7 @@ class Servo:
         said = self._error_byte(OK)  # before a write that may change the protocol
         self.registers.commit(writes)
         for item, value in writes:
-            self.firmware.written(item.name, value, now)
+            self.firmware.apply_write(item.name, value, now)
         return said
 
     def register_write(self, address: int, data: bytes) -> int:

@@ -45,7 +45,7 @@ def test_a_new_run_waits_while_a_guardian_acts_and_says_so(
     ) as guardian:
         assert guardian.stdout is not None and guardian.stdout.readline() == b"taken\n"
         wait_while_guarded(device)
-        assert AdapterLock(device).free()
+        assert AdapterLock(device).try_acquire()
     assert "waiting for the guardian of an earlier run (process 1234)" in caplog.text
     assert "switching the torque off" in caplog.text
 
@@ -76,7 +76,7 @@ def test_a_lock_has_no_number_of_a_standard_stream(
     monkeypatch.setattr(lock, "RESERVED", 300)
     held = AdapterLock(device)
     assert held.acquire() >= 300
-    assert not AdapterLock(device).free()
+    assert not AdapterLock(device).try_acquire()
     held.close()
 
 

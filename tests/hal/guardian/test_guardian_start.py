@@ -22,7 +22,7 @@ from windup.hal.port.lock import AdapterLock
 def free(path: Path) -> bool:
     lock = AdapterLock(str(path))
     try:
-        return lock.free()
+        return lock.try_acquire()
     finally:
         lock.close()
 

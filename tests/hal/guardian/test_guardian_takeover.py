@@ -117,7 +117,7 @@ def test_a_host_that_has_been_gone_for_long_is_known_to_be_gone() -> None:
     if child == 0:
         os._exit(0)
     os.waitpid(child, 0)
-    assert Host(child).gone and not Host(os.getpid()).gone
+    assert Host(child).has_ended and not Host(os.getpid()).has_ended
 
 
 def test_servos_that_nobody_knows_are_refused_before_torque() -> None:

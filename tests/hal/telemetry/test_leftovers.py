@@ -120,8 +120,8 @@ def test_a_lock_that_nobody_holds_goes_and_one_that_is_held_stays(
     held.take()
     remove_leftovers(tmp_path / "windup" / "new@twin.ring", time.time() + 2.0 * SPARE)
     assert len(list((tmp_path / "windup").iterdir())) == 1
-    assert not AdapterLock("socket://held:1").free()
+    assert not AdapterLock("socket://held:1").try_acquire()
     free.take()
-    assert not AdapterLock("socket://free:1").free(), "it was made anew"
+    assert not AdapterLock("socket://free:1").try_acquire(), "it was made anew"
     held.close()
     free.close()

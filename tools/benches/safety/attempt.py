@@ -84,7 +84,7 @@ def under_way(running: Trial) -> None:
     Raises:
         NotMeasuredError: It does not, or drives no motor.
     """
-    running.hear("doing")
+    running.wait_for_message("doing")
     assert running.program.pid is not None
     running.guardian = guardian_of(running.port)
     running.planner = child_with(running.program.pid, "plan_worker")

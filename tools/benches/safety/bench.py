@@ -137,11 +137,11 @@ def _try(name: str, row: Ending, moment: Moment, failed: Counter[str]) -> Verdic
 def _one(name: str, row: Ending, moment: Moment) -> Verdict:
     with trial(name, row, moment) as running:
         under_way(running)
-        if row.do is not own_fault:
+        if row.carry_out is not own_fault:
             running.journal.listen(moment.after)
             if BY_ITSELF in (said := running.errors()):
                 raise NotMeasuredError(said)
-        verdict = judge(running, row, load_robot(name), row.do(running))
+        verdict = judge(running, row, load_robot(name), row.carry_out(running))
         if verdict.wrong and row in SIGNALS and BY_ITSELF in (said := running.errors()):
             raise NotMeasuredError(said)  # the robot fell at that very moment
         return verdict

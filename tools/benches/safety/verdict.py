@@ -55,7 +55,7 @@ def judge(trial: Trial, row: Ending, robot: RobotDescription, t0: float) -> Verd
         found * (found != row.end),
     ]
     said, moment = ", ".join(filter(None, wrong)), trial.moment
-    words = trial.words() if said else ""
+    words = trial.last_lines() if said else ""
     return Verdict(moment.activity, moment.after, seconds, status, found, said, words)
 
 

@@ -59,7 +59,7 @@ def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator
     """Return a random posture of a robot, with a random heading."""
     joints = robot.joints
     jitter = JITTER * rng.normal(size=len(joints))
-    around = turned([0.0, 0.0, 1.0], float(rng.uniform(-np.pi, np.pi)))
+    around = axis_angle([0.0, 0.0, 1.0], float(rng.uniform(-np.pi, np.pi)))
 
     def inside(pose: Array) -> Array:
         return np.clip(pose, joints.lower, joints.upper)
@@ -68,17 +68,19 @@ def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator
         low = robot.stance if robot.crouch is None else robot.crouch
         depth = float(rng.uniform(0.3, 1.0)) if kind == "squatting" else 0.0
         pose, level = on_feet(robot, robot.stance + depth * (low - robot.stance) + jitter)
-        return StartPosture(inside(pose), after(around, level))
+        return StartPosture(inside(pose), multiply(around, level))
     if kind == "hanging":
         towards = float(rng.uniform(-np.pi, np.pi))
-        tilt = turned([np.cos(towards), np.sin(towards), 0.0], float(rng.uniform(0.0, LEAN)))
+        tilt = axis_angle([np.cos(towards), np.sin(towards), 0.0], float(rng.uniform(0.0, LEAN)))
         pose = float(rng.uniform(0.0, 1.0)) * robot.stance + 2.0 * jitter
-        return StartPosture(inside(pose), after(around, tilt), lift=0.2, stays_held=True)
+        return StartPosture(inside(pose), multiply(around, tilt), lift=0.2, stays_held=True)
     if kind == "sitting":
         pose = inside(np.asarray(find_gait(robot, "sit").graph.pose[-1]) + jitter)
-        return StartPosture(pose, after(around, _leaning_back(robot, pose)))
+        return StartPosture(pose, multiply(around, _leaning_back(robot, pose)))
     side = str(rng.choice([name for name, _ in SIDES], p=[share for _, share in SIDES]))
-    return StartPosture(inside(2.0 * jitter), after(around, turned(*TURNS[side])), held=False)
+    return StartPosture(
+        inside(2.0 * jitter), multiply(around, axis_angle(*TURNS[side])), held=False
+    )
 
 
 def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Array]:
@@ -95,7 +97,9 @@ def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Array]:
     ankles = _ankles(robot)
 
     def put(x: Array) -> Array:
-        data.qpos[3:7] = after(turned([0.0, 1.0, 0.0], x[0]), turned([1.0, 0.0, 0.0], x[1]))
+        data.qpos[3:7] = multiply(
+            axis_angle([0.0, 1.0, 0.0], x[0]), axis_angle([1.0, 0.0, 0.0], x[1])
+        )
         data.qpos[7:] = pose
         data.qpos[7 + ankles] += x[2:]
         mujoco.mj_kinematics(model, data)
@@ -134,17 +138,17 @@ def _leaning_back(robot: RobotDescription, pose: Array) -> Array:
         feet, others = sense.lowest(pose, np.array([np.sin(lean), 0.0, np.cos(lean)]))
         return others - feet
 
-    return turned([0.0, 1.0, 0.0], -float(brentq(seat, 0.0, 1.2)))
+    return axis_angle([0.0, 1.0, 0.0], -float(brentq(seat, 0.0, 1.2)))
 
 
-def turned(axis: Array | list[float], angle: float) -> Array:
+def axis_angle(axis: Array | list[float], angle: float) -> Array:
     """Return a quaternion (4,) wxyz, a rotation by `angle` rad about `axis` (3,)."""
     turn = np.empty(4)
     mujoco.mju_axisAngle2Quat(turn, np.asarray(axis, dtype=np.float64), angle)
     return turn
 
 
-def after(first: Array, then: Array) -> Array:
+def multiply(first: Array, then: Array) -> Array:
     """Return the product of two quaternions (4,) wxyz."""
     turn = np.empty(4)
     mujoco.mju_mulQuat(turn, first, then)

@@ -47,7 +47,7 @@ def world() -> BusWorld:
 
 def outlet_of(world: BusWorld, program: Program) -> BusOutlet:
     outlet = BusOutlet(world.bus(), lambda: program)
-    outlet.settle()
+    outlet.update_link()
     return outlet
 
 
@@ -92,7 +92,7 @@ def test_what_waited_is_lost_with_the_adapter(world: BusWorld) -> None:
     outlet = outlet_of(world, program)
     outlet.receive()
     outlet.bus.set_plugged(False)
-    outlet.settle()
+    outlet.update_link()
     assert not outlet.waiting and outlet.descriptors() == []
 
 

@@ -17,7 +17,7 @@ MAX_STANDING_SPEED = 0.1
 """Maximum speed of a joint that counts as standing still, rad/s."""
 
 
-class Strain:
+class LoadMonitor:
     """The mean load and the stall time of n joints.
 
     Args:

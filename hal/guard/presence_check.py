@@ -11,7 +11,7 @@ MAX_REREADS = 5
 """Maximum number of re-reads of a silent joint before a stop treats its torque as lost."""
 
 
-class Presence:
+class PresenceCheck:
     """Checks every observation for joints that no longer answer or have lost their torque.
 
     Args:
