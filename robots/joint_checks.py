@@ -99,7 +99,7 @@ def _bus_mistakes(robot: RobotFile, joint: JointEntry, key: str) -> Iterator[Mis
     family = family_of(str(joint.servo))
     for bus in [bus for bus in robot.bus if bus.name == joint.bus][:1]:
         if family.protocol != bus.protocol:
-            speaks = f'a {joint.servo} speaks "{family.protocol}"'
+            speaks = f'a {joint.servo} uses protocol "{family.protocol}"'
             yield key, f'{speaks}, and bus {bus.name!r} has protocol "{bus.protocol}"'
         elif bus.baud not in family.bauds:
             rates = ", ".join(map(str, sorted(family.bauds)))

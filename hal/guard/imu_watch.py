@@ -17,13 +17,13 @@ from windup.hal.guard.stuck_axis import StuckAxis
 from windup.hal.joints import Array
 from windup.hal.observation import ImuState, Observation
 
-SILENT = 0.25
+MAX_SILENCE = 0.25
 """Maximum age of the newest sample, s."""
-FROZEN = 0.5
+MAX_FROZEN = 0.5
 """Maximum time with the same sample while joints move, s."""
-RIGID = 1.0
+MAX_RIGID = 1.0
 """Maximum time with the same sample while no joint moves, s; longer causes a warning only."""
-MOVED = 0.03
+MIN_MOTION = 0.03
 """Minimum motion of a joint that counts as moved, rad."""
 
 SILENCE = FindingText("imu silent", "silent for {:.2f} s", "at {:.2f} s", CHECK, subject="the IMU")
@@ -57,7 +57,7 @@ class ImuWatch:
         """Judge an observation; return the present fault of the IMU, or None."""
         now = observation.time
         passed = now - self._time
-        if not 0.0 <= passed < FROZEN:  # another run, or a gap between calls
+        if not 0.0 <= passed < MAX_FROZEN:  # another run, or a gap between calls
             self._restart(now)
             passed = 0.0
         self._time = now
@@ -71,7 +71,7 @@ class ImuWatch:
 
     def _restart(self, now: float) -> None:
         self._sample: Sequence[float] = ()
-        self._changed = self._heard = self._taken = now
+        self._changed = self._sampled_at = self._taken = now
         self._pose: Array = np.zeros(0)
         self.gyro.restart()
         self._axis.restart()
@@ -82,9 +82,9 @@ class ImuWatch:
     ) -> tuple[Verdict | None, bool]:
         """Return the fault or None, and whether it is a reason to stop."""
         now, joints = observation.time, observation.joints
-        self._heard = self._heard if imu is None else now - imu.age
-        if (silence := now - self._heard) > SILENT:
-            return (SILENCE, silence, SILENT), True
+        self._sampled_at = self._sampled_at if imu is None else now - imu.age
+        if (silence := now - self._sampled_at) > MAX_SILENCE:
+            return (SILENCE, silence, MAX_SILENCE), True
         if imu is None:
             return None, False
         sample = (*imu.angular_velocity.tolist(), *imu.acceleration.tolist())
@@ -92,15 +92,17 @@ class ImuWatch:
             return (NO_NUMBER, nan, nan), True
         same = now - self._changed
         if sample != self._sample:
-            if self._sample and (self._heard - self._taken < MAX_SAMPLE_GAP or self.gyro.doubted):
+            if self._sample and (
+                self._sampled_at - self._taken < MAX_SAMPLE_GAP or self.gyro.doubted
+            ):
                 self.gyro.compare(sample, self._sample, now)
-            self._sample, self._taken = sample, self._heard
+            self._sample, self._taken = sample, self._sampled_at
             self._changed, self._pose = now, joints.position
             self._stuck = self._axis.update(sample, now)
-        elif same > FROZEN and np.abs(joints.position - self._pose).max() > MOVED:
-            return (STUCK, same, FROZEN), True
-        elif same > RIGID:
-            return (STUCK, same, RIGID), False
+        elif same > MAX_FROZEN and np.abs(joints.position - self._pose).max() > MIN_MOTION:
+            return (STUCK, same, MAX_FROZEN), True
+        elif same > MAX_RIGID:
+            return (STUCK, same, MAX_RIGID), False
         if self._stuck is not None:
             return self._stuck, True
         return self.gyro.judge(sample, now, dt, joints.velocity), True

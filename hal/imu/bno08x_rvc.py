@@ -147,7 +147,7 @@ class Bno08xRvc:
         """Take in what has come; waits for nothing.
 
         Raises:
-            PortError: The port went away.
+            PortError: The port was disconnected.
         """
         if self._port is None:
             return

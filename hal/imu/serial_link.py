@@ -33,7 +33,7 @@ class SerialImu(Protocol):
         """Take in what has come; waits for nothing.
 
         Raises:
-            PortError: The port went away.
+            PortError: The port was disconnected.
         """
         ...
 

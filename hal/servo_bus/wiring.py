@@ -25,7 +25,7 @@ from windup.hal.servo_bus.coupling import Couplings
 from windup.hal.servo_bus.units import Units
 from windup.hal.servos.servo_model import ServoMount
 
-PROTOCOL_1 = "speaks protocol 1: set its Protocol Type (register 13) to 2 with DYNAMIXEL Wizard"
+PROTOCOL_1 = "uses protocol 1: set its Protocol Type (register 13) to 2 with DYNAMIXEL Wizard"
 """Message for an X series servo that answers in protocol 1."""
 
 

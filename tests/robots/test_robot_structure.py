@@ -38,7 +38,7 @@ MISTAKES = {
         "robot.toml",
         "dynamixel2",
         "feetech",
-        'a XM430-W350 speaks "dynamixel2", and bus \'body\' has protocol "feetech"',
+        'a XM430-W350 uses protocol "dynamixel2", and bus \'body\' has protocol "feetech"',
     ),
     "a rate that no servo has": (
         ARM,

@@ -53,7 +53,7 @@ class ServoBus:
 
     Attributes:
         world: The world.
-        clock: Its clock; it moves when somebody waits.
+        clock: Its clock; it advances during waits.
         faults: The faults, one method for each kind.
         url: What to open: any pyserial program in this process can.
     """

@@ -57,9 +57,7 @@ def test_a_servo_that_speaks_protocol_1_is_told_by_joint_and_id() -> None:
         left_with(bus, "op3", protocol_type=1)
         with pytest.raises(HardwareError) as caught:
             bus.robot()
-        assert "knee' id 13: XM430-W350 speaks protocol 1: set its Protocol Type" in str(
-            caught.value
-        )
+        assert "knee' id 13: XM430-W350 uses protocol 1: set its Protocol Type" in str(caught.value)
 
 
 @pytest.mark.parametrize(

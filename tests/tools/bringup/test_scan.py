@@ -130,7 +130,7 @@ def test_an_x_that_speaks_protocol_1_is_told_by_its_model() -> None:
     assert [row["id"] for row in found.servos] == [1]
     assert (found.unknown, found.invalid) == ([], [])
     assert said(found) == (
-        "id 2 at 1000000 baud: XM430-W350 speaks protocol 1: "
+        "id 2 at 1000000 baud: XM430-W350 uses protocol 1: "
         "set its Protocol Type (register 13) to 2 with DYNAMIXEL Wizard"
     )
 
