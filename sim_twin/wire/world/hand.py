@@ -46,7 +46,7 @@ def parse_hands(text: str) -> list[HandMotion]:
     """Return the motions of a text ``JOINT:DEGREES:SECONDS``, several joined by commas.
 
     >>> parse_hands("r_knee:180:3s")
-    [Swing(joint='r_knee', angle=3.141592653589793, seconds=3.0)]
+    [HandMotion(joint='r_knee', angle=3.141592653589793, seconds=3.0)]
 
     Raises:
         UsageError: The text is malformed or a number is out of range.
