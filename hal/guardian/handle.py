@@ -126,7 +126,7 @@ class Guardian:
         self._unlock()
 
     def _lock(self, record: GuardedBus, undo: ExitStack) -> GuardedBus:
-        """Lock the adapter of a charge; return the charge with the lock's descriptor.
+        """Lock the adapter of a bus; return the record of the bus with the lock's descriptor.
 
         Raises:
             PortError: Another armed run holds the lock.

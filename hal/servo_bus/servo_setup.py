@@ -108,11 +108,11 @@ def set_up_servos(
     if board is not None:
         switch_servo_power_on(buses[board.bus], board)
     found = check_servos(joints, mounts, buses, board)
-    real = [differs for differs in found if not differs.bus.port.url.startswith(EMULATED)]
+    real = [servo for servo in found if not servo.bus.port.url.startswith(EMULATED)]
     for line in format_settings(real):
         logging.getLogger(__name__).warning("%s", line)
-    for differs in found:
-        assert_settings(differs.bus, differs.id, differs.settings)
+    for servo in found:
+        assert_settings(servo.bus, servo.id, servo.settings)
 
 
 def switch_servo_power_on(bus: Bus, board: OpenCr) -> None:

@@ -69,8 +69,8 @@ def test_a_guardian_holds_it_in_its_turn(wheel: RobotDescription) -> None:
     with ServoBus(str(wheel.folder)) as bus:
         robot = bus.robot()
         turn(robot, -FAR)
-        charge = GuardedBus(url=bus.url, baud=1_000_000, servos={1: "XM430-W350"}, extended=(1,))
-        assert RemoteBus(charge).hold_position() == pytest.approx([2048 - FAR * COUNTS], abs=60)
+        record = GuardedBus(url=bus.url, baud=1_000_000, servos={1: "XM430-W350"}, extended=(1,))
+        assert RemoteBus(record).hold_position() == pytest.approx([2048 - FAR * COUNTS], abs=60)
 
 
 def test_a_graph_plays_on_it(wheel: RobotDescription) -> None:

@@ -25,8 +25,8 @@ class Traffic:
             noise: Returns the given number of random bytes.
         """
         collisions = 0
-        air = [old for old in self._bursts if old.end > now]
-        for old in air:
+        on_wire = [old for old in self._bursts if old.end > now]
+        for old in on_wire:
             start, end = max(old.start, new.start), min(old.end, new.end)
             if start >= end - EPSILON:
                 continue
@@ -37,6 +37,6 @@ class Traffic:
                 if last > first:
                     burst.data[first:last] = noise(last - first)
                     burst.corrupted = min(burst.corrupted, start)
-        air.append(new)
-        self._bursts = air
+        on_wire.append(new)
+        self._bursts = on_wire
         return collisions

@@ -131,18 +131,18 @@ class Faults(FaultMethods):
     def answer(self, bus: Bus, data: bytes, baud: int, identifier: int) -> float:
         """Send a status packet with the faults that hit it now; return when it ends, s."""
         key, now = (bus.name, identifier, len(data)), bus.schedule.now
-        fate, self._said[key] = PacketFaults(data, self._said.get(key, data)), data
+        packet_faults, self._said[key] = PacketFaults(data, self._said.get(key, data)), data
         for rule in [*self._rules]:
             if rule.kind in REQUESTS:
                 continue
-            if not rule.hits(self._dice, bus.name, identifier, now) or not fate.received:
+            if not rule.hits(self._dice, bus.name, identifier, now) or not packet_faults.received:
                 continue  # a packet that is lost already cannot be hit again
             if rule.kind in EVENTS:
-                self._begin(rule, bus, identifier, fate)
+                self._begin(rule, bus, identifier, packet_faults)
                 continue
             self._note(rule.kind, bus.name, identifier)
-            fate.apply(rule.kind, rule.seconds, bus, self._dice)
-        return self._sender.send(bus, data, baud, fate)
+            packet_faults.apply(rule.kind, rule.seconds, bus, self._dice)
+        return self._sender.send(bus, data, baud, packet_faults)
 
     def echoes(self, bus: Bus) -> bool:
         """Return whether the adapter echoes the host's present bytes back to it."""
@@ -154,14 +154,16 @@ class Faults(FaultMethods):
                 echoes = True
         return echoes
 
-    def _begin(self, rule: FaultRule, bus: Bus, identifier: int, fate: PacketFaults) -> None:
+    def _begin(
+        self, rule: FaultRule, bus: Bus, identifier: int, packet_faults: PacketFaults
+    ) -> None:
         """Apply an event at the start of an answer, if it can hit the answering device."""
         concerned = event_targets(rule, bus)
         if WHOLE_BUS not in concerned and identifier not in concerned:
             return
         self._apply(rule, bus, identifier)
         if rule.kind in SILENCING:
-            fate.received = b""
+            packet_faults.received = b""
 
     def _script(self, rule: FaultRule) -> None:
         """Schedule the timed events of a fault."""

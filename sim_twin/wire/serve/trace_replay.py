@@ -91,9 +91,9 @@ def replay_world(path: Path) -> BusWorld:
     schedule, buses = Schedule(), {}
     for name in dict.fromkeys(line.bus for line in lines):
         mine = [line for line in lines if line.bus == name]
-        tape = TraceReplay(path, mine)
-        tape.bus = buses[name] = Bus(name, [], tape, schedule, mine[0].baud)
-        tape.answer()
+        replay = TraceReplay(path, mine)
+        replay.bus = buses[name] = Bus(name, [], replay, schedule, mine[0].baud)
+        replay.answer()
     nothing: list[InertiaShaft] = []
     return BusWorld(BenchPhysics(nothing), schedule, buses)
 
