@@ -163,7 +163,7 @@ def load_robot(name_or_path: str | Path) -> RobotDescription:
         ConfigError: A file of the robot cannot be read or failed a check.
     """
     folder = folder_of(name_or_path)
-    if (known := _loaded.of(folder)) is not None:
+    if (known := _loaded.get(folder)) is not None:
         return known
     robot = _load(folder)
     if mjcf.is_self_contained(robot.model_path):

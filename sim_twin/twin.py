@@ -251,7 +251,7 @@ class Twin:
     def _apply_pushes(self) -> None:
         self.data.xfrc_applied[:] = 0.0
         for push in self._pushes:
-            share = push.share(self.time, self.timestep)
+            share = push.active_fraction(self.time, self.timestep)
             if share > 1e-6:  # smaller shares are rounding errors of the time
                 self._apply(push, share * push.force)
         if all(self.time >= push.start + push.duration for push in self._pushes):

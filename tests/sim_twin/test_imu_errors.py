@@ -25,7 +25,7 @@ def test_the_same_seed_gives_the_same_samples() -> None:
 
 
 def test_samples_are_whole_counts() -> None:
-    counts = ImuErrors(OPENCR, 0.002).sample(REST) / np.repeat(OPENCR.unit, 3)
+    counts = ImuErrors(OPENCR, 0.002).sample(REST) / np.repeat(OPENCR.count_size, 3)
     assert counts == pytest.approx(np.rint(counts), abs=1e-6)
 
 

@@ -64,8 +64,8 @@ def test_what_one_way_of_driving_sets_the_next_one_forgets(
     shaft: tuple[Twin, TwinShaft, InertiaShaft],
 ) -> None:
     twin, joint, _ = shaft
-    joint.drive(3.0, 18.9, 12.0, 0.5)
-    joint.push(12.0)
+    joint.hold_goal(3.0, 18.9, 12.0, 0.5)
+    joint.apply_voltage(12.0)
     mujoco.mj_forward(twin.model, twin.data)
     assert joint.torque == pytest.approx(4.1, rel=1e-6)
 

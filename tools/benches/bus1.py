@@ -128,7 +128,7 @@ def backend_cycle(port: Port, ids: list[int], maker: VendorCycle) -> Cycle:
         joints, mounts, {"body": BusPort("canned", BAUD)}, opener=lambda url, baud: port
     )
     backend.connect()
-    backend.lines[0].reads.probe_fast()
+    backend.readouts[0].reads.probe_fast()
     backend.links[0].torque.powered = True
     command = JointCommand.hold(joints, np.zeros(len(ids)))
 

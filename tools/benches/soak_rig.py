@@ -99,7 +99,7 @@ class SoakRig:
     @property
     def position_share(self) -> float:
         """Share of the position in the data bytes of a servo's answer."""
-        family = self.backend.lines[0].bus.family
+        family = self.backend.readouts[0].bus.family
         state = family.cycle([self._model]).state
         return family.registers["present_position"].size / state.size
 

@@ -189,7 +189,7 @@ class Session(Armed):
         look = look_with(self.description, self.stack.port)
         gate = ImuGate(estimator, self.imu, needs_imu, look)
         if not self.armed:
-            gate.check_before_arming(self.backend.peek)
+            gate.admit(self.backend.peek)
         return gate
 
     def _run(

@@ -28,8 +28,8 @@ def robot_grips(
         physics: The twin whose joints they are, or None if each servo has a separate shaft.
     """
     grips = {}
-    mounted = [(name, m) for name, m in zip(robot.joints.names, robot.servos, strict=True) if m]
-    for (name, mount), shaft in zip(mounted, shafts, strict=True):
+    joints = [(name, m) for name, m in zip(robot.joints.names, robot.servos, strict=True) if m]
+    for (name, mount), shaft in zip(joints, shafts, strict=True):
         device = next(servo for servo in mounted[mount.bus] if servo.identifier == mount.id)
         if isinstance(shaft, InertiaShaft):
             grips[name] = grip_on_shaft(device, shaft, mount.sign * mount.ratio)

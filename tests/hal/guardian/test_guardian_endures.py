@@ -113,6 +113,6 @@ def test_joints_are_called_by_their_names_and_who_cuts_the_power_is_told_how_to_
     said: list[str] = []
     taken = Takeover(GuardianOrder(host=1, policy="limp", buses=(lost,)), said.append)
     assert taken.switch_off_once() == [str(sts_bus)]
-    taken._complain(inf)
+    taken._report_trouble(inf)
     assert "torque cannot be read at neck (id 9)" in said[0]
     assert said[0].endswith(f"; cut the servo power, then end this process: kill -9 {os.getpid()}")

@@ -64,7 +64,7 @@ def test_of_two_adapters_one_that_is_taken_leaves_the_other_free(
     sts_bus: Path, tmp_path: Path
 ) -> None:
     taken = AdapterLock(str(tmp_path / "taken"))
-    taken.take()
+    taken.acquire()
     with pytest.raises(PortError, match="another armed run"):
         Guardian([record(sts_bus), record(tmp_path / "taken")], "limp")
     assert free(sts_bus)
