@@ -36,20 +36,22 @@ def differences(bus: Bus, mount: ServoMount) -> list[SettingDifference]:
 def required_settings(family: Family, mount: ServoMount) -> list[RequiredSetting]:
     """Return the required settings of a servo, in the order in which they are written."""
     other = family.extended if mount.extended else None
-    usual = family.wanted(mount.model)
-    return [other if other is not None and want.name == other.name else want for want in usual]
+    return [
+        other if other is not None and setting.name == other.name else setting
+        for setting in family.required(mount.model)
+    ]
 
 
 def limits(bus: Bus, id: int, model: ServoModel) -> list[SettingDifference]:
     """Return the unusual protection registers of servo `id`; `wanted` is the factory default."""
     table = bus.family.table(model.name)
     found = []
-    for usual in bus.family.usual(model):
-        if usual.name not in table:
+    for default in bus.family.factory_defaults(model):
+        if default.name not in table:
             continue
-        present = bus.read(id, table[usual.name])
-        if usual.is_odd(present):
-            found.append(SettingDifference(table[usual.name], present, usual.value))
+        present = bus.read(id, table[default.name])
+        if default.is_unusual(present):
+            found.append(SettingDifference(table[default.name], present, default.value))
     return found
 
 

@@ -12,7 +12,7 @@ from math import isfinite, nan
 import numpy as np
 
 from windup.hal.guard.finding import AGAIN, CHECK, Finding, FindingText
-from windup.hal.guard.gyro_watch import MAX_SAMPLE_GAP, MAX_STEP, GyroWatch, Verdict
+from windup.hal.guard.gyro_watch import MAX_SAMPLE_GAP, MAX_STEP, SPINNING, GyroWatch, Verdict
 from windup.hal.guard.stuck_axis import StuckAxis
 from windup.hal.joints import Array
 from windup.hal.observation import ImuState, Observation
@@ -33,6 +33,8 @@ STUCK = FindingText(
 NO_NUMBER = FindingText(
     "imu not a number", "not a number", "", AGAIN, subject="a reading of the IMU"
 )
+IMU_KINDS = tuple(text.name for text in (SILENCE, STUCK, NO_NUMBER, SPINNING))
+"""Names of all kinds of finding."""
 
 
 class ImuWatch:
@@ -47,6 +49,11 @@ class ImuWatch:
         self._warnings: dict[str, Finding] = {}
         self._present = ""
         self._time = -np.inf
+
+    @property
+    def present(self) -> str:
+        """Name of the present finding, or "" if there is none."""
+        return self._present
 
     @property
     def warnings(self) -> list[Finding]:

@@ -59,7 +59,7 @@ class BusConnection:
         self.goals_withheld = self._torque_unconfirmed = self._lost_with_port = False
         self._look_again = 0.0
         # Goals to such servos may switch torque on.
-        self._goal_wakes = self.readout.bus.family.goal_wakes
+        self._goal_enables_torque = self.readout.bus.family.goal_enables_torque
 
     @property
     def bus(self) -> Bus:
@@ -117,7 +117,7 @@ class BusConnection:
         if (
             self.goals_withheld
             or self.lost is not None
-            or (self._goal_wakes and not self.torque.powered)
+            or (self._goal_enables_torque and not self.torque.powered)
         ):
             return "unarmed"
         withheld = self.check.withheld

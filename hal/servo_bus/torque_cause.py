@@ -79,7 +79,7 @@ def find_torque_losses(
     bus, family = readout.bus, readout.bus.family
     back = _read_back(bus, [suspect.id for suspect in suspects])
     without_torque = [id for id, seen in back.items() if _is_without_torque(family, seen)]
-    if without_torque and family.dialect.weak:  # one corrupt frame in 256 passes the checksum
+    if without_torque and family.protocol.weak:  # one corrupt frame in 256 passes the checksum
         again = _read_back(bus, without_torque)
         back = {id: seen for id, seen in back.items() if id not in without_torque} | again
     unclear = [suspect for suspect in suspects if _is_unclear(family, back.get(suspect.id))]
@@ -122,7 +122,7 @@ def _read_back(bus: Bus, ids: Sequence[int]) -> dict[int, Readback]:
 
 def _is_without_torque(family: Family, seen: Readback) -> bool:
     """Return whether a servo has no torque, or has restarted and may move to an old goal."""
-    mark = family.mark
+    mark = family.restart_mark
     again = mark is not None and seen.values.get(mark.name) == mark.restarted
     return again or not seen.torque_on
 
@@ -140,7 +140,7 @@ def _evidence(
     """Map id to the evidence from its registers, for the servos that could be read."""
     if not suspects:
         return {}
-    family, mark = bus.family, bus.family.mark
+    family, mark = bus.family, bus.family.restart_mark
     ids = [suspect.id for suspect in suspects]
     errors = {id: back[id].bits for id in ids}
     if not family.errors_in_answers:

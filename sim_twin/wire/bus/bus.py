@@ -89,6 +89,7 @@ class Bus:
     Attributes:
         name: Name of the bus.
         devices: The devices on it. Call `refresh` after changing ids from outside.
+        protocol: The protocol of its devices.
         baud: Baud rate of the host.
         schedule: The schedule of the world.
         timing: Latencies.
