@@ -72,7 +72,7 @@ class ServoProtocol(ABC):
         """Return the frame that pings one servo."""
 
     @abstractmethod
-    def salvage(self, data: bytes) -> list[Status]:
+    def find_packets(self, data: bytes) -> list[Status]:
         """Return the valid status packets in received bytes."""
 
     @abstractmethod
@@ -116,9 +116,9 @@ class Protocol2(ServoProtocol):
         """Return the frame that pings one servo."""
         return protocol2.ping(id)
 
-    def salvage(self, data: bytes) -> list[Status]:
+    def find_packets(self, data: bytes) -> list[Status]:
         """Return the valid status packets in received bytes."""
-        return list(protocol2.salvage(data))
+        return list(protocol2.find_packets(data))
 
     def probe(self, id: int) -> Probe:
         """Return a ping: its answer differs from its echo by the instruction byte."""
@@ -181,9 +181,9 @@ class Protocol1(ServoProtocol):
         """Return the frame that pings one servo."""
         return protocol1.ping(id)
 
-    def salvage(self, data: bytes) -> list[Status]:
+    def find_packets(self, data: bytes) -> list[Status]:
         """Return the valid status packets in received bytes."""
-        return list(protocol1.salvage(data))
+        return list(protocol1.find_packets(data))
 
     def probe(self, id: int) -> Probe:
         """Return a read of one byte: its answer differs in length from its echo, a ping's not."""

@@ -68,8 +68,7 @@ class ServoBackend:
         clamps: Maps clamp to the number of commands it changed: "goal" beyond the encoder's range,
             "gain" beyond that of the register; "unarmed" and "lost" are goals withheld from a bus,
             and from joints that may have lost their torque.
-        lost_joints: Maps joint name to how it lost its torque since the robot was armed. Such
-            joints get no goals until `rearm`.
+        lost_joints: Maps joint name to how its torque was lost; it gets no goals until `rearm`.
         watchdog_trips: Number of Bus Watchdogs that fired and were cleared.
         arming_stiffness: (n,) stiffness at torque enable, N m/rad.
         heartbeat: Called repeatedly while torque is switched, which takes a while.
