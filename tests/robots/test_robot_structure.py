@@ -88,7 +88,7 @@ def test_a_mistake_is_one_line(
 
 def test_no_joint_is_one_line(tmp_path: Path) -> None:
     folder = write_shape(tmp_path / "robot", Shape("stone", ()))
-    with pytest.raises(ConfigError, match=r"joint: is missing: a robot has at least one"):
+    with pytest.raises(ConfigError, match=r"joint: is missing: a robot needs at least one"):
         load_robot(folder)
 
 

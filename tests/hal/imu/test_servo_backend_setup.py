@@ -117,6 +117,6 @@ def test_buses_of_two_worlds_are_refused() -> None:
     mounts = [ServoMount(XM430, name, 1, 1, 2048, 1.0) for name in ("left", "right")]
     ports = {name: BusPort(name, 1_000_000) for name in wires}
     backend = ServoBackend(joints_of(2), mounts, ports, opener=lambda url, baud: wires[url][1])
-    with pytest.raises(UsageError, match="one world, on one clock"):
+    with pytest.raises(UsageError, match="must share one clock"):
         backend.connect()
     assert not any(serial.is_open for serial, _ in wires.values())

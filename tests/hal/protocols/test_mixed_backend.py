@@ -193,7 +193,7 @@ def test_a_wrong_model_and_a_torque_that_is_on_are_named_and_nothing_is_written(
     with pytest.raises(HardwareError) as caught:
         backend.configure()
     assert "id 1: is a STS3250 where a STS3215-7.4V should be" in str(caught.value)
-    said = "id 2: cannot correct return_delay 250 instead of 0 while torque is on"
+    said = "id 2: cannot correct return_delay 250 instead of 0"
     assert said in str(caught.value)
     assert wires["body"].written == []
 

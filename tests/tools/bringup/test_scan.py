@@ -118,7 +118,7 @@ def test_somebody_who_talks_unasked_is_heard() -> None:
 
     found = Survey(Port(Chatter(lambda _: b""), "line"), {})
     found.update(4_000_000, lambda _: None)
-    assert "not understood (first bytes aa aa 07)" in said(found)
+    assert "sends (first bytes aa aa 07)" in said(found)
 
 
 def test_an_x_that_speaks_protocol_1_is_told_by_its_model() -> None:

@@ -53,5 +53,5 @@ def test_a_plants_mass_is_heavier() -> None:
 
 @pytest.mark.parametrize("url", ["twin://op3?physics=inertia", "twin://bench?servos=XM430-W350:1"])
 def test_what_stands_on_no_ground_has_no_other_ground(url: str) -> None:
-    with pytest.raises(UsageError, match="only a robot with physics=mujoco"):
+    with pytest.raises(UsageError, match="need a robot with physics=mujoco"):
         build_world(parse_address(url), Environment(Ground(slope=1.0)))
