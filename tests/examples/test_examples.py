@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from windup.tools import cli
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PLUGIN = "windup.tools.testing.pytest_plugin"
 
@@ -25,6 +27,12 @@ def test_own_controller_sways_and_stands() -> None:
     assert width > 0.01 and not fallen
 
 
+@pytest.mark.parametrize("name", ["shoulder_sine", "own_controller"])
+def test_controllers_run_from_the_command_line(name: str) -> None:
+    file = str(EXAMPLES / f"{name}.py")
+    assert cli.run(["run", "op3", file, "--seconds", "1"]) == 0
+
+
 def test_live_speed_follows_what_is_commanded() -> None:
     speeds = load("live_speed")["main"]()
     slow, fast = (np.mean([speeds[n] for n in steps]) for steps in (range(12, 20), range(32, 40)))
@@ -38,11 +46,20 @@ def test_push_and_step_stays_up_with_steps_alone() -> None:
     assert results["predictive"]["steps"] > 0
 
 
-def test_log_and_plot_writes_a_log_and_a_picture(tmp_path: Path) -> None:
-    arrays = load("log_and_plot")["main"](tmp_path)
+def test_log_and_plot_writes_a_log_and_pictures(tmp_path: Path) -> None:
+    run = load("log_and_plot")["main"](tmp_path)
     kept = np.load(tmp_path / "walk.npz")
-    assert np.array_equal(kept["position"], arrays["position"]) and len(kept["time"]) > 100
-    assert (tmp_path / "walk_log.png").stat().st_size > 10_000
+    assert np.array_equal(kept["position"], run.arrays["position"]) and len(kept["time"]) > 100
+    for name in ("walk.png", "feet.png"):
+        assert (tmp_path / name).stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("port", [None, "twin://op3"])
+def test_shoulders_swings_them_on_the_twin_and_through_servos(port: str | None) -> None:
+    report = load("shoulders")["main"](port)
+    assert (report.reason, report.fallen) == ("done", False)
+    shoulder = report.arrays["position"][:, report.data.joints.index("l_sho_pitch")]
+    assert np.ptp(shoulder) == pytest.approx(0.8, abs=0.1)
 
 
 def test_own_robot_stands_and_walks() -> None:

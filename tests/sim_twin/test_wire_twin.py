@@ -33,15 +33,15 @@ def shaft() -> tuple[Twin, TwinShaft, InertiaShaft]:
 @pytest.mark.parametrize(
     ("way", "values"),
     [
-        ("drive", (0.3, 18.9, 12.0)),
-        ("drive", (3.0, 18.9, 6.0)),  # at its voltage limit
-        ("drive", (-3.0, 18.9, 12.0, 1.1)),  # at its current limit
-        ("push", (7.0,)),
-        ("push", (-12.0,)),
-        ("push", (0.0,)),
-        ("pull", (1.2, 12.0)),
-        ("pull", (-40.0, 9.0)),  # more than its voltage can
-        ("off", ()),
+        ("hold_goal", (0.3, 18.9, 12.0)),
+        ("hold_goal", (3.0, 18.9, 6.0)),  # at its voltage limit
+        ("hold_goal", (-3.0, 18.9, 12.0, 1.1)),  # at its current limit
+        ("apply_voltage", (7.0,)),
+        ("apply_voltage", (-12.0,)),
+        ("apply_voltage", (0.0,)),
+        ("apply_torque", (1.2, 12.0)),
+        ("apply_torque", (-40.0, 9.0)),  # more than its voltage can
+        ("release", ()),
     ],
 )
 def test_a_joint_of_the_twin_makes_the_torque_of_a_bench_motor(

@@ -37,7 +37,7 @@ WAYS: Final[dict[str, StartCommand]] = {
     "windup --help": StartCommand(("-c", CLI.format("--help")), 2.5),
     "windup robots": StartCommand(("-c", CLI.format("robots")), 4.0),
     "import windup.hal": StartCommand(("-c", "import windup.hal"), 1.5),
-    "from windup import Robot": StartCommand(("-c", "from windup import Robot"), 4.0),
+    "from windup import Robot": StartCommand(("-c", "from windup import Robot"), 2.0),
     WITHOUT: StartCommand((*PYTEST, "-p", f"no:{PLUGIN}"), 1.0, WITHOUT),
     "pytest with the plugin": StartCommand(PYTEST, 1.05, WITHOUT),
 }

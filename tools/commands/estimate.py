@@ -13,18 +13,19 @@ from windup.control.kinematics.body import heading
 from windup.control.loop import Estimator
 from windup.hal.errors import UsageError
 from windup.hal.geometry.angles import wrapped
+from windup.hal.geometry.quaternion import roll_pitch_yaw
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState, Observation
 from windup.robots import load_robot
 from windup.sim_twin.backend import TwinBackend
 from windup.sim_twin.imu_errors import ImuErrors, imu_on_twin
 from windup.sim_twin.sensors import Sensors
+from windup.sim_twin.twin_state_source import TwinStateSource
 from windup.tools.assembly.build import build_estimator, build_walk
 from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.options.faults import with_faults
 from windup.tools.robot.port_urls import TWIN, check_port
 from windup.tools.robot.robot import Robot
-from windup.tools.robot.twin_state_source import TwinStateSource
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.quantities import Count, Delay, Impulse, Rate, Seed, Some
@@ -226,9 +227,7 @@ def _errors(base: BaseState, truth: BaseState) -> Array:
 
 def _angles(orientation: Array) -> Array:
     """Return roll, pitch and heading, rad."""
-    w, x, y, z = orientation
-    roll = np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-    pitch = np.arcsin(np.clip(2.0 * (w * y - x * z), -1.0, 1.0))
+    roll, pitch, _ = roll_pitch_yaw(orientation)
     return np.array([roll, pitch, float(heading(orientation))])
 
 

@@ -50,10 +50,13 @@ class StopRequests:
     Attributes:
         count: Number of signals, and of buttons and keys, which count as one, so far.
         by: Name of the first of them.
+        raises: From the third signal on, signals raise: code of the user's own runs, which may
+            never end.
     """
 
     count: int = 0
     by: str = ""
+    raises: bool = False
 
     def __call__(self) -> bool:
         """Return whether the program is to end."""
@@ -65,8 +68,14 @@ class StopRequests:
         return self.count >= SKIP_CROUCH_COUNT
 
     def on_signal(self, number: int, frame: Any) -> None:
-        """Count a signal; this is the signal handler."""
+        """Count a signal; this is the signal handler.
+
+        Raises:
+            KeyboardInterrupt: It is the third one, and `raises` is set.
+        """
         self.add(SIGNAL_NAMES[signal.Signals(number)])
+        if self.raises and self.skip_crouch:
+            raise KeyboardInterrupt
 
     def add(self, by: str) -> None:
         """Count a request, given its name."""

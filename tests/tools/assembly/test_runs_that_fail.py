@@ -97,7 +97,7 @@ def test_nan_in_mid_walk_is_status_1(shell: Windup, monkeypatch: pytest.MonkeyPa
         walker.step = broken  # type: ignore[method-assign]
         return walker
 
-    monkeypatch.setattr("windup.tools.robot.robot.build_walk", build)
+    monkeypatch.setattr("windup.tools.robot.motions.build_walk", build)
     ran = shell("walk", "op3", "--steps", 5, "--json", "-")
     assert ran.status == 1
     message = "the controller commanded position nan for joint 'head_pan'; give finite values"
@@ -186,7 +186,7 @@ def test_ctrl_c_in_a_walk_is_status_130_with_the_report(
 
         return update
 
-    monkeypatch.setattr("windup.tools.commands.walk._update", interrupt)
+    monkeypatch.setattr("windup.tools.behaviours.walk._shown", interrupt)
     ran = shell("walk", "op3", "--steps", 40, "--json", "-")
     assert ran.status == 130
     assert (ran.json["steps"], ran.json["reason"]) == (3, "interrupted")

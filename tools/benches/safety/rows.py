@@ -127,4 +127,19 @@ SCRIPTS = (
     Ending("nobody reads its output", own_fault, FAILED, fault="nobody reads its output"),
 )  # fmt: skip
 
-ROWS = (*SIGNALS, *CONTROLLERS, *KILLS, *HARDWARE, *SCRIPTS)
+LOOPS = (
+    Ending(
+        "SIGINT in a loop over ticks", press(SIGINT), ASKED, fault="loops over ticks",
+        activities=("standing",),
+    ),
+    Ending(
+        "loop over ticks blocks 0.3 s", own_fault, KILLED, HANG, fault="its loop blocks 0.3 s",
+        activities=("standing",),
+    ),
+    Ending(
+        "loop over ticks raises", own_fault, FAILED, fault="its loop raises",
+        activities=("standing",),
+    ),
+)  # fmt: skip
+
+ROWS = (*SIGNALS, *CONTROLLERS, *LOOPS, *KILLS, *HARDWARE, *SCRIPTS)

@@ -8,7 +8,6 @@ import socket
 import subprocess
 import sys
 import time as wall
-from dataclasses import replace
 from types import TracebackType
 from typing import Self
 
@@ -20,11 +19,11 @@ from windup.hal.joints import Array
 from windup.robots import RobotDescription
 from windup.sim_twin.rollouts import RolloutPredictor
 from windup.tools.assembly.walk_options import WalkOptions
-from windup.tools.robot.plan_worker import LARGEST, Answer, Question, Task
+from windup.tools.planning.plan_worker import LARGEST, Answer, Question, Task
 
 PATIENCE = 60.0
 """For the process to be built, on a machine that is busy, s."""
-PROGRAM = "from windup.tools.robot.plan_worker import main; main()"
+PROGRAM = "from windup.tools.planning.plan_worker import main; main()"
 GOODBYE = 2.0
 """For the process to end by itself, s."""
 
@@ -169,7 +168,6 @@ def plan_aside(
     robot: RobotDescription, options: WalkOptions, predictor: RolloutPredictor, period: float
 ) -> ProcessPlanner:
     """Return a process that plans what `predictor` would have played; its stopwatch counts."""
-    options = replace(options, guide=None)  # who leads the walk plans nothing, and may not pickle
     latency = robot.model_latency
     task = Task(robot.folder, options, predictor.delay, latency, period, predictor.ground)
     return ProcessPlanner(task, predictor.stopwatch)
