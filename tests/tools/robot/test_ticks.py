@@ -141,7 +141,7 @@ def test_a_fall_ends_the_loop_and_is_softened_without_the_body() -> None:
 
 def test_a_run_in_the_body_is_refused(robot: Robot) -> None:
     for _ in robot.ticks():
-        with pytest.raises(UsageError, match="in a run already"):
+        with pytest.raises(UsageError, match="already running"):
             robot.stand(0.1)
         break
 
