@@ -137,7 +137,7 @@ class Runner(Watched):
             self.loop = report
             self.runs += 1
             end = RunEnd(
-                asked=asked, wishes=[wanted, lambda: self.running.asked],
+                asked=asked, wishes=[wanted, lambda: self.running.requested_by],
                 fallen=lambda: self.fallen, loop=report, opened=self.backend.clock.now(),
                 seconds=seconds, until=until, down=down, approach=approach, protected=protected,
             )  # fmt: skip
