@@ -1,9 +1,9 @@
 """The guardian process: watches the heartbeats of its host, and stops the robot if they end.
 
-After a tick of the loop, the next heartbeat is due within 0.15 s. If it is missing, the host is
-made to print its stacks and is killed; only then the stop policy runs, so that two programs never
-use one bus. The process ends when the host has released it, or when the torque of every servo has
-been read back as off.
+After a tick of the loop, the next heartbeat is due within 0.15 s. If it is missing, or if the host
+does not see a request in its stop flag within 0.1 s, the host is made to print its stacks and is
+killed; only then the stop policy runs, so that two programs never use one bus. The process ends
+when the host has released it, or when the torque of every servo has been read back as off.
 """
 
 import os
@@ -13,6 +13,8 @@ import sys
 import time
 from contextlib import suppress
 from enum import Enum
+from math import inf
+from pathlib import Path
 
 import msgspec
 
@@ -23,6 +25,7 @@ from windup.hal.guardian.signals import ignore_signals
 from windup.hal.guardian.takeover import Takeover
 from windup.hal.guardian.words import Words, standard_error
 from windup.hal.in_words import in_words
+from windup.hal.stopping.stop_flag import StopFlag
 
 ABOVE = 5
 """Amount by which its real-time priority exceeds that of the loop."""
@@ -33,6 +36,8 @@ OVERSLEPT = 0.02
 SECOND_CHANCE = 0.05
 """Time granted to the host for its next heartbeat after such a stall, s."""
 
+LOOK = 0.02
+"""Maximum time between two looks at the stop flag, s."""
 LAST_WORDS = 0.2
 """Maximum time to wait at the end until all messages are written, s."""
 DYING = 0.02
@@ -46,6 +51,7 @@ class Ending(Enum):
     HANDED_OVER = "its program could not read its torque as off"
     DIED = "its program died"
     SILENT = "its program hangs"
+    ASKED = "its program did not answer `windup stop`"
     CLOSED = "its program let go of its guardian"
     DEAF = "its guardian cannot hear its program"
 
@@ -64,27 +70,33 @@ def main() -> None:
 
 def _guard(order: Order, orders: int, words: Words) -> None:
     """Watch the host, and stop the robot unless the host has released the guardian."""
-    host, takeover = Host(order.host), Takeover(order, words.say)
+    flag = StopFlag.open(Path(order.flag)) if order.flag else None
+    host, takeover = Host(order.host), Takeover(order, words.say, flag)
     _go_first()
     os.write(sys.stdout.fileno(), READY)
     os.close(sys.stdout.fileno())
     try:
-        ending, moved = watch(orders, host)
+        ending, moved = watch(orders, host, flag)
     except Exception as error:  # only the guardian can stop the robot now
         words.say(in_words(error))
         ending, moved = Ending.DEAF, False
     if ending is Ending.RELEASED:
         return
     with suppress(Exception):
-        if ending in (Ending.SILENT, Ending.CLOSED, Ending.DEAF):
+        if ending in (Ending.SILENT, Ending.ASKED, Ending.CLOSED, Ending.DEAF):
             host.kill()
     takeover.carry_out(ending.value, moved)
     if ending is not Ending.HANDED_OVER:
         takeover.wait_for(host)
 
 
-def watch(orders: int, host: Host) -> tuple[Ending, bool]:
+def watch(orders: int, host: Host, flag: StopFlag | None = None) -> tuple[Ending, bool]:
     """Read heartbeats from a descriptor until there is a reason to stop watching.
+
+    Args:
+        orders: The descriptor.
+        host: The host process.
+        flag: Its stop flag, if it has one.
 
     Returns:
         The reason, and whether the first motion was complete; before it, the pose is arbitrary.
@@ -93,9 +105,10 @@ def watch(orders: int, host: Host) -> tuple[Ending, bool]:
     poller = select.poll()
     for descriptor in (orders, *host.descriptors):
         poller.register(descriptor, select.POLLIN)
-    while True:
+    longest = inf if flag is None else LOOK
+    while flag is None or not flag.overdue():
         due = heard + patience
-        wait = max(due - time.monotonic(), 0.0)
+        wait = min(max(due - time.monotonic(), 0.0), longest)
         ready = [descriptor for descriptor, _ in poller.poll(wait * 1e3)]
         if orders in ready:
             data = os.read(orders, 4096)
@@ -106,10 +119,11 @@ def watch(orders: int, host: Host) -> tuple[Ending, bool]:
             heard, patience = time.monotonic(), SILENCE[data[-1:]]
         elif ready:
             return Ending.DIED, moved
-        elif time.monotonic() - due > OVERSLEPT:
+        elif (late := time.monotonic() - due) > OVERSLEPT:
             heard, patience = time.monotonic(), SECOND_CHANCE
-        else:
+        elif late >= 0.0:
             return Ending.SILENT, moved
+    return Ending.ASKED, moved
 
 
 def _ending(data: bytes, host: Host) -> Ending | None:

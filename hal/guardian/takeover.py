@@ -12,11 +12,13 @@ from windup.hal.guardian.remote_bus import RemoteBus
 from windup.hal.guardian.words import Say
 from windup.hal.in_words import in_words
 from windup.hal.port.lock import Note, write_note
+from windup.hal.stopping.stop_flag import Outcome, StopFlag
 
 PAUSES = 2e-3, 1.0
 """Pause between two attempts to switch torque off, s: initial and maximum."""
 QUICK, SLOWER = 0.5, 0.03
 """Time for which attempts use the initial pause, s, and the growth of the pause after that, s/s."""
+OFF = "torque is off at all servos, read back"
 SAY_AGAIN = 5.0
 """Time between two messages about servos whose torque is not off, s."""
 
@@ -27,10 +29,11 @@ class Takeover:
     Args:
         order: The guardian's order.
         say: Writes a message without blocking.
+        flag: The host's stop flag: who asked for a stop is told there what became of it.
     """
 
-    def __init__(self, order: Order, say: Say) -> None:
-        self._order, self._tell = order, say
+    def __init__(self, order: Order, say: Say, flag: StopFlag | None = None) -> None:
+        self._order, self._tell, self._flag = order, say, flag
         # Built now, so that an invalid order fails at the start and not during a takeover.
         self._buses = [RemoteBus(charge) for charge in order.charges]
         self._said = time.monotonic()
@@ -93,7 +96,9 @@ class Takeover:
             with suppress(Exception):  # a failing message must not end the attempts
                 self._complain(now)
             time.sleep(min(PAUSES[0] + SLOWER * max(now - began - QUICK, 0.0), PAUSES[1]))
-        self._say("torque is off at all servos, read back")
+        self._say(OFF)
+        if self._flag is not None:
+            self._flag.finish(Outcome(said=OFF, by="guardian"))
 
     def _complain(self, now: float) -> None:
         """Report every `SAY_AGAIN` s which torque is not known to be off."""

@@ -31,10 +31,12 @@ class Way(NamedTuple):
 
 WITHOUT: Final = "pytest without the plugin"
 CLI: Final = "from windup.tools.cli import main; main([{!r}])"
+STOP: Final = "from windup.tools.cli import run; run(['stop', 'nobody'])"
 PYTEST: Final = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "test_nothing.py")
 WAYS: Final[dict[str, Way]] = {
     BASE: Way(("-c", "import numpy"), 1.0),
     "windup --help": Way(("-c", CLI.format("--help")), 2.5),
+    "windup stop ROBOT": Way(("-c", STOP), 2.5),
     "windup robots": Way(("-c", CLI.format("robots")), 4.0),
     "import windup.hal": Way(("-c", "import windup.hal"), 1.5),
     "from windup import Robot": Way(("-c", "from windup import Robot"), 4.0),

@@ -74,6 +74,11 @@ class Session(Armed):
             remove_leftovers(ring_path(self.description.name, self.stack.port))
 
     @property
+    def lasting(self) -> bool:
+        """Does a run take real time?"""
+        return self.paced
+
+    @property
     def warnings(self) -> list[Finding]:
         """What there was to warn about so far: one finding a kind."""
         health = self.backend.watch.warnings if self.backend.watch is not None else []
@@ -154,7 +159,7 @@ class Session(Armed):
         protected = None
         if self.protect and self._protection.possible and not down:
             protected = self._protection.around(approach or controller)
-        wishes = stop_requests(self.backend.backend, keys=self.stack.real)
+        wishes = stop_requests(self.backend.backend, keys=self.stack.real, flag=self.flag)
         with (
             counted_signals(self.stack.wired) as asked,
             self._running,
