@@ -16,7 +16,8 @@ from windup.robots import RobotDescription, load_robot
 from windup.tools.options.faults import with_faults
 from windup.tools.robot.port_urls import check_port
 from windup.tools.robot.stack import torque_off
-from windup.tools.stopping.stop_runs import StopRuns, robot_name, runs_on
+from windup.tools.stopping.stop_runs import Stop as StopRuns
+from windup.tools.stopping.stop_runs import robot_name, runs_on
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
 

@@ -67,7 +67,7 @@ class Stopped(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class StopRuns(Command):
+class Stop(Command):
     """Stop the runs of one robot, or all runs of this user.
 
     Attributes:
@@ -110,7 +110,7 @@ class StopRuns(Command):
             self.json.write_text(text, encoding="utf-8")
 
 
-def parse_stop(words: Sequence[str]) -> StopRuns | None:
+def parse_stop(words: Sequence[str]) -> Stop | None:
     """Return the command of the words after `stop`; None if they need the full parser.
 
     >>> parse_stop(["op3", "--json", "-"]).robot
@@ -124,9 +124,9 @@ def parse_stop(words: Sequence[str]) -> StopRuns | None:
         target = Path(left[at + 1])
         del left[at : at + 2]
     if left == ["--all"]:
-        return StopRuns(robot=None, json=target)
+        return Stop(robot=None, json=target)
     if len(left) == 1 and not left[0].startswith("-"):
-        return StopRuns(robot=left[0], json=target)
+        return Stop(robot=left[0], json=target)
     return None
 
 
