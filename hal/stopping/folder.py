@@ -17,13 +17,13 @@ BASE = Path("/dev/shm")
 PREFIX = "windup-"
 
 
-def private_folder(base: Path = BASE) -> Path:
+def private_folder(base: Path | None = None) -> Path:
     """Return the folder of this user, created if needed.
 
     Raises:
         UsageError: It belongs to another user, others may enter it, or it cannot be created.
     """
-    folder = base / f"{PREFIX}{os.getuid()}"
+    folder = (base or BASE) / f"{PREFIX}{os.getuid()}"
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
     except OSError as error:
@@ -33,8 +33,9 @@ def private_folder(base: Path = BASE) -> Path:
     return folder
 
 
-def folders_to_search(base: Path = BASE) -> Iterator[Path]:
+def folders_to_search(base: Path | None = None) -> Iterator[Path]:
     """Yield the existing folders whose runs this user may stop: the own one, for root all."""
+    base = base or BASE
     own = base / f"{PREFIX}{os.getuid()}"
     for folder in sorted(base.glob(f"{PREFIX}*")) if os.getuid() == 0 else [own]:
         with suppress(ValueError):
@@ -42,10 +43,10 @@ def folders_to_search(base: Path = BASE) -> Iterator[Path]:
                 yield folder
 
 
-def other_users(base: Path = BASE) -> list[int]:
+def other_users(base: Path | None = None) -> list[int]:
     """Return the ids of the other users that have such a folder."""
     found = []
-    for folder in base.glob(f"{PREFIX}*"):
+    for folder in (base or BASE).glob(f"{PREFIX}*"):
         with suppress(OSError, ValueError):
             uid = int(folder.name.removeprefix(PREFIX))
             if uid != os.getuid() and folder.lstat().st_uid == uid:
