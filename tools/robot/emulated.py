@@ -8,6 +8,7 @@ from windup.hal.errors import UsageError
 from windup.robots import RobotDescription
 from windup.sim_twin.environment import Environment
 from windup.sim_twin.twin import Twin
+from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics
 
 _worlds = count()
 
@@ -43,3 +44,18 @@ def twin_behind(world: str) -> Twin | None:
     """Return the twin of a world, or None where its servos turn each on their own."""
     owned = wire.find_world(world).owned
     return next((item for item in owned if isinstance(item, Twin)), None)
+
+
+def begin_noisily(world: str, twin: Twin, noise: float, seed: int) -> None:
+    """Put the twin of a world into its stance, with noise.
+
+    Args:
+        world: Name of its world.
+        twin: The twin.
+        noise: Standard deviation of the noise, degrees; it stays where hands hold it.
+        seed: Seed of the noise.
+    """
+    twin.reset(noise=noise, seed=seed)
+    physics = wire.find_world(world).physics
+    if noise and isinstance(physics, TwinPhysics):
+        physics.grasp()  # hands would put it back to where they took it
