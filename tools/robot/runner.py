@@ -15,6 +15,7 @@ from windup.sim_twin.backend import TwinClock
 from windup.tools.assembly.protect import Protection
 from windup.tools.reports.recording import Recording
 from windup.tools.reports.run_report import RunReport
+from windup.tools.robot.break_off import BreakOff
 from windup.tools.robot.given import Body, GivenCommand, ReadOnly
 from windup.tools.robot.run_end import PreparedRun, RunEnd
 from windup.tools.robot.stopping import INTERRUPTED
@@ -39,6 +40,8 @@ class Runner(Watched):
         runs: Number of runs so far.
         unheard: What ended a loop over ticks in the tick in which it was left, where no exception
             could say so; the next call raises it.
+        controller: The controller of the present run, or of the last one.
+        break_off: Ends runs while the robot stays held, where somebody owns it beyond them.
     """
 
     paced: bool = False
@@ -46,6 +49,8 @@ class Runner(Watched):
     body: Body | None = field(default=None, init=False)
     runs: int = field(default=0, init=False)
     unheard: str = field(default="", init=False)
+    controller: Controller | None = field(default=None, init=False)
+    break_off: BreakOff | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -111,8 +116,12 @@ class Runner(Watched):
 
         Raises:
             RunInterruptedError: Somebody has ended the run; the robot has stopped.
+            BrokenOffError: Whoever owns the robot has ended the run; it is held.
         """
         self.check_heard()
+        self.controller = controller
+        if self.break_off is not None:
+            until = self.break_off.around(until)
         approach = None if self.start is None else self.start.before(controller, down)
         protected = None
         if self.protect and self._protection.possible and not down:
@@ -143,6 +152,8 @@ class Runner(Watched):
             self.unheard = asked.by
         elif report.reason == INTERRUPTED:
             raise RunInterruptedError(report, asked.by)
+        if self.break_off is not None:
+            self.break_off.check(report)
 
     def check_heard(self) -> None:
         """Raise what nobody has heard of yet.
