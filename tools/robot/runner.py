@@ -4,6 +4,7 @@ import logging
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from windup.control.loop import Recorder, TickLoop, Until
 from windup.hal.clock import punctual
@@ -28,6 +29,9 @@ from windup.tools.stopping.interrupts import (
 )
 from windup.tools.stopping.stop_request import stop_requests
 
+if TYPE_CHECKING:  # not needed by robots that do not fall
+    from windup.control.falling.protection import Protected
+
 
 @dataclass(eq=False)
 class Runner(Watched):
@@ -41,6 +45,7 @@ class Runner(Watched):
         unheard: What ended a loop over ticks in the tick in which it was left, where no exception
             could say so; the next call raises it.
         controller: The controller of the present run, or of the last one.
+        protected: Protection of that run against falls, or None.
         break_off: Ends runs while the robot stays held, where somebody owns it beyond them.
     """
 
@@ -50,6 +55,7 @@ class Runner(Watched):
     runs: int = field(default=0, init=False)
     unheard: str = field(default="", init=False)
     controller: Controller | None = field(default=None, init=False)
+    protected: "Protected | None" = field(default=None, init=False)
     break_off: BreakOff | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
@@ -123,9 +129,9 @@ class Runner(Watched):
         if self.break_off is not None:
             until = self.break_off.around(until)
         approach = None if self.start is None else self.start.before(controller, down)
-        protected = None
+        protected = self.protected = None
         if self.protect and self._protection.possible and not down:
-            protected = self._protection.around(approach or controller)
+            protected = self.protected = self._protection.around(approach or controller)
         wishes = stop_requests(self.backend.backend, keys=self.stack.real, flag=self.flag)
         with (
             counted_signals(self.stack.wired) as asked,

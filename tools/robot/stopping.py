@@ -3,7 +3,7 @@
 import atexit
 import logging
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from weakref import WeakSet
@@ -43,10 +43,12 @@ class Stoppable(OnStack):
         custody: Who is in charge of the torque.
         start: What comes before the first command; None without servos.
         flag: By which `windup stop` stops it from another terminal; None in mere simulations.
+        on_stop: Called when the stop policy is about to be carried out.
     """
 
     loop: RunReport = field(default_factory=RunReport, init=False)
     armed: bool = field(default=False, init=False)
+    on_stop: Callable[[], None] | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
         self.start = Start(self.description, self.stack) if self.stack.wired else None
@@ -153,6 +155,8 @@ class Stoppable(OnStack):
         if self.fallen or (policy == "crouch" and not moved):
             policy = "limp"
         before, flag = self.armed, self.flag
+        if self.on_stop is not None:
+            self.on_stop()
         try:
             state = self.backend.stop(
                 policy, lambda: asked.impatient or (flag is not None and flag.again())

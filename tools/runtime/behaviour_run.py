@@ -1,0 +1,80 @@
+"""A behaviour that a client has ordered, run on the robot of the runtime."""
+
+from dataclasses import fields, replace
+from typing import Any, Final
+
+from windup.hal.errors import UsageError, WindupError
+from windup.tools.behaviours.run_record import RunRecord
+from windup.tools.robot.robot import Robot
+from windup.tools.runtime.known_behaviours import known_behaviour
+from windup.tools.runtime.messages import Ended, Run
+from windup.tools.runtime.plain_options import options_of
+from windup.tools.stopping.interrupts import BrokenOffError, RunInterruptedError
+from windup.tools.terminal.output import plain
+
+SETTLE: Final = 1.0
+"""Time to stand after a walk has come to rest, s."""
+
+Stopped = WindupError | RunInterruptedError | None
+"""Why the robot has been stopped; None if it is held."""
+
+
+class BehaviourRun:
+    """One run of a behaviour.
+
+    Args:
+        robot: The robot.
+        order: What the client wants.
+
+    Attributes:
+        walks: It is a walk, after which the robot has to come to stand.
+
+    Raises:
+        WindupError: There is no such behaviour, or its options do not fit the robot.
+    """
+
+    def __init__(self, robot: Robot, order: Run) -> None:
+        self._robot, self._order = robot, order
+        self._behaviour = behaviour = known_behaviour(order.behaviour)
+        options = options_of(behaviour.Options, order.options)
+        self.walks = any(item.name == "stand" for item in fields(options))
+        if self.walks:  # something else may follow at any time, so it always comes to rest
+            options = replace(options, stand=max(options.stand, SETTLE))
+        behaviour.check(robot.description, options)
+        for name, value in behaviour.opening(robot.description, options).items():
+            if value:
+                raise UsageError(f"--{name.replace('_', '-')} is of a robot that is not up yet")
+        self._record: RunRecord[Any] = RunRecord(robot, options)
+
+    def perform(self) -> tuple[Ended, Stopped]:
+        """Run it; return what its client is told, and why the robot has been stopped, if it has."""
+        try:
+            self._behaviour.perform(self._record)
+        except BrokenOffError as ended:
+            return self._told(str(ended), 0), None
+        except RunInterruptedError as stopped:
+            return self._told(str(stopped), 130), stopped
+        except WindupError as error:
+            return self._told(str(error), error.exit_status), error
+        report = self._behaviour.report(self._record)
+        ended = Ended(
+            id=self._order.id,
+            good=report.good,
+            reason=report.reason,
+            lines=report.lines,
+            result=plain(report.result),
+            exit_status=0 if report.good else 1,
+        )
+        return ended, None
+
+    def _told(self, reason: str, status: int) -> Ended:
+        """Return what the client of a behaviour that did not come to its end is told."""
+        line = f"{self._robot.description.name}: {self._order.behaviour} {reason}"
+        return Ended(
+            id=self._order.id,
+            good=False,
+            reason=reason,
+            lines=(line,),
+            result={"robot": self._robot.description.name, "reason": reason},
+            exit_status=status,
+        )
