@@ -45,6 +45,7 @@ COMMANDS: Final[dict[str, Entry]] = {
     "stop": Entry(
         "commands.stop", "Stop", "Stop a robot from any terminal, and read its torque back"
     ),
+    "run": Entry("commands.run", "Run", "Run a controller of your own, from a file of Python"),
     "scan": Entry("bringup.scan", "Scan", "Look for servos on a port, at every baud rate"),
     "emulate": Entry(
         "commands.emulate",

@@ -3,9 +3,10 @@
 from importlib import import_module
 from typing import Any, Final
 
+from windup.tools.behaviours.registry import installed_behaviours, load_behaviour
+
 from windup.hal.errors import UnknownNameError
 from windup.tools.behaviours.behaviour import Behaviour
-from windup.tools.behaviours.registry import installed_behaviours, load_behaviour
 
 OWN: Final = {
     "stand": "STAND",

@@ -6,7 +6,7 @@ from windup.hal.errors import HardwareError, UsageError, WindupError
 from windup.hal.observation import Observation
 from windup.hal.publishing.run_state import RunState
 from windup.tools.reports.run_report import RunReport
-from windup.tools.robot.break_off import BreakOff
+from windup.tools.stopping.break_off import BreakOff
 from windup.tools.robot.robot import Robot
 from windup.tools.runtime.behaviour_run import SETTLE, BehaviourRun
 from windup.tools.runtime.board import TICKS, Board
