@@ -16,11 +16,11 @@ from windup.sim_twin.backend import TwinClock
 from windup.tools.assembly.protect import Protection
 from windup.tools.reports.recording import Recording
 from windup.tools.reports.run_report import RunReport
-from windup.tools.stopping.break_off import BreakOff
 from windup.tools.robot.given import Body, GivenCommand, ReadOnly
 from windup.tools.robot.run_end import PreparedRun, RunEnd
 from windup.tools.robot.stopping import INTERRUPTED
 from windup.tools.robot.watched import Watched
+from windup.tools.stopping.break_off import BreakOff
 from windup.tools.stopping.interrupts import (
     Asked,
     RunInterruptedError,

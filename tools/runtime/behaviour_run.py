@@ -41,9 +41,7 @@ class BehaviourRun:
         if self.walks:  # something else may follow at any time, so it always comes to rest
             options = replace(options, stand=max(options.stand, SETTLE))
         behaviour.check(robot.description, options)
-        for name, value in behaviour.opening(robot.description, options).items():
-            if value:
-                raise UsageError(f"--{name.replace('_', '-')} is of a robot that is not up yet")
+        _check_opened(robot, behaviour.opening(robot.description, options))
         self._record: RunRecord[Any] = RunRecord(robot, options)
 
     def perform(self) -> tuple[Ended, Stopped]:
@@ -78,3 +76,20 @@ class BehaviourRun:
             result={"robot": self._robot.description.name, "reason": reason},
             exit_status=status,
         )
+
+
+def _check_opened(robot: Robot, wanted: dict[str, Any]) -> None:
+    """Refuse what a robot would have to be opened with, because it is open.
+
+    Raises:
+        UsageError: The behaviour needs something else than the robot was opened with.
+    """
+    for name, value in wanted.items():
+        if name == "rate" and value is not None and abs(value * robot.period - 1.0) > 1e-6:
+            command = f"windup up {robot.description.name} --rate {value:g}"
+            raise UsageError(
+                f"this needs a loop of {value:g} Hz: begin the runtime with `{command}`"
+            )
+        if name != "rate" and value:
+            option = name.replace("_", "-")
+            raise UsageError(f"--{option} cannot be changed on a robot that is up")

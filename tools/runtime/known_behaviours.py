@@ -1,12 +1,12 @@
-"""The behaviours that a runtime can run: those of Windup, and those of installed packages."""
+"""The behaviours that a runtime can run: those of Windup, of packages, and of a user's files."""
 
 from importlib import import_module
 from typing import Any, Final
 
-from windup.tools.behaviours.registry import installed_behaviours, load_behaviour
-
 from windup.hal.errors import UnknownNameError
 from windup.tools.behaviours.behaviour import Behaviour
+from windup.tools.own_code.installed import installed_behaviours, load_behaviour
+from windup.tools.own_code.python_file import is_python_file, load_own
 
 OWN: Final = {
     "stand": "STAND",
@@ -21,15 +21,17 @@ OWN: Final = {
 
 
 def known_behaviour(name: str) -> Behaviour[Any]:
-    """Return a behaviour by its name.
+    """Return a behaviour by its name, or from a user's file, FILE.py:NAME.
 
     Raises:
         UnknownNameError: There is none.
-        UsageError: The package that brings it cannot be imported.
+        UsageError: The file or the package that brings it cannot be imported.
     """
     if name in OWN:
         found: Behaviour[Any] = getattr(import_module(f"windup.tools.behaviours.{name}"), OWN[name])
         return found
+    if is_python_file(name):
+        return load_own(name)
     installed = installed_behaviours()
     if name not in installed:
         raise UnknownNameError("behaviour", name, (*OWN, *installed))

@@ -6,7 +6,6 @@ from windup.hal.errors import HardwareError, UsageError, WindupError
 from windup.hal.observation import Observation
 from windup.hal.publishing.run_state import RunState
 from windup.tools.reports.run_report import RunReport
-from windup.tools.stopping.break_off import BreakOff
 from windup.tools.robot.robot import Robot
 from windup.tools.runtime.behaviour_run import SETTLE, BehaviourRun
 from windup.tools.runtime.board import TICKS, Board
@@ -15,6 +14,7 @@ from windup.tools.runtime.inbox import NOBODY, Inbox
 from windup.tools.runtime.messages import Refused, Run, Started
 from windup.tools.runtime.present_state import PresentState
 from windup.tools.runtime.start_broker import BrokerProcess
+from windup.tools.stopping.break_off import BreakOff
 from windup.tools.stopping.interrupts import WORDS, RunInterruptedError
 
 LOOK: Final = 64
@@ -143,7 +143,9 @@ class Owner:
         self._inbox.begin(client)
         self._state.off = False
         self._state.begin(order.behaviour)
+        watch = self._session.watch[:]
         ended, stopped = run.perform()
+        self._session.watch[:] = watch  # without those of the behaviour
         self._inbox.end()
         try:
             if stopped is not None:

@@ -2,12 +2,15 @@
 
 from dataclasses import MISSING, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import msgspec
 
 from windup.hal.errors import UsageError
 from windup.hal.ranges import check_numbers
+
+REMOTE: Final = {"robot", "what", "up", "arm", "json"}
+"""Options of a command that a robot that is up allows, beside those of the behaviour."""
 
 
 def options_as_data(options: Any) -> dict[str, Any]:
@@ -44,6 +47,26 @@ def options_of(kind: type, given: dict[str, Any]) -> Any:
         raise UsageError(f"options: {error}") from None
     check_numbers(options)
     return options
+
+
+def check_alone(command: Any, kind: type) -> None:
+    """Refuse options of a command that are not of its behaviour, for a robot that is up.
+
+    Args:
+        command: The command, a dataclass.
+        kind: The dataclass of the behaviour's own options.
+
+    Raises:
+        UsageError: One of them is given.
+    """
+    known = {item.name for item in fields(kind)} | REMOTE
+    for item in fields(command):
+        given = item.default is not MISSING and getattr(command, item.name) != item.default
+        if given and item.name not in known:
+            raise UsageError(
+                f"--{item.name.replace('_', '-')} is of a robot that this command opens; leave it "
+                "or --up away"
+            )
 
 
 def _absolute(value: object) -> str:
