@@ -54,8 +54,17 @@ class BehaviourRun:
             return self._told(str(stopped), 130), stopped
         except WindupError as error:
             return self._told(str(error), error.exit_status), error
-        report = self._behaviour.report(self._record)
-        ended = Ended(
+        except Exception as error:  # of the user's own code, between two runs; the robot is held
+            return self._told(f"failed: {type(error).__name__}: {error}", 1), None
+        return self._went(), None
+
+    def _went(self) -> Ended:
+        """Return how it went, where it came to its end."""
+        try:
+            report = self._behaviour.report(self._record)
+        except Exception as error:  # of the user's own code
+            return self._told(f"has no report: {type(error).__name__}: {error}", 1)
+        return Ended(
             id=self._order.id,
             good=report.good,
             reason=report.reason,
@@ -63,7 +72,6 @@ class BehaviourRun:
             result=plain(report.result),
             exit_status=0 if report.good else 1,
         )
-        return ended, None
 
     def _told(self, reason: str, status: int) -> Ended:
         """Return what the client of a behaviour that did not come to its end is told."""

@@ -37,7 +37,7 @@ PATIENCE: Final = 5.0
 CHUNK: Final = 1 << 16
 DECODER: Final = msgspec.json.Decoder(ToClient)
 ERRORS: Final[dict[int, type[WindupError]]] = {2: UsageError, 3: HardwareError}
-T = TypeVar("T", Welcome, Leased, Started, Ended, Status)
+T = TypeVar("T", Welcome, Leased, Started, Status)
 
 
 class RuntimeClient:
@@ -60,6 +60,7 @@ class RuntimeClient:
         self._place = Place.of(robot) if place is None else place
         self.on_status: Callable[[Status], None] = lambda status: None
         self._numbers = 0
+        self._over: dict[int, Ended] = {}
         self._in = bytearray()
         self._link = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         try:
@@ -116,12 +117,22 @@ class RuntimeClient:
             WindupError: A change that was asked for cannot be; the behaviour goes on.
             HardwareError: The runtime has ended.
         """
-        message = self.receive(seconds)
+        if number not in self._over:
+            self._sort(self.receive(seconds))
+        return self._over.pop(number, None)
+
+    def _sort(self, message: ToClient | None) -> None:
+        """Keep, pass on or raise a message that nobody waits for at the moment.
+
+        Raises:
+            WindupError: A request was refused.
+        """
         if isinstance(message, Refused):
             raise ERRORS.get(message.exit_status, WindupError)(message.message)
         if isinstance(message, Status):
             self.on_status(message)
-        return message if isinstance(message, Ended) and message.id == number else None
+        if isinstance(message, Ended):
+            self._over[message.id] = message
 
     def change(
         self,
@@ -210,10 +221,7 @@ class RuntimeClient:
         while (message := self.receive(seconds)) is not None:
             if isinstance(message, kind):
                 return message
-            if isinstance(message, Refused):
-                raise ERRORS.get(message.exit_status, WindupError)(message.message)
-            if isinstance(message, Status):
-                self.on_status(message)
+            self._sort(message)
         raise HardwareError(f"the runtime of {self._place.robot} does not answer")
 
     def _ended(self) -> HardwareError:

@@ -119,9 +119,9 @@ class Owner:
                 loop.finish()
 
     def _ready(self) -> bool:
-        """Return whether goals of a client may be followed: the first motion has been made."""
+        """Return whether goals may be followed: every joint has been seen to follow its own."""
         start = self._robot.start
-        return start is None or start.motion.made
+        return start is None or not start.motion.due
 
     def _check_fallen(self) -> None:
         """Go limp where the robot has fallen."""
@@ -138,6 +138,10 @@ class Owner:
         except WindupError as error:
             refused = Refused(message=str(error), exit_status=error.exit_status, id=order.id)
             self._inbox.report(client, refused)
+            return
+        except Exception as error:  # of the user's own code
+            said = f"{order.behaviour}: {type(error).__name__}: {error}"
+            self._inbox.report(client, Refused(message=said, id=order.id))
             return
         self._inbox.report(client, Started(id=order.id))
         self._inbox.begin(client)

@@ -1,6 +1,7 @@
 """Brings a robot up: opens it, starts its broker, and owns it until it goes down."""
 
 import os
+from collections.abc import Callable
 from typing import Any
 
 from windup.robots import load_robot
@@ -15,13 +16,16 @@ from windup.tools.runtime.place import Note, Place, RuntimeLock
 from windup.tools.runtime.start_broker import BrokerProcess
 
 
-def serve(name: str, port: str | None, *, arm: bool, **more: Any) -> None:
+def serve(
+    name: str, port: str | None, *, arm: bool, ready: Callable[[], None], **more: Any
+) -> None:
     """Own a robot until a client wants it to go down.
 
     Args:
         name: Name of the robot, or path of its folder.
         port: URL of its bus; None for its twin, in real time.
         arm: Allow torque on a port that is not twin://.
+        ready: Called once clients may come.
         **more: Further arguments of `Robot.open`.
 
     Raises:
@@ -37,6 +41,7 @@ def serve(name: str, port: str | None, *, arm: bool, **more: Any) -> None:
             board = Board.create(len(robot.joints))
             broker = BrokerProcess(place, board, _welcome(robot, port, version))
             try:
+                ready()
                 Owner(robot, board, broker).serve()
                 robot.close()  # before the broker ends: clients wait for that
             finally:

@@ -1,6 +1,7 @@
 """`windup up`: own a robot, hold it between two behaviours, and do what other commands want."""
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated
 
 import tyro
@@ -55,6 +56,7 @@ class Up(Command):
         """Own the robot; returns the exit status."""
         name, url = load_robot(self.robot).name, with_faults(self.port, self.faults)
         where = "its twin" if url is None else f"{url}, {'armed' if self.arm else 'torque off'}"
-        say(f"{name} on {where}: `windup down {name}` or Ctrl-C ends it")
-        serve(self.robot, url, arm=self.arm, state=self.state, rate=self.rate)
+        line = f"{name} on {where}: `windup down {name}` or Ctrl-C ends it"
+        ready = partial(say, line)
+        serve(self.robot, url, arm=self.arm, ready=ready, state=self.state, rate=self.rate)
         return 0
