@@ -13,10 +13,10 @@ from windup.tools.behaviours.report import Report
 from windup.tools.behaviours.run_record import RunRecord
 from windup.tools.options.common import Common
 from windup.tools.options.twin_options import WorldOptions
+from windup.tools.remote.plain_options import check_alone, options_as_data
+from windup.tools.remote.remote_run import run_remotely
 from windup.tools.robot.robot import Robot
 from windup.tools.robot.stopping import INTERRUPTED
-from windup.tools.runtime.plain_options import check_alone, options_as_data
-from windup.tools.runtime.remote_run import run_remotely
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.parallel import side_by_side
 from windup.tools.terminal.picture import check_picture

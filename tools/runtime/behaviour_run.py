@@ -5,10 +5,10 @@ from typing import Any, Final
 
 from windup.hal.errors import UsageError, WindupError
 from windup.tools.behaviours.run_record import RunRecord
+from windup.tools.remote.messages import Ended, Run
+from windup.tools.remote.plain_options import options_of
 from windup.tools.robot.robot import Robot
 from windup.tools.runtime.known_behaviours import known_behaviour
-from windup.tools.runtime.messages import Ended, Run
-from windup.tools.runtime.plain_options import options_of
 from windup.tools.stopping.interrupts import BrokenOffError, RunInterruptedError
 from windup.tools.terminal.output import plain
 

@@ -15,8 +15,8 @@ from typing import Any, Final
 
 import msgspec
 
+from windup.tools.remote.messages import LONGEST, Ended, Refused, ToClient, Welcome
 from windup.tools.runtime.board import OVER, STATE, Board
-from windup.tools.runtime.messages import LONGEST, Ended, Refused, ToClient, Welcome
 from windup.tools.runtime.orders import REPORTS
 from windup.tools.runtime.requests import Client, Requests
 

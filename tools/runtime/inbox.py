@@ -9,10 +9,10 @@ from windup.control.limit_cycle.balancer import Balancer
 from windup.hal.errors import UsageError, WindupError
 from windup.hal.observation import Observation
 from windup.hal.publishing.run_state import RunState
+from windup.tools.remote.messages import Change, Down, End, Ended, Refused, Run, Started
 from windup.tools.robot.session import Session
 from windup.tools.runtime.board import LEASE, MISSED, STATE, TICKS, Board
 from windup.tools.runtime.live_walk import LiveWalk
-from windup.tools.runtime.messages import Change, Down, End, Ended, Refused, Run, Started
 from windup.tools.runtime.orders import ORDERS, Order, Report
 from windup.tools.runtime.present_state import PresentState
 

@@ -7,7 +7,7 @@ from windup.control.limit_cycle.balancer import Balancer
 from windup.control.pose_graph.style import styles_of
 from windup.control.steering.guide import Steady, WalkCommand
 from windup.hal.errors import UnknownNameError, UsageError
-from windup.tools.runtime.messages import Change
+from windup.tools.remote.messages import Change
 
 LONGEST: Final = 60
 """Maximum number of steps for a walk to come to rest."""

@@ -4,7 +4,7 @@ from typing import Final
 
 import msgspec
 
-from windup.tools.runtime.messages import Change, Down, End, Ended, Refused, Run, Started
+from windup.tools.remote.messages import Change, Down, End, Ended, Refused, Run, Started
 
 
 class Order(msgspec.Struct, frozen=True):

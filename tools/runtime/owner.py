@@ -5,13 +5,13 @@ from typing import Final
 from windup.hal.errors import HardwareError, UsageError, WindupError
 from windup.hal.observation import Observation
 from windup.hal.publishing.run_state import RunState
+from windup.tools.remote.messages import Refused, Run, Started
 from windup.tools.reports.run_report import RunReport
 from windup.tools.robot.robot import Robot
 from windup.tools.runtime.behaviour_run import SETTLE, BehaviourRun
 from windup.tools.runtime.board import TICKS, Board
 from windup.tools.runtime.follow_goals import GoalFollower, largest_speed
 from windup.tools.runtime.inbox import NOBODY, Inbox
-from windup.tools.runtime.messages import Refused, Run, Started
 from windup.tools.runtime.present_state import PresentState
 from windup.tools.runtime.start_broker import BrokerProcess
 from windup.tools.stopping.break_off import BreakOff

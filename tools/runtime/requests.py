@@ -8,9 +8,7 @@ from typing import Final
 import msgspec
 
 from windup.hal.publishing.run_state import RunState
-from windup.tools.runtime.board import ARMED, JOINTS, LEASE, MISSED, STATE, TICKS, Board
-from windup.tools.runtime.counts import Count
-from windup.tools.runtime.messages import (
+from windup.tools.remote.messages import (
     PROTOCOL,
     Ask,
     Change,
@@ -28,6 +26,8 @@ from windup.tools.runtime.messages import (
     ToClient,
     Welcome,
 )
+from windup.tools.runtime.board import ARMED, JOINTS, LEASE, MISSED, STATE, TICKS, Board
+from windup.tools.runtime.counts import Count
 from windup.tools.runtime.orders import Order
 
 DECODER: Final = msgspec.json.Decoder(FromClient)

@@ -6,13 +6,13 @@ from typing import Any
 
 from windup.robots import load_robot
 from windup.tools.command_line.version import installed_version
+from windup.tools.remote.messages import Welcome
+from windup.tools.remote.place import Note, Place, RuntimeLock
 from windup.tools.robot.robot import Robot
 from windup.tools.runtime.board import Board
 from windup.tools.runtime.follow_goals import DEADMAN
 from windup.tools.runtime.known_behaviours import import_all
-from windup.tools.runtime.messages import Welcome
 from windup.tools.runtime.owner import Owner
-from windup.tools.runtime.place import Note, Place, RuntimeLock
 from windup.tools.runtime.start_broker import BrokerProcess
 
 

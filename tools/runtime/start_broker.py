@@ -13,9 +13,9 @@ import msgspec
 from windup.hal.errors import UsageError
 from windup.hal.guardian.child_path import child_python_path
 from windup.hal.in_words import in_words
+from windup.tools.remote.messages import Welcome
+from windup.tools.remote.place import Place
 from windup.tools.runtime.board import OVER, Board
-from windup.tools.runtime.messages import Welcome
-from windup.tools.runtime.place import Place
 
 BODY: Final = "from windup.tools.runtime.broker import main; main()"
 BACKLOG: Final = 16

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from windup.hal.stopping.folder import private_folder
-from windup.tools.runtime.place import Place
+from windup.tools.remote.place import Place
 
 PROGRAM = """
 import sys

@@ -11,12 +11,12 @@ import pytest
 
 from windup.hal.errors import HardwareError, UsageError
 from windup.hal.publishing.run_state import RunState
+from windup.tools.remote.client import RuntimeClient
+from windup.tools.remote.messages import Ended, Run, Started, Status, ToClient, Welcome
+from windup.tools.remote.place import Place
 from windup.tools.runtime.board import LEASE, STATE, Board
 from windup.tools.runtime.broker import UNREAD
-from windup.tools.runtime.client import RuntimeClient
-from windup.tools.runtime.messages import Ended, Run, Started, Status, ToClient, Welcome
 from windup.tools.runtime.orders import ORDERS, Order, Report
-from windup.tools.runtime.place import Place
 from windup.tools.runtime.start_broker import BrokerProcess
 
 WELCOME = Welcome(

@@ -1,8 +1,7 @@
 import msgspec
 import pytest
 
-from windup.tools.runtime.board import LEASE, Board
-from windup.tools.runtime.messages import (
+from windup.tools.remote.messages import (
     PROTOCOL,
     Ask,
     End,
@@ -18,6 +17,7 @@ from windup.tools.runtime.messages import (
     ToClient,
     Welcome,
 )
+from windup.tools.runtime.board import LEASE, Board
 from windup.tools.runtime.orders import ORDERS, Order
 from windup.tools.runtime.requests import Client, Requests
 

@@ -10,9 +10,9 @@ import pytest
 
 from tests.tools.runtime.runtime_process import command, windup_up
 from windup.hal.errors import UsageError
-from windup.tools.runtime.client import RuntimeClient
-from windup.tools.runtime.messages import Goal, Status
-from windup.tools.runtime.remote_robot import RemoteRobot
+from windup.tools.remote.client import RuntimeClient
+from windup.tools.remote.messages import Goal, Status
+from windup.tools.remote.remote_robot import RemoteRobot
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import tyro
 
-from windup.tools.runtime.client import RuntimeClient
+from windup.tools.remote.client import RuntimeClient
 from windup.tools.stopping.stop_runs import robot_name
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.say import say

@@ -8,10 +8,10 @@ import msgspec
 import tyro
 
 from windup.hal.stopping.folder import private_folder
-from windup.tools.runtime.client import RuntimeClient
-from windup.tools.runtime.messages import Status as Answer
-from windup.tools.runtime.messages import Welcome
-from windup.tools.runtime.place import Place
+from windup.tools.remote.client import RuntimeClient
+from windup.tools.remote.messages import Status as Answer
+from windup.tools.remote.messages import Welcome
+from windup.tools.remote.place import Place
 from windup.tools.stopping.stop_runs import robot_name
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json

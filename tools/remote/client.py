@@ -12,7 +12,7 @@ import msgspec
 
 from windup.hal.errors import HardwareError, UsageError, WindupError
 from windup.tools.command_line.version import installed_version
-from windup.tools.runtime.messages import (
+from windup.tools.remote.messages import (
     PROTOCOL,
     Ask,
     Change,
@@ -30,7 +30,7 @@ from windup.tools.runtime.messages import (
     ToClient,
     Welcome,
 )
-from windup.tools.runtime.place import Place
+from windup.tools.remote.place import Place
 
 PATIENCE: Final = 5.0
 """Longest time for the runtime to answer, s."""

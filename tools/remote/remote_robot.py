@@ -6,8 +6,8 @@ from types import TracebackType
 from typing import Any, Self
 
 from windup.hal.joints import Array
-from windup.tools.runtime.client import RuntimeClient
-from windup.tools.runtime.messages import Ended, Goal, Release, Status
+from windup.tools.remote.client import RuntimeClient
+from windup.tools.remote.messages import Ended, Goal, Release, Status
 from windup.tools.stopping.stop_runs import Stopped, robot_name, stop_runs
 
 

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from windup.hal.errors import UsageError
-from windup.tools.runtime.place import Note, Place, RuntimeLock
+from windup.tools.remote.place import Note, Place, RuntimeLock
 
 NOTE = Note(pid=os.getpid(), port="/dev/ttyUSB0", version="0.1.0")
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import msgspec
 
-from windup.tools.runtime.client import RuntimeClient
-from windup.tools.runtime.messages import Ended
+from windup.tools.remote.client import RuntimeClient
+from windup.tools.remote.messages import Ended
 from windup.tools.stopping.stop_keys import keyboard, stop_keys
 from windup.tools.stopping.stop_runs import stop_runs
 from windup.tools.terminal.output import console, write_json
