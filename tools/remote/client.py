@@ -68,6 +68,8 @@ class RuntimeClient:
         except OSError:
             self._link.close()
             raise self._place.not_up() from None
+        self._poll = select.poll()  # select() takes no descriptor beyond 1023
+        self._poll.register(self._link, select.POLLIN)
         try:
             hello = Hello(
                 protocol=PROTOCOL, version=installed_version(), client=name, pid=os.getpid()
@@ -80,8 +82,11 @@ class RuntimeClient:
 
     def status(self) -> Status:
         """Return how the runtime is."""
-        self.send(Ask())
-        return self._wait_for(Status)
+        self._numbers += 1
+        self.send(Ask(id=self._numbers))
+        while (status := self._wait_for(Status)).id != self._numbers:
+            self.on_status(status)
+        return status
 
     def take(self) -> None:
         """Take the lease.
@@ -183,7 +188,7 @@ class RuntimeClient:
         until = None if seconds is None else time.monotonic() + seconds
         while b"\n" not in self._in:
             left = None if until is None else max(until - time.monotonic(), 0.0)
-            if not select.select([self._link], [], [], left)[0]:
+            if not self._poll.poll(None if left is None else 1e3 * left):
                 return None
             try:
                 data = self._link.recv(CHUNK)

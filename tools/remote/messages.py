@@ -92,7 +92,9 @@ class Down(Message):
 
 
 class Ask(Message):
-    """Client: ask for a `Status`."""
+    """Client: ask for a `Status`, which repeats the number `id`."""
+
+    id: int = 0
 
 
 class Welcome(Message):
@@ -174,7 +176,8 @@ class Status(Message):
         missed: Ticks that came too late.
         holder: Client that has the lease; "" for none.
         clients: Number of clients.
-        counts: Goals by what became of them: `COUNTS`.
+        counts: Goals by what became of them, with the names of `Count`.
+        id: Number of the `Ask` that it answers; None where the state has changed.
     """
 
     state: str
@@ -185,6 +188,7 @@ class Status(Message):
     holder: str
     clients: int
     counts: dict[str, int]
+    id: int | None = None
 
 
 FromClient = Hello | Take | Release | Run | Change | End | Goal | Down | Ask

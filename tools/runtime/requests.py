@@ -93,8 +93,8 @@ class Requests:
         if self.holder is client:
             self._lease(None)
 
-    def status(self) -> Status:
-        """Return how the runtime is."""
+    def status(self, number: int | None = None) -> Status:
+        """Return how the runtime is; `number` is that of the request."""
         words = self.board.words
         return Status(
             state=RunState(words[STATE]).words,
@@ -105,6 +105,7 @@ class Requests:
             holder="" if self.holder is None else str(self.holder),
             clients=len(self.clients),
             counts=self.board.counts(),
+            id=number,
         )
 
     def _answer(self, client: Client, message: FromClient) -> None:
@@ -113,7 +114,7 @@ class Requests:
         elif client.hello is None:
             client.send(Refused(message="the first message has to be a hello"))
         elif isinstance(message, Ask):
-            client.send(self.status())
+            client.send(self.status(message.id))
         elif isinstance(message, Take):
             if self._may_have_lease(client, None):
                 client.send(Leased())

@@ -59,7 +59,7 @@ def test_a_jump_becomes_steps_of_the_largest_speed(streamed: Streamed) -> None:
 
 def test_a_goal_beyond_the_limits_is_clamped_and_counted(streamed: Streamed) -> None:
     streamed.board.put_goal([0.1, 0.1, -0.5, 0.1, 0.1])
-    streamed.tick(5)
+    streamed.tick(6)
     assert streamed.follower.position[2] == JOINTS.lower[2]
     assert streamed.counts["limited"] == 1
 
