@@ -189,8 +189,10 @@ class StopFlag:
         return self._words[DONE] >= stamp
 
     @property
-    def outcome(self) -> Outcome:
-        """What became of the last request that was carried out."""
+    def outcome(self) -> Outcome | None:
+        """What became of the last stop; None before any."""
+        if not self._words[OUTCOME]:
+            return None
         text = self._map[OUTCOME_AT : OUTCOME_AT + self._words[OUTCOME]]
         return msgspec.json.decode(text, type=Outcome)
 

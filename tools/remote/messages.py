@@ -17,7 +17,7 @@ class Message(msgspec.Struct, frozen=True, kw_only=True, tag_field="type", tag=s
     """Base class of all messages."""
 
 
-class Hello(Message):
+class Hello(Message, frozen=True, kw_only=True):
     """Client: the first message.
 
     Attributes:
@@ -33,15 +33,15 @@ class Hello(Message):
     pid: int
 
 
-class Take(Message):
+class Take(Message, frozen=True, kw_only=True):
     """Client: take the lease, which one client at a time can have."""
 
 
-class Release(Message):
+class Release(Message, frozen=True, kw_only=True):
     """Client: give the lease back; the robot holds."""
 
 
-class Run(Message):
+class Run(Message, frozen=True, kw_only=True):
     """Client: run a behaviour, in place of the present one; takes the lease.
 
     Attributes:
@@ -57,7 +57,7 @@ class Run(Message):
     arm: bool = False
 
 
-class Change(Message):
+class Change(Message, frozen=True, kw_only=True):
     """Client: change the walk that goes on; what is None stays.
 
     Attributes:
@@ -73,11 +73,11 @@ class Change(Message):
     style: dict[str, float] = {}
 
 
-class End(Message):
+class End(Message, frozen=True, kw_only=True):
     """Client: end the behaviour; the robot comes to rest, if it can, and holds."""
 
 
-class Goal(Message):
+class Goal(Message, frozen=True, kw_only=True):
     """Client: goal of the joints; the newest wins, and holding follows when no other one comes.
 
     Attributes:
@@ -87,17 +87,17 @@ class Goal(Message):
     position: tuple[float, ...]
 
 
-class Down(Message):
+class Down(Message, frozen=True, kw_only=True):
     """Client: end the runtime: rest, torque off, disconnect."""
 
 
-class Ask(Message):
+class Ask(Message, frozen=True, kw_only=True):
     """Client: ask for a `Status`, which repeats the number `id`."""
 
     id: int = 0
 
 
-class Welcome(Message):
+class Welcome(Message, frozen=True, kw_only=True):
     """Runtime: answer to `Hello`.
 
     Attributes:
@@ -121,11 +121,11 @@ class Welcome(Message):
     deadman: float
 
 
-class Leased(Message):
+class Leased(Message, frozen=True, kw_only=True):
     """Runtime: the client has the lease."""
 
 
-class Refused(Message):
+class Refused(Message, frozen=True, kw_only=True):
     """Runtime: a request is refused, and nothing has moved because of it.
 
     Attributes:
@@ -139,13 +139,13 @@ class Refused(Message):
     id: int | None = None
 
 
-class Started(Message):
+class Started(Message, frozen=True, kw_only=True):
     """Runtime: behaviour number `id` has begun."""
 
     id: int
 
 
-class Ended(Message):
+class Ended(Message, frozen=True, kw_only=True):
     """Runtime: a behaviour has ended.
 
     Attributes:
@@ -165,7 +165,7 @@ class Ended(Message):
     exit_status: int = 0
 
 
-class Status(Message):
+class Status(Message, frozen=True, kw_only=True):
     """Runtime: how it is; sent on `Ask`, and when the state changes.
 
     Attributes:

@@ -42,7 +42,7 @@ def options_of(kind: type, given: dict[str, Any]) -> Any:
     if unknown := sorted(set(given) - known):
         raise UsageError(f"unknown option {unknown[0]!r}; known: {', '.join(sorted(known))}")
     try:
-        options = msgspec.convert(given, kind, dec_hook=_path)
+        options: Any = msgspec.convert(given, kind, dec_hook=_path)
     except msgspec.ValidationError as error:
         raise UsageError(f"options: {error}") from None
     check_numbers(options)

@@ -25,6 +25,7 @@ LOOK: Final = 0.001
 """Time between two looks at a flag, s."""
 LONGEST: Final = 10.0
 """Maximum time to wait for the end of a stop, which may be a crouch, s."""
+NOBODY_LEFT: Final = "its program and its guardian have died, so torque may be on: cut the servo power, or give --port"
 IGNORED: Final = 3 * TIME_TO_ANSWER
 """Time after which a run without a guardian is taken to hang, ns."""
 
@@ -163,24 +164,26 @@ def _flags_of(robot: str | None, stack: ExitStack) -> list[StopFlag]:
     return [
         flag
         for flag in flags
-        if (robot is None or flag.about.robot == robot)
-        and (flag.alive or process_start(flag.guardian))
+        if (robot is None or flag.about.robot == robot) and (flag.alive or flag.guardian)
     ]
 
 
 def _wait(flag: StopFlag, stamp: int) -> Stopped:
     """Wait until a request has been carried out, or cannot be."""
     outcome = None
-    while not flag.done(stamp) and outcome is None:
-        time.sleep(LOOK)
-        outcome = _hopeless(flag, stamp)
+    while outcome is None:
+        outcome = flag.outcome if flag.done(stamp) else _hopeless(flag, stamp)
+        if outcome is None:
+            time.sleep(LOOK)
     about, seconds = flag.about, 1e-9 * (time.monotonic_ns() - stamp)
-    return Stopped(about.robot, about.port, flag.pid, seconds, outcome or flag.outcome)
+    return Stopped(about.robot, about.port, flag.pid, seconds, outcome)
 
 
 def _hopeless(flag: StopFlag, stamp: int) -> Outcome | None:
     """Return an outcome where waiting longer is of no use, or None."""
     passed = time.monotonic_ns() - stamp
+    if flag.guardian and not flag.alive and not process_start(flag.guardian):
+        return flag.outcome or Outcome(said=NOBODY_LEFT, stopped=False)
     if flag.guardian == 0 and not flag.seen(stamp) and passed > IGNORED:
         return Outcome(said="it does not answer; none of its servos has torque")
     if flag.guardian == 0 and not flag.alive:

@@ -10,7 +10,7 @@ from windup.hal.guardian.host import Host
 from windup.hal.guardian.order import IDLE, TICK, Order
 from windup.hal.guardian.process import Ending, watch
 from windup.hal.guardian.takeover import OFF, Takeover
-from windup.hal.stopping.stop_flag import StopFlag
+from windup.hal.stopping.stop_flag import Outcome, StopFlag
 
 
 def test_a_host_that_beats_but_does_not_see_the_request_is_silent(tmp_path: Path) -> None:
@@ -43,5 +43,5 @@ def test_who_asks_is_told_what_the_guardian_has_read(sts_bus: Path, tmp_path: Pa
     stamp = flag.request()
     Takeover(order, lambda text: None, flag).carry_out("its program hangs")
     assert flag.done(stamp)
-    assert (flag.outcome.said, flag.outcome.by) == (OFF, "guardian")
+    assert flag.outcome == Outcome(said=OFF, by="guardian")
     flag.remove()

@@ -77,7 +77,8 @@ def test_a_request_to_a_run_that_ends_is_answered(tmp_path: Path) -> None:
     assert other is not None
     stamp = other.request()
     run.remove()
-    assert other.done(stamp) and "has ended by itself" in other.outcome.said
+    assert other.done(stamp) and other.outcome is not None
+    assert "has ended by itself" in other.outcome.said
     other.close()
     assert flags_in(tmp_path) == []
 

@@ -19,7 +19,7 @@ LINES = {
     "other": ("dance", "unknown command 'dance'; `windup --help` lists all"),
     "nothing": ("", "give a command, such as `windup robots`; `windup --help` lists all"),
     "positional": ("walk", "walk: give ROBOT (a robot's name"),
-    "needed": ("push op3", "push: give --impulse"),
+    "needed": ("synthesise op3", "synthesise: give --out PATH (gait file to write"),
     "noisy robot": (
         "stand op3 --port /dev/ttyUSB9 --arm --noise 1",
         "--noise is of a twin's start",

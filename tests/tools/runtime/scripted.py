@@ -1,7 +1,7 @@
 """A runtime in this process, on simulated time, whose client is a generator of a test."""
 
 from collections.abc import Callable, Iterator
-from typing import cast
+from typing import Any, cast
 
 import msgspec
 
@@ -44,12 +44,14 @@ class Scripted:
         self.told: list[Started | Ended | Refused] = []
         self.states: list[RunState] = []
         self._numbers = 0
+        self._script: Script = iter(())
+        self._until: Callable[[], bool] = lambda: True
         self.owner = Owner(robot, self.board, cast(BrokerProcess, NoBroker()))
         robot.session.watch.append(self._tick)
 
     def serve(self, script: Script) -> None:
         """Serve until the script goes down, or is over."""
-        self._script, self._until = script, lambda: True
+        self._script = script
         self.owner.serve()
 
     def order(self, message: Run | Change | End | Down) -> None:
@@ -57,7 +59,7 @@ class Scripted:
         self.board.words[LEASE] = ME
         assert self.board.orders.put(msgspec.json.encode(Order(ME, message)))
 
-    def run(self, behaviour: str, *, arm: bool = False, **options: object) -> Callable[[], bool]:
+    def run(self, behaviour: str, *, arm: bool = False, **options: Any) -> Callable[[], bool]:
         """Order a behaviour; return what is true once the client has been told of its end."""
         self._numbers += 1
         number = self._numbers

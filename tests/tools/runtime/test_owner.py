@@ -1,3 +1,5 @@
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -91,7 +93,7 @@ def test_goals_are_followed_while_it_holds(up: Scripted) -> None:
     ],
 )
 def test_what_cannot_be_is_refused_and_the_robot_goes_on_holding(
-    up: Scripted, behaviour: str, options: dict[str, object], why: str
+    up: Scripted, behaviour: str, options: dict[str, Any], why: str
 ) -> None:
     def script() -> Script:
         yield up.run(behaviour, **options)

@@ -26,7 +26,7 @@ def own_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
 
 def test_a_run_in_real_time_stops_at_the_next_tick_and_says_what_it_read() -> None:
     with Robot.open("op3", realtime=True) as robot:
-        flag = robot.flag
+        flag = robot.session.flag
         assert flag is not None
 
         def stop_after_three_ticks(observation: Observation) -> None:
@@ -43,8 +43,8 @@ def test_a_run_in_real_time_stops_at_the_next_tick_and_says_what_it_read() -> No
 
 def test_a_request_before_torque_comes_on_keeps_it_off() -> None:
     with Robot.open("op3", realtime=True) as robot:
-        assert robot.flag is not None
-        robot.flag.request()
+        assert robot.session.flag is not None
+        robot.session.flag.request()
         with pytest.raises(RunInterruptedError):
             robot.stand(60.0)
         assert robot.loop.ticks == 0
@@ -53,7 +53,7 @@ def test_a_request_before_torque_comes_on_keeps_it_off() -> None:
 
 def test_a_mere_simulation_has_no_flag(own_folder: Path) -> None:
     with Robot.open("op3") as robot:
-        assert robot.flag is None
+        assert robot.session.flag is None
     assert list(own_folder.iterdir()) == []
 
 
@@ -74,6 +74,32 @@ def test_a_run_that_hangs_without_torque_is_not_waited_for(shell: Windup) -> Non
     ran = shell("stop", "op3", "--json", "-")
     assert (ran.status, ran.json["stopped"], ran.json["robot"]) == (0, True, "op3")
     assert "does not answer; none of its servos has torque" in ran.err
+    flag.remove()
+
+
+def died(guardian: int) -> StopFlag:
+    """Return the flag of a run that has died."""
+    flag = StopFlag.create("op3")
+    flag.guardian = guardian
+    with subprocess.Popen(["sleep", "0"]) as dead:
+        dead.wait()
+        flag._words[1] = dead.pid
+    return flag
+
+
+def test_who_comes_late_is_told_what_the_guardian_has_read(shell: Windup) -> None:
+    flag = died(guardian=2**22 + 1)
+    flag.finish(Outcome(said="torque is off at all servos, read back", by="guardian"))
+    ran = shell("stop", "op3", "--json", "-")
+    assert (ran.status, ran.json["by"], ran.json["stopped"]) == (0, "guardian", True)
+    flag.remove()
+
+
+def test_where_nobody_is_left_torque_may_be_on(shell: Windup) -> None:
+    flag = died(guardian=2**22 + 1)
+    ran = shell("stop", "op3", "--json", "-")
+    assert (ran.status, ran.json["stopped"]) == (3, False)
+    assert "its program and its guardian have died, so torque may be on" in ran.err
     flag.remove()
 
 
