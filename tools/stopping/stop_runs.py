@@ -25,7 +25,10 @@ LOOK: Final = 0.001
 """Time between two looks at a flag, s."""
 LONGEST: Final = 10.0
 """Maximum time to wait for the end of a stop, which may be a crouch, s."""
-NOBODY_LEFT: Final = "its program and its guardian have died, so torque may be on: cut the servo power, or give --port"
+NOBODY_LEFT: Final = (
+    "its program and its guardian have died, so torque may be on: cut the servo power, "
+    "or give --port"
+)
 IGNORED: Final = 3 * TIME_TO_ANSWER
 """Time after which a run without a guardian is taken to hang, ns."""
 
