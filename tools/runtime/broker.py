@@ -15,6 +15,7 @@ from typing import Any, Final
 
 import msgspec
 
+from windup.hal.publishing.run_state import RunState
 from windup.tools.remote.messages import LONGEST, Ended, Refused, ToClient, Welcome
 from windup.tools.runtime.board import OVER, STATE, Board
 from windup.tools.runtime.orders import REPORTS
@@ -93,7 +94,7 @@ class Broker:
         self.requests = Requests(board, welcome)
         self._connections: dict[int, Connection] = {}
         self._count = 0
-        self._state = board.words[STATE]
+        self._state = int(RunState.DISCONNECTED)
         self._selector = selectors.DefaultSelector()
         for thing in (listener, bell, loop):
             self._selector.register(thing, selectors.EVENT_READ)
@@ -101,6 +102,7 @@ class Broker:
 
     def serve(self) -> None:
         """Serve clients until the loop has ended."""
+        self._pass_on()  # what the loop has written before this process ran
         while True:
             for key, events in self._selector.select():
                 if key.fileobj == self._loop:
