@@ -47,12 +47,24 @@ class Recorder(Protocol):
     def record(
         self,
         observation: Observation,
-        command: JointCommand,
-        seconds: float,
+        asked: JointCommand,
+        applied: JointCommand,
+        tick_time: float,
+        lateness: float,
         tick: int,
         missed: int,
     ) -> None:
-        """Take down what was seen, what the joints were told, and how long that took, s."""
+        """Record one tick.
+
+        Args:
+            observation: What was observed.
+            asked: Command of the controller.
+            applied: Command that the joints really got.
+            tick_time: Duration of read, estimate, step and write, s.
+            lateness: Time from the scheduled start of the tick until it began, s.
+            tick: Number of ticks of the run so far.
+            missed: Number of ticks skipped so far.
+        """
         ...
 
 
@@ -102,6 +114,11 @@ class Schedule:
     def elapsed(self) -> float:
         """Time since it began, s."""
         return self._clock.now() - self._started
+
+    @property
+    def due(self) -> float:
+        """Time from the beginning until the present tick is due, s."""
+        return self._tick * self._period
 
     def advance(self) -> int:
         """Go on to the next tick that is still to come; return how many are left out."""
@@ -158,7 +175,7 @@ class TickLoop:
         self._reset: Callable[[Observation], None] | None = controller.reset
         self._period, self._until, self._estimator = period, until, estimator
         self._rollouts, self.recorder = rollouts or Stopwatch(), recorder
-        self._schedule = Schedule(backend.clock, period)
+        self._schedule, self._late = Schedule(backend.clock, period), 0.0
         self._wall_started = wall.perf_counter()
 
     def observe(self) -> Observation | None:
@@ -187,7 +204,8 @@ class TickLoop:
             WindupError: Whatever the controller, the guard or the backend raise.
         """
         assert self.observation is not None, "a tick begins with an observation"
-        self.applied = self._write(self._step(self.observation, self._period))
+        self._asked = self._step(self.observation, self._period)
+        self.applied = self._write(self._asked)
         return self.applied
 
     def finish(self) -> None:
@@ -203,10 +221,14 @@ class TickLoop:
         report.ticks += 1
         if self.recorder is not None:
             assert self.observation is not None, "a tick begins with an observation"
-            self.recorder.record(self.observation, applied, spent, report.ticks, report.missed)
+            self.recorder.record(
+                self.observation, self._asked, applied, spent, self._late, report.ticks,
+                report.missed,
+            )  # fmt: skip
         report.missed += schedule.advance()
         schedule.wait()
         report.sim_time = schedule.elapsed
+        self._late = report.sim_time - schedule.due
         report.wall_time = wall.perf_counter() - self._wall_started
 
 

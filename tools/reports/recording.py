@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from windup.control.loop import Recorder
-from windup.hal.command import FIELDS, JointCommand
-from windup.hal.controller import Controller
+from windup.hal.command import JointCommand
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState, ImuState, Observation
 from windup.tools.reports.run_data import RunData
@@ -23,24 +22,23 @@ class Row(NamedTuple):
         observation: What was measured.
         asked: What the controller asked for.
         applied: What the joints really got.
-        seconds: Wall time of the tick, s.
+        tick_time: Wall time of the tick, s.
     """
 
     observation: Observation
     asked: Array
     applied: Array
-    seconds: float
+    tick_time: float
 
 
 class Recording:
-    """Records the ticks of one run; it stands around the controller, and in front of a recorder.
+    """Records the ticks of one run, and hands them on to another recorder.
 
     Args:
         robot: Name of the robot.
         joints: Names of its n joints.
         contacts: Names of its k contact sensors.
-        controller: The controller of the run.
-        recorder: Takes down every tick, too.
+        recorder: Records every tick, too.
     """
 
     def __init__(
@@ -48,37 +46,27 @@ class Recording:
         robot: str,
         joints: tuple[str, ...],
         contacts: tuple[str, ...],
-        controller: Controller,
         recorder: Recorder | None = None,
     ) -> None:
         self.robot, self.joints, self.contacts = robot, joints, contacts
-        self._controller, self._recorder = controller, recorder
-        self._asked = np.full((len(FIELDS), len(joints)), np.nan)
+        self._recorder = recorder
         self._rows: list[Row] = []
         self._data: RunData | None = None
-
-    def reset(self, observation: Observation) -> None:
-        """Reset the controller."""
-        self._controller.reset(observation)
-
-    def step(self, observation: Observation, dt: float) -> JointCommand:
-        """Return the controller's command, and remember it."""
-        command = self._controller.step(observation, dt)
-        self._asked = command.block
-        return command
 
     def record(
         self,
         observation: Observation,
-        command: JointCommand,
-        seconds: float,
+        asked: JointCommand,
+        applied: JointCommand,
+        tick_time: float,
+        lateness: float,
         tick: int,
         missed: int,
     ) -> None:
         """Record a tick; see `windup.control.loop.Recorder`."""
-        self._rows.append(Row(observation, self._asked, command.block, seconds))
+        self._rows.append(Row(observation, asked.block, applied.block, tick_time))
         if self._recorder is not None:
-            self._recorder.record(observation, command, seconds, tick, missed)
+            self._recorder.record(observation, asked, applied, tick_time, lateness, tick, missed)
 
     def data(self, reason: str) -> RunData:
         """Return what was recorded so far, of a run that ended for `reason`."""
@@ -110,7 +98,7 @@ class Recording:
             "base_angular_velocity": _table([base.angular_velocity for base in bases], 3),
             "imu_angular_velocity": _table([imu.angular_velocity for imu in imus], 3),
             "imu_acceleration": _table([imu.acceleration for imu in imus], 3),
-            "tick_time": np.array([row.seconds for row in rows]),
+            "tick_time": np.array([row.tick_time for row in rows]),
         }
 
 

@@ -6,8 +6,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from windup.hal.errors import UsageError
 from windup.hal.joints import Array
-from windup.tools.terminal.picture import load_pyplot, save_picture
+from windup.tools.terminal.picture import SUFFIXES, load_pyplot, save_picture
 
 MOST: Final = 6
 """Number of joints that are drawn."""
@@ -23,9 +24,11 @@ def draw_run(
     """Draw the arrays of a run into an image file; see `run_data.RunData`.
 
     Raises:
-        UsageError: matplotlib is not installed.
+        UsageError: matplotlib is not installed, or the suffix is not that of a picture.
         OutputError: The file cannot be written.
     """
+    if path.suffix.lower() not in SUFFIXES:
+        raise UsageError(f"{path}: name the picture {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}")
     pyplot = load_pyplot("report.plot")
     figure, axes = pyplot.subplots(4, 1, sharex=True, figsize=(9, 11), constrained_layout=True)
     axes[0].set_title(title)

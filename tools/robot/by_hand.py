@@ -9,6 +9,7 @@ from windup.hal.errors import UsageError, WindupError
 from windup.hal.observation import Observation
 from windup.sim_twin.backend import TwinClock
 from windup.tools.reports.run_report import RunReport
+from windup.tools.robot.given import GivenCommand
 from windup.tools.robot.runner import Runner
 from windup.tools.robot.stopping import INTERRUPTED
 from windup.tools.stopping.interrupts import Asked, RunInterruptedError, counted_signals
@@ -24,26 +25,26 @@ LOOP = "write in `for observation in robot.ticks():`"
 class ByHand:
     """Reads and writes of a robot outside of a run, on the schedule of its loop.
 
-    Falls are not looked for: that is what the ticks of a run are for.
-
-    Args:
-        runner: The robot.
+    Falls are not looked for: that is what the ticks of a run are for. The robot is an argument of
+    each call, so that it is freed at once when it is closed.
     """
 
-    def __init__(self, runner: Runner) -> None:
-        self._runner = runner
-        self._given = runner.given_command()
+    def __init__(self) -> None:
+        self._given: GivenCommand | None = None
         self._loop: TickLoop | None = None
         self._report, self._begun = RunReport(), -1
         self._read_at, self._said = nan, False
 
-    def check_may_move(self) -> None:
+    def forget(self) -> None:
+        """Forget the loop, when the robot is closed."""
+        self._given = self._loop = None
+
+    def check_may_move(self, runner: Runner) -> None:
         """Raise unless the joints may move.
 
         Raises:
             UsageError: Their torque is off, or they have not made their first motion.
         """
-        runner = self._runner
         if not runner.stack.wired:
             return
         name = runner.description.name
@@ -61,31 +62,30 @@ class ByHand:
                 f"{name} has not made its first motion: call robot.stand() first, or {LOOP}"
             )
 
-    def read(self) -> Observation:
+    def read(self, runner: Runner) -> Observation:
         """Return a new observation, with its base state.
 
         Raises:
             UsageError: The robot is closed.
             WindupError: From the backend or the guard.
         """
-        self._runner.check_open()
-        self._runner.check_heard()
-        seen = self._observe(self._current())
-        stands = isinstance(self._runner.backend.clock, TwinClock)
+        runner.check_open()
+        runner.check_heard()
+        seen = self._observe(self._current(runner))
+        stands = isinstance(runner.backend.clock, TwinClock)
         if stands and seen.time == self._read_at and not self._said:
             self._said = True
             logging.getLogger(__name__).warning(SAME)
         self._read_at = seen.time
         return seen
 
-    def write(self, command: JointCommand) -> JointCommand:
+    def write(self, runner: Runner, command: JointCommand) -> JointCommand:
         """Send a command, wait for the next tick, and return what the joints really got.
 
         Raises:
             RunInterruptedError: There was a request to stop; the robot has stopped.
             WindupError: From the guard or the backend; the robot has stopped.
         """
-        runner = self._runner
         runner.check_heard()
         with (
             counted_signals(runner.stack.wired) as asked,
@@ -93,18 +93,18 @@ class ByHand:
             runner.held_afterwards(),
         ):
             runner.check_going_on(asked)
-            applied = self._tick(command, asked)
-            self._stop_if_asked(asked)
+            applied = self._tick(runner, command, asked)
+            self._stop_if_asked(runner, asked)
         if asked():
             raise RunInterruptedError(runner.loop, asked.by)
         return applied
 
-    def _tick(self, command: JointCommand, asked: Asked) -> JointCommand:
+    def _tick(self, runner: Runner, command: JointCommand, asked: Asked) -> JointCommand:
         """Send a command in a tick of its own; stop the robot after an error."""
-        loop, self._runner.loop = self._current(), self._report
+        loop, runner.loop = self._current(runner), self._report
+        assert self._given is not None, "it came with the loop"
         if loop.recorder is None:
-            self._runner.publish()
-            loop.recorder = self._runner.telemetry
+            loop.recorder = runner.telemetry.begin(self._given)
         try:
             if loop.observation is None or loop.applied is not None:
                 self._observe(loop)
@@ -112,26 +112,25 @@ class ByHand:
             applied = loop.command()
             loop.finish()
         except WindupError as error:
-            self._runner.fail(error, asked)
+            runner.fail(error, asked)
             raise
         return applied
 
-    def _stop_if_asked(self, asked: Asked) -> None:
-        runner = self._runner
+    def _stop_if_asked(self, runner: Runner, asked: Asked) -> None:
         if by := told_to_stop(runner.flag) or pressed_button(runner.backend.backend):
             asked.add(by)
         if asked():
-            self._runner.loop.reason = INTERRUPTED
-            self._runner.stop_if_asked(asked)
+            runner.loop.reason = INTERRUPTED
+            runner.stop_if_asked(asked)
 
     def _observe(self, loop: TickLoop) -> Observation:
         seen = loop.observe()
         assert seen is not None, "nothing ends this loop"
         return seen
 
-    def _current(self) -> TickLoop:
+    def _current(self, runner: Runner) -> TickLoop:
         """Return the loop that goes on, or a new one after a run."""
-        runner, loop = self._runner, self._loop
+        loop = self._loop
         if loop is None or self._begun != runner.runs:
             self._given, self._report = runner.given_command(), RunReport()
             loop = self._loop = runner.loop_by_hand(self._given, self._report)

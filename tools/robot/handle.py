@@ -13,10 +13,10 @@ if TYPE_CHECKING:
     from windup.hal.guard import GuardedBackend
     from windup.hal.guard.finding import Finding
     from windup.hal.guard.imu_watch import ImuWatch
-    from windup.hal.telemetry.ring import TelemetryWriter
     from windup.robots import RobotDescription
     from windup.sim_twin.twin import Twin
     from windup.tools.reports.run_report import RunReport
+    from windup.tools.robot.run_telemetry import RunTelemetry
     from windup.tools.robot.session import Session
     from windup.tools.robot.stack import Stack
     from windup.tools.robot.start import Start
@@ -78,8 +78,8 @@ class Handle:
     """Its backend and what belongs to it."""
     backend: "GuardedBackend" = _of_session()
     """The guarded backend."""
-    telemetry: "TelemetryWriter | None" = _of_session()
-    """Where everybody else can read how it goes, once it runs."""
+    telemetry: "RunTelemetry" = _of_session()
+    """What other processes can read of its runs."""
     imu: "ImuWatch" = _of_session()
     """Judges the IMU, where the base state is estimated from it."""
     slowness: "Slowness" = _of_session()

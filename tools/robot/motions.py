@@ -181,12 +181,9 @@ class Motions:
 
     def _looking(self, end: Until, report: WalkReport) -> Until:
         """Return `end`, with a look at place, feet and plans first."""
-        session, walker = self.session, report.walker
 
         def until(observation: Observation) -> str | None:
             report.update(observation)
-            if session.telemetry is not None:
-                session.telemetry.plans = walker.begun, walker.late
             return end(observation)
 
         return until

@@ -11,6 +11,7 @@ from windup.hal.clock import punctual
 from windup.hal.command import JointCommand
 from windup.hal.controller import Controller, Stopwatch
 from windup.hal.errors import ControllerError, WindupError
+from windup.hal.publishing.run_state import RunState
 from windup.hal.ranges import numbers_checked
 from windup.sim_twin.backend import TwinClock
 from windup.tools.assembly.protect import Protection
@@ -40,6 +41,7 @@ class Runner(Watched):
     Attributes:
         paced: Its time is real time.
         protect: A fall that cannot be prevented is softened, where the robot's file says how.
+        record: Each run keeps the arrays of its report.
         body: The body of a `for` loop over ticks, while it has the robot.
         runs: Number of runs so far.
         unheard: What ended a loop over ticks in the tick in which it was left, where no exception
@@ -51,6 +53,7 @@ class Runner(Watched):
 
     paced: bool = False
     protect: bool = True
+    record: bool = False
     body: Body | None = field(default=None, init=False)
     runs: int = field(default=0, init=False)
     unheard: str = field(default="", init=False)
@@ -189,16 +192,17 @@ class Runner(Watched):
             run: The run.
             rollouts: Time to leave out of the ticks.
         """
-        asked = run.end.asked
+        asked, state = run.end.asked, RunState.FAULTED
         if asked():
             self._stop_before(asked)
             yield None
             return
-        self.publish()
+        recorder = self.telemetry.begin(run.controller)
         try:
             with punctual() if self.paced else nullcontext():
-                yield self._loop(run, rollouts)
+                yield self._loop(run, rollouts, recorder)
             self.stop_if_asked(asked)
+            state = RunState.FAULTED if run.failed else self.resting()
         except WindupError as error:
             self.fail(error, asked)
             raise
@@ -206,6 +210,7 @@ class Runner(Watched):
             asked.by = asked.by or type(ended).__name__
             self.loop.reason = INTERRUPTED
             self._stop_after_error(asked)
+            state = self.resting()
         except BaseException as error:
             self.loop.reason = f"the controller failed: {type(error).__name__}: {error}"
             self._stop_after_error(asked)
@@ -213,24 +218,22 @@ class Runner(Watched):
                 raise
             raise ControllerError(self.loop.reason) from error
         finally:
-            self.conclude(run.report)
+            self.conclude(run.report, state)
 
-    def _loop(self, run: PreparedRun, rollouts: Stopwatch | None) -> TickLoop:
+    def _loop(
+        self, run: PreparedRun, rollouts: Stopwatch | None, recorder: Recorder | None
+    ) -> TickLoop:
         """Return the loop of a run, with whoever looks on and records."""
         if isinstance(self.backend.clock, TwinClock):
             self.backend.clock.align()
-        controller: Controller = run.controller
-        recorder: Recorder | None = self.telemetry
         if self.record:
             robot = self.description
-            recording = Recording(
-                robot.name, robot.joints.names, robot.contacts.names, controller, recorder
+            recorder = run.report.recording = Recording(
+                robot.name, robot.joints.names, robot.contacts.names, recorder
             )
-            run.report.recording = recording
-            controller = recorder = recording
         return TickLoop(
             self.backend if run.may_move else ReadOnly(self.backend),
-            controller,
+            run.controller,
             period=self.period,
             until=self.looked_at(run.end),
             estimator=run.estimator,
@@ -271,5 +274,5 @@ class Runner(Watched):
     def fail(self, error: WindupError, asked: Asked) -> None:
         """Stop the robot because of an error, and publish what was seen in its tick, too."""
         self.loop.reason = str(error)
-        self.publish_last()
+        self.telemetry.record_last(self.loop)
         self._stop_after_error(asked, error)

@@ -1,19 +1,16 @@
 """A session on a robot: run controllers in the loop, read and write by hand, and stop."""
 
 import logging
-from contextlib import suppress
 from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
 
 from windup.control.motions.play import PoseHolder
 from windup.hal.command import JointCommand
-from windup.hal.errors import TelemetryError, WindupError
+from windup.hal.errors import WindupError
 from windup.hal.guard.finding import Finding
 from windup.hal.observation import Observation
 from windup.hal.ranges import numbers_checked
-from windup.hal.telemetry.layout import ring_path
-from windup.hal.telemetry.leftovers import remove_leftovers
 from windup.tools.robot.by_hand import ByHand
 from windup.tools.robot.given import check_command
 from windup.tools.robot.runner import Runner
@@ -40,9 +37,7 @@ class Session(Runner):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        self.by_hand = ByHand(self)
-        with suppress(TelemetryError):  # a run says so
-            remove_leftovers(ring_path(self.description.name, self.stack.port))
+        self.by_hand = ByHand()
 
     @property
     def lasting(self) -> bool:
@@ -77,7 +72,7 @@ class Session(Runner):
         """
         if self.running.active and self.seen is not None:
             return self.seen
-        return self.by_hand.read()
+        return self.by_hand.read(self)
 
     def write(self, command: JointCommand) -> JointCommand:
         """Send the command of the present tick; return the command that the joints really got.
@@ -88,11 +83,12 @@ class Session(Runner):
             UsageError: It is no command, or the joints may not move; nothing was sent.
             WindupError: From the guard or the backend; the robot has stopped.
         """
+        self.check_open()
         check_command(command)
-        self.by_hand.check_may_move()
+        self.by_hand.check_may_move(self)
         if self.body is not None:
             return self.body.write(command)
-        return self.by_hand.write(command)
+        return self.by_hand.write(self, command)
 
     def __enter__(self) -> Self:
         return self
@@ -147,6 +143,6 @@ class Session(Runner):
     def _disconnect(self) -> None:
         if not self._closed:
             NOTES.add(self.warnings, self.slowness, self.backend.backend)
+        self.by_hand.forget()
         super()._disconnect()
-        if self.telemetry is not None:
-            self.telemetry.close()
+        self.telemetry.close()

@@ -65,6 +65,8 @@ def test_a_file_that_is_no_run_is_refused(tmp_path: Path) -> None:
 def test_a_run_is_drawn(data: RunData, tmp_path: Path) -> None:
     data.plot(tmp_path / "run.png")
     assert (tmp_path / "run.png").stat().st_size > 10_000
+    with pytest.raises(UsageError, match=r"run\.txt: name the picture \.png, "):
+        data.plot(tmp_path / "run.txt")
 
 
 def test_a_run_that_was_not_recorded_says_how_to() -> None:

@@ -98,3 +98,5 @@ def test_a_closed_robot_says_so(robot: Robot, call: str) -> None:
     robot.close()
     with pytest.raises(UsageError, match=r"op3 is closed: open it with Robot\.open"):
         list(getattr(robot, call)())
+    with pytest.raises(UsageError, match="op3 is closed"):
+        robot.write(turned(robot, 0.1))
