@@ -9,6 +9,8 @@ import numpy as np
 from windup.hal.command import JointCommand
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
+from windup.hal.publishing.controller_block import NOTHING, BlockNames, ControllerBlock
+from windup.hal.publishing.run_state import RunState
 from windup.tools.runtime.board import LEASE, Board
 from windup.tools.runtime.counts import Count
 
@@ -79,6 +81,12 @@ class GoalFollower:
             else:
                 self.position = self._goal
         return JointCommand.hold(self._joints, self.position)
+
+    published: BlockNames = NOTHING
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish that the robot is held."""
+        block.run_state = RunState.HOLDING
 
     def _read(self) -> None:
         """Read the newest goal; hold when there has been none for too long."""

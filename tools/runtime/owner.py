@@ -12,6 +12,7 @@ from windup.tools.runtime.behaviour_run import SETTLE, BehaviourRun
 from windup.tools.runtime.board import TICKS, Board
 from windup.tools.runtime.follow_goals import GoalFollower, largest_speed
 from windup.tools.runtime.inbox import NOBODY, Inbox
+from windup.tools.runtime.limp import Limp
 from windup.tools.runtime.present_state import PresentState
 from windup.tools.runtime.start_broker import BrokerProcess
 from windup.tools.stopping.break_off import BreakOff
@@ -60,7 +61,6 @@ class Owner:
             except RunInterruptedError as stopped:
                 if stopped.by in WORDS.values():
                     raise
-                self._state.doing = RunState.HOLDING
                 self._keep_off(f"{self._robot.description.name} was stopped by {stopped.by}")
             except WindupError as error:
                 self._fault(str(error))
@@ -78,10 +78,10 @@ class Owner:
 
     def _fault(self, error: str) -> None:
         """Publish an error, after which torque stays off; wait before the robot is read again."""
-        if self._state.doing is not RunState.FAULTED:
+        if not self._state.faulted:
             self._inbox.report(NOBODY, Refused(message=error))
         self._keep_off(error)
-        self._state.doing, self._state.off = RunState.FAULTED, True
+        self._state.off = self._state.faulted = True
         self._state.put(RunState.FAULTED)
         self._inbox.read()
         clock = self._robot.backend.clock
@@ -93,7 +93,6 @@ class Owner:
         if self._off:
             self._be_limp()
             return
-        self._state.doing = RunState.HOLDING
         last = self._robot.backend.last
         holder = GoalFollower(
             self._robot.joints,
@@ -110,7 +109,7 @@ class Owner:
         report, session = RunReport(), self._session
         with (
             session.prepared(
-                report, session.given_command(), None, until=self._inbox.ordered, down=True,
+                report, Limp(self._robot.joints, lambda: session.fallen), None, until=self._inbox.ordered, down=True,
                 needs_imu=False, may_move=False,
             ) as run,
             session.looping(run) as loop,
@@ -145,18 +144,17 @@ class Owner:
             return
         self._inbox.report(client, Started(id=order.id))
         self._inbox.begin(client)
-        self._state.off = False
-        self._state.begin(order.behaviour)
+        self._state.off, self._state.behaves = False, True
         watch = self._session.watch[:]
         ended, stopped = run.perform()
         self._session.watch[:] = watch  # without those of the behaviour
         self._inbox.end()
+        self._state.behaves = False
         try:
             if stopped is not None:
                 raise stopped
             self._upright = True
             self._check_fallen()
-            self._state.doing = RunState.HOLDING
             if run.walks and self._upright:
                 self._robot.stand(SETTLE)
         finally:
@@ -176,4 +174,4 @@ class Owner:
             self._robot.rearm()
         else:
             self._robot.backend.set_torque(True)
-        self._off = ""
+        self._off, self._state.faulted = "", False
