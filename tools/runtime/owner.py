@@ -107,10 +107,11 @@ class Owner:
     def _be_limp(self) -> None:
         """Read the robot without torque until there is an order."""
         report, session = RunReport(), self._session
+        limp = Limp(self._robot.joints, lambda: session.fallen)
         with (
             session.prepared(
-                report, Limp(self._robot.joints, lambda: session.fallen), None, until=self._inbox.ordered, down=True,
-                needs_imu=False, may_move=False,
+                report, limp, None, until=self._inbox.ordered, down=True, needs_imu=False,
+                may_move=False,
             ) as run,
             session.looping(run) as loop,
         ):  # fmt: skip
