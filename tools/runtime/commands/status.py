@@ -62,6 +62,7 @@ def format_status(welcome: Welcome, status: Answer) -> str:
 def _record(welcome: Welcome, status: Answer) -> dict[str, Any]:
     about = {"robot": welcome.robot, "port": welcome.port, "pid": welcome.pid}
     told: dict[str, Any] = msgspec.to_builtins(status)
+    del told["type"], told["id"]
     return {**about, "version": welcome.version, "rate_hz": welcome.rate_hz, **told}
 
 
