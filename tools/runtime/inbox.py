@@ -16,6 +16,8 @@ from windup.tools.runtime.live_walk import LiveWalk
 from windup.tools.runtime.orders import ORDERS, Order, Report
 from windup.tools.runtime.present_state import PresentState
 
+FINISHING: Final = {"rise", "stride", "step", "footprints"}
+"""Behaviours that come to their end by themselves: in the middle of a step nobody can be held."""
 NOBODY: Final = 0
 """In place of a client's number."""
 
@@ -43,11 +45,13 @@ class Inbox:
         self.client, self.down = NOBODY, False
         self.next: Order | None = None
         self._ending = ""
+        self._finishes = False
         self._walk: LiveWalk | None = None
 
-    def begin(self, client: int) -> None:
+    def begin(self, client: int, behaviour: str) -> None:
         """A behaviour of a client begins."""
         self.client, self._ending, self._walk = client, "", None
+        self._finishes = behaviour in FINISHING
 
     def end(self) -> None:
         """The behaviour has ended."""
@@ -73,11 +77,13 @@ class Inbox:
         return "ordered" if self.next is not None or self.down else None
 
     def broken_off(self, observation: Observation) -> str | None:
-        """Return why the behaviour is to end now; a walk comes to rest first, a rise goes on."""
-        if not self._ending or not self.client or self._words[STATE] == RunState.RISING:
+        """Return why the behaviour is to end now: where it stands, and a walk once it is at rest."""
+        if not self._ending or not self.client:
             return None
-        walk = self._live_walk()
-        return self._ending if walk is None or walk.come_to_rest() else None
+        if (walk := self._live_walk()) is not None:
+            return self._ending if walk.come_to_rest() else None
+        stands = self._words[STATE] in (RunState.STANDING, RunState.HOLDING)
+        return self._ending if stands and not self._finishes else None
 
     def report(self, client: int, message: Started | Ended | Refused) -> None:
         """Tell a client something; without a client, whoever sits at the runtime's terminal."""

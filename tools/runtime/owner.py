@@ -144,13 +144,13 @@ class Owner:
             self._inbox.report(client, Refused(message=said, id=order.id))
             return
         self._inbox.report(client, Started(id=order.id))
-        self._inbox.begin(client)
-        self._state.off, self._state.behaves = False, True
+        self._inbox.begin(client, order.behaviour)
+        self._state.begin(order.behaviour)
         watch = self._session.watch[:]
         ended, stopped = run.perform()
         self._session.watch[:] = watch  # without those of the behaviour
         self._inbox.end()
-        self._state.behaves = False
+        self._state.end()
         try:
             if stopped is not None:
                 raise stopped

@@ -24,14 +24,14 @@ def ended(up: Scripted) -> list[bool]:
 def test_every_behaviour_can_follow_every_other_without_a_drop_of_torque(up: Scripted) -> None:
     def script() -> Script:
         yield up.run("walk", steps=3)
-        yield up.run("stride", steps=2)
+        yield up.run("stride", seconds=2.0)
         yield up.run("play", graph="wave", seconds=0.3)
-        yield up.run("step", foot="left", to=(0.03, 0.07))
+        yield up.run("step", foot="left", to=(0.03, 0.085))
         yield up.run("walk", steps=2)
         yield up.run("stand", seconds=0.3)
 
     up.serve(script())
-    assert ended(up) == [True] * 6, up.told
+    assert ended(up) == [True] * 6, [getattr(said, "reason", said) for said in up.answers]
     assert not DOWN & set(up.states)
     assert {RunState.WALKING, RunState.STEPPING, RunState.HOLDING} <= set(up.states)
     assert not up.robot.fallen
@@ -78,7 +78,7 @@ def test_goals_are_followed_while_it_holds(up: Scripted) -> None:
     up.serve(script())
     last = up.robot.backend.last
     assert last is not None
-    np.testing.assert_allclose(last[1].position, goal)
+    np.testing.assert_allclose(last[1].position, goal, atol=1e-3)  # as a servo takes it
     assert up.states == [RunState.HOLDING]
 
 
