@@ -77,7 +77,7 @@ class Inbox:
         return "ordered" if self.next is not None or self.down else None
 
     def broken_off(self, observation: Observation) -> str | None:
-        """Return why the behaviour is to end now: where it stands, and a walk once it is at rest."""
+        """Return why the behaviour is to end now: it stands, or its walk has come to rest."""
         if not self._ending or not self.client:
             return None
         if (walk := self._live_walk()) is not None:
