@@ -36,7 +36,8 @@ def run_remotely(
     with RuntimeClient(robot, f"windup {behaviour}") as client, stop_keys(keyboard()) as pressed:
         welcome, status = client.welcome, client.status()
         where = "its twin" if welcome.port is None else welcome.port
-        torque = "armed" if status.armed else "torque off"
+        off = "armed, torque still off" if welcome.may_arm else "not armed"
+        torque = "armed" if status.armed else off
         console.print(f"{robot} on {where}, {torque}", markup=False, soft_wrap=True)
         number = client.run(behaviour, options, arm=arm)
         ended = _wait(client, number, pressed)

@@ -32,8 +32,8 @@ class Up(Command):
     faults: str = ""
     """What goes wrong on a twin:// port: drop:0.01,unplug:at=5:seconds=1,..."""
     arm: bool = False
-    """Allow torque on a port that is not twin://: it comes on at the present pose. Hold on to the
-    robot."""
+    """Allow torque on a port that is not twin://: it comes on with the first command, at the
+    present pose. Hold on to the robot."""
     state: State | None = None
     """Where the base state comes from; see `windup walk --help`."""
     rate: Rate | None = None
@@ -55,7 +55,8 @@ class Up(Command):
     def run(self) -> int:
         """Own the robot; returns the exit status."""
         name, url = load_robot(self.robot).name, with_faults(self.port, self.faults)
-        where = "its twin" if url is None else f"{url}, {'armed' if self.arm else 'torque off'}"
+        torque = "torque comes on with the first command" if self.arm else "not armed"
+        where = "its twin" if url is None else f"{url}, {torque}"
         line = f"{name} on {where}: `windup down {name}` or Ctrl-C ends it"
         ready = partial(say, line)
         serve(self.robot, url, arm=self.arm, ready=ready, state=self.state, rate=self.rate)
