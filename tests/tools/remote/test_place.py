@@ -54,3 +54,15 @@ def test_a_place_depends_on_the_name_alone(tmp_path: Path) -> None:
     )
     with pytest.raises(UsageError, match="the name is too long for a socket"):
         Place.of(100 * "r", tmp_path)
+
+
+def test_the_robots_of_another_user_are_named_as_such(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    user = tmp_path.stat().st_uid
+    (tmp_path / f"windup-{user}").mkdir()
+    monkeypatch.setattr("os.getuid", lambda: user + 1)
+    place = Place.of("op3", tmp_path / f"windup-{user + 1}")
+    assert f"(user {user} uses Windup too; the robots of another user are its own)" in str(
+        place.not_up()
+    )
