@@ -90,9 +90,7 @@ class Owner:
     def _wait(self) -> None:
         """Hold the robot, or leave it limp, until there is an order."""
         self._state.off = bool(self._off) or (self._wired and not self._robot.armed)
-        if (
-            self._state.off
-        ):  # also before the first behaviour: in no pose that is known does it stand
+        if self._state.off:  # also before the first behaviour: no pose is known in which it stands
             self._be_limp()
             return
         last = self._robot.backend.last
