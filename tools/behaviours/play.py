@@ -46,12 +46,12 @@ class Play(Behaviour[PlayOptions]):
         try:
             run.robot.play(run.options.graph, run.options.seconds, disturb=run.disturb)
         finally:
-            loop = run.robot.loop
-            run.measured = loop if isinstance(loop, PlayReport) else None  # perhaps not so far
+            run.measured = run.robot.loop
 
     def report(self, run: RunRecord[PlayOptions]) -> Report:
         """Return how it played."""
-        robot, loop, played = run.robot, run.robot.loop, run.measured
+        robot, loop = run.robot, run.measured
+        played = loop if isinstance(loop, PlayReport) else None  # perhaps it did not come so far
         load = None if played is None else played.load
         fell = robot.fallen and not (played is not None and played.ends_down)
         result = {

@@ -2,10 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, Final
 
 from windup.tools.robot.robot import Robot
 from windup.tools.robot.stopping import INTERRUPTED
+
+PLAIN: Final = (bool, int, float, str, tuple, list)
+"""Types that JSON has."""
 
 
 @dataclass(frozen=True)
@@ -57,6 +60,13 @@ def count_good(reports: Sequence[Report], done: str) -> Summary:
     return Summary(f"{good} of {len(reports)} seeds {done}")
 
 
+def _plain(value: Any) -> Any:
+    """Return an option as JSON may have it; a path or a member of an enumeration is text."""
+    return (
+        value if isinstance(value, bool | int | float | str | tuple | list | None) else str(value)
+    )
+
+
 def usual_report(name: str, robot: Robot, options: dict[str, Any]) -> Report:
     """Return how the last run of a robot went; it is good if it was not broken off by a fall.
 
@@ -69,7 +79,7 @@ def usual_report(name: str, robot: Robot, options: dict[str, Any]) -> Report:
     result = {
         "robot": robot.description.name,
         "behaviour": name,
-        "options": options,
+        "options": {key: _plain(value) for key, value in options.items()},
         "seed": robot.seed,
         "fell": fell,
         "reason": loop.reason,

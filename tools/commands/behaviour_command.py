@@ -71,7 +71,8 @@ class BehaviourCommand(WorldOptions, Common):
             check_alone(self, self.behaviour.Options)
         check_picture(self.picture)
         if self.picture is not None and self.seeds is not None:
-            raise UsageError("--plot draws one run: leave it or --seeds away")
+            one = self.behaviour.name
+            raise UsageError(f"--plot draws one {one}: leave it or --seeds away")
         self.behaviour.check(load_robot(self.robot), self.options)
 
     def run(self) -> int:

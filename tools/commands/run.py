@@ -4,6 +4,7 @@ import shlex
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, is_dataclass, make_dataclass
+from inspect import getfile
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
@@ -16,7 +17,7 @@ from windup.tools.command_line.table import COMMANDS
 from windup.tools.commands.behaviour_command import BehaviourCommand
 from windup.tools.options.twin_options import TwinOptions
 from windup.tools.own_code.code_place import failing, refusing
-from windup.tools.own_code.installed import installed_behaviours, load_behaviour
+from windup.tools.own_code.installed import INSTALLED
 from windup.tools.own_code.python_file import is_python_file, load_own, split
 
 
@@ -41,12 +42,12 @@ class Run(TwinOptions, BehaviourCommand):
         what = next((word for word in words if is_python_file(word)), None)
         if what is not None:
             return command_of(load_own(what), what, words)
-        installed = installed_behaviours()
+        installed = INSTALLED.names()
         what = next((word for word in words if word in installed), None)
         if what is not None:
-            return command_of(load_behaviour(what), what, words)
+            return command_of(INSTALLED.load(what), what, words)
         if len(words) > 1 and not any(word.startswith("-") for word in words[:2]):
-            raise UsageError(_unknown(words[1], words[0], sorted(installed)))
+            raise UsageError(_unknown(words[1], words[0], installed))
         return cls
 
     @property
@@ -75,11 +76,10 @@ class Run(TwinOptions, BehaviourCommand):
 
     @contextmanager
     def _own(self, converting: Any) -> Iterator[None]:
-        """Convert what the code of a user's file raises; other errors are of the stack."""
-        if not is_python_file(self.what):
-            yield
-            return
-        with converting(split(self.what)[0]):
+        """Convert what the code of a user raises; other errors are of the stack."""
+        own = is_python_file(self.what)
+        path = split(self.what)[0] if own else Path(getfile(type(self.behaviour)))
+        with converting(path):
             yield
 
     def __reduce__(self) -> tuple[Any, ...]:

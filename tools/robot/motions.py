@@ -107,7 +107,7 @@ class Motions:
         on_step: Sequence[OnStep],
         disturb: Disturb | None,
         stand: Seconds,
-        guide: Guide | None = None,
+        guide: Guide | None,
     ) -> WalkReport:
         """Walk a number of steps; see `Robot.walk`."""
         session, robot = self.session, self.session.description

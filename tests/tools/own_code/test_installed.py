@@ -4,22 +4,21 @@ from pathlib import Path
 
 import pytest
 
+from tests.added.install import install
 from tests.tools.conftest import Windup, refusal
-from windup.tools.own_code.installed import installed_behaviours
+from tests.tools.own_code.nodding_package import Nod, Nodder
+from windup.tools.own_code.installed import INSTALLED
 
 
-def install(folder: Path, monkeypatch: pytest.MonkeyPatch, value: str) -> None:
-    """Let a package be installed whose only behaviour `nod` is at `value`."""
-    info = folder / "windup_nod-1.0.dist-info"
-    info.mkdir()
-    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: windup-nod\nVersion: 1.0\n")
-    (info / "entry_points.txt").write_text(f"[windup.behaviours]\nnod = {value}\n")
+def add(folder: Path, monkeypatch: pytest.MonkeyPatch, value: str) -> None:
+    """Let a distribution be installed whose only behaviour `nod` is at `value`."""
+    install(folder, "windup_nod", {"windup.behaviours": {"nod": value}})
     monkeypatch.syspath_prepend(folder)
 
 
 @pytest.fixture
 def nod(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    install(tmp_path, monkeypatch, "tests.tools.own_code.nodding_package:Nod")
+    add(tmp_path, monkeypatch, "tests.tools.own_code.nodding_package:Nod")
 
 
 @pytest.mark.usefixtures("nod")
@@ -46,6 +45,26 @@ def test_several_seeds_are_rows_and_counted(shell: Windup) -> None:
 
 
 @pytest.mark.usefixtures("nod")
+def test_several_seeds_run_in_processes_where_the_behaviour_wants_so(
+    shell: Windup, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Nod, "side_by_side", True)
+    ran = shell("run", "op3", "nod", "--times", "1", "--seeds", "2", "--json", "-")
+    assert [row["seed"] for row in ran.json["rows"]] == [0, 1], ran.err
+    assert ran.json["rows"][1]["options"]["times"] == 1
+
+
+@pytest.mark.usefixtures("nod")
+def test_an_exception_in_its_code_ends_the_command_in_one_line(
+    shell: Windup, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Nodder, "step", lambda *_: dict[str, float]()["angle"])
+    ran = shell("run", "op3", "nod")
+    assert ran.status == 1
+    assert ran.err.splitlines()[-1].startswith("windup: the controller failed: KeyError: 'angle'")
+
+
+@pytest.mark.usefixtures("nod")
 def test_what_its_options_cannot_be_is_refused_before_anything_moves() -> None:
     assert "unknown joint 'head_tlit'; did you mean 'head_tilt'?" in refusal(
         ["run", "op3", "nod", "--joint", "head_tlit"]
@@ -55,18 +74,17 @@ def test_what_its_options_cannot_be_is_refused_before_anything_moves() -> None:
 @pytest.mark.parametrize(
     ("value", "said"),
     [
-        ("nowhere.nod:Nod", "cannot be loaded: ModuleNotFoundError: No module named 'nowhere'"),
-        ("math:pi", "math:pi is a float; it should be a subclass of windup.Behaviour"),
+        ("nowhere.nod:Nod", "ModuleNotFoundError: No module named 'nowhere'"),
+        ("math:pi", "it should be a windup.Behaviour, not a float"),
     ],
 )
 def test_a_package_that_is_wrong_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, value: str, said: str
 ) -> None:
-    install(tmp_path, monkeypatch, value)
+    add(tmp_path, monkeypatch, value)
     line = refusal(["run", "op3", "nod"])
-    assert "behaviour 'nod' of windup-nod" in line
-    assert said in line
+    assert f"entry point nod = {value} of windup.behaviours: {said}" in line
 
 
 def test_no_package_brings_one_by_itself() -> None:
-    assert "nod" not in installed_behaviours()
+    assert INSTALLED.names() == ()
