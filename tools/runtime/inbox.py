@@ -61,6 +61,13 @@ class Inbox:
         """End the behaviour, and then the runtime."""
         self.down, self._ending = True, "ended because the runtime goes down"
 
+    def drop(self, why: str) -> None:
+        """Refuse the behaviours that wait: they were ordered before torque went off."""
+        self.read()
+        order, self.next = self.next, None
+        if order is not None and isinstance(order.message, Run):
+            self.report(order.client, Refused(message=why, id=order.message.id))
+
     def look(self, observation: Observation) -> None:
         """Look into the board, in every tick."""
         words = self._words
@@ -96,6 +103,10 @@ class Inbox:
             order = ORDERS.decode(text)
             message = order.message
             if isinstance(message, Run):
+                if self.next is not None and isinstance(self.next.message, Run):
+                    said = f"{message.behaviour} was ordered after it"
+                    refused = Refused(message=said, id=self.next.message.id)
+                    self.report(self.next.client, refused)
                 self.next, self._ending = order, f"ended because {message.behaviour} follows"
             elif isinstance(message, End):
                 self._ending = "ended by its client"

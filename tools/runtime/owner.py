@@ -75,6 +75,7 @@ class Owner:
     def _keep_off(self, why: str) -> None:
         """Keep torque off until a client wants it on again."""
         self._off = f"{why}; give --arm to switch its torque on again"
+        self._inbox.drop(self._off)
 
     def _fault(self, error: str) -> None:
         """Publish an error, after which torque stays off; wait before the robot is read again."""
@@ -83,7 +84,6 @@ class Owner:
         self._keep_off(error)
         self._state.off = self._state.faulted = True
         self._state.put(RunState.FAULTED)
-        self._inbox.read()
         clock = self._robot.backend.clock
         clock.wait_until(clock.now() + PAUSE)
 

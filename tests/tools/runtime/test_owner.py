@@ -120,3 +120,23 @@ def test_a_fall_leaves_it_limp_until_it_may_rise(up: Scripted) -> None:
     assert isinstance(refused, Refused) and "has fallen; give --arm" in refused.message
     assert isinstance(rose, Ended) and rose.good, rose
     assert up.states[-1] is RunState.HOLDING and RunState.RISING in up.states
+
+
+def test_after_a_stop_torque_stays_off_until_it_is_asked_for(up: Scripted) -> None:
+    def script() -> Script:
+        up.run("stand", seconds=1000.0)
+        yield lambda: up.state is RunState.STANDING
+        up.run("stand", arm=True, seconds=0.1)  # from before the stop
+        up.robot.session.running.end("a test")
+        yield lambda: up.state in (RunState.LIMP, RunState.FALLEN)
+        yield up.run("stand", seconds=0.1)
+        yield up.run("play", arm=True, graph="wave", seconds=0.1)
+
+    up.serve(script())
+    stopped, dropped, refused, armed = up.answers
+    assert isinstance(stopped, Ended) and stopped.reason == "stopped by a test"
+    for said in (dropped, refused):
+        assert isinstance(said, Refused)
+        assert said.message == "op3 was stopped by a test; give --arm to switch its torque on again"
+    assert isinstance(armed, Ended)
+    assert RunState.STOPPING in up.states
