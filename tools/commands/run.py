@@ -54,7 +54,7 @@ class Run(TwinOptions, BehaviourCommand):
     def remote_name(self) -> str:
         """What a runtime knows the behaviour by: with the whole path of its file."""
         if not is_python_file(self.what):
-            return self.behaviour.name
+            return self.what
         path, name = split(self.what)
         return f"{path.absolute()}:{name}" if name else str(path.absolute())
 

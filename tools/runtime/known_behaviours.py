@@ -5,7 +5,7 @@ from typing import Any, Final
 
 from windup.hal.errors import UnknownNameError
 from windup.tools.behaviours.behaviour import Behaviour
-from windup.tools.own_code.installed import installed_behaviours, load_behaviour
+from windup.tools.own_code.installed import INSTALLED
 from windup.tools.own_code.python_file import is_python_file, load_own
 
 OWN: Final = {
@@ -28,14 +28,14 @@ def known_behaviour(name: str) -> Behaviour[Any]:
         UsageError: The file or the package that brings it cannot be imported.
     """
     if name in OWN:
-        found: Behaviour[Any] = getattr(import_module(f"windup.tools.behaviours.{name}"), OWN[name])
+        module = import_module(f"windup.tools.behaviours.{name}")
+        found: Behaviour[Any] = getattr(module, OWN[name])
         return found
     if is_python_file(name):
         return load_own(name)
-    installed = installed_behaviours()
-    if name not in installed:
-        raise UnknownNameError("behaviour", name, (*OWN, *installed))
-    return load_behaviour(name)
+    if name not in INSTALLED.names():
+        raise UnknownNameError("behaviour", name, (*OWN, *INSTALLED.names()))
+    return INSTALLED.load(name)
 
 
 def import_all() -> None:
