@@ -2,9 +2,6 @@
 
 from typing import Final
 
-from windup.control.loop import Until
-from windup.control.motions.play import PoseHolder
-from windup.hal.controller import Controller
 from windup.hal.errors import HardwareError, UsageError, WindupError
 from windup.hal.observation import Observation
 from windup.hal.publishing.run_state import RunState
@@ -104,21 +101,8 @@ class Owner:
             self._ready,
             None if last is None else last[1].position,
         )
-        self._hold(holder, None, self._inbox.ordered)
+        self._robot.run(holder, until=self._inbox.ordered, down=not self._upright)
         self._check_fallen()
-
-    def _hold(self, holder: Controller, seconds: float | None, until: Until) -> None:
-        """Run a controller that holds still, until the robot lies.
-
-        Nothing foresees a fall here: where the robot stands still, that could only be wrong.
-        """
-
-        def either(observation: Observation) -> str | None:
-            if self._upright and self._robot.fallen:
-                return "fell"
-            return until(observation)
-
-        self._robot.run(holder, seconds, until=either, down=True)
 
     def _be_limp(self) -> None:
         """Read the robot without torque until there is an order."""
@@ -173,9 +157,7 @@ class Owner:
             self._upright = True
             self._check_fallen()
             if run.walks and not ended.good and self._upright:
-                robot = self._robot.description
-                stance = PoseHolder(robot.joints, robot.stance)
-                self._hold(stance, SETTLE, lambda _: None)
+                self._robot.stand(SETTLE)
         finally:
             self._state.update()
             self._inbox.report(client, ended)
