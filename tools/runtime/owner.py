@@ -153,6 +153,7 @@ class Owner:
         self._state.end()
         try:
             if stopped is not None:
+                self._state.off = True
                 raise stopped
             self._upright = True
             self._check_fallen()
