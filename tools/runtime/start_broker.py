@@ -10,9 +10,9 @@ from typing import Final
 
 import msgspec
 
+from windup.hal.error_text import error_text
 from windup.hal.errors import UsageError
 from windup.hal.guardian.child_path import child_python_path
-from windup.hal.in_words import in_words
 from windup.tools.remote.messages import Welcome
 from windup.tools.remote.place import Place
 from windup.tools.runtime.board import OVER, Board
@@ -62,7 +62,7 @@ class BrokerProcess:
             )
         except OSError as error:
             os.close(self._bell)
-            why = in_words(error)
+            why = error_text(error)
             raise UsageError(f"the broker of {place.robot} does not start: {why}") from None
         finally:
             listener.close()

@@ -4,11 +4,11 @@ import os
 import subprocess
 from pathlib import Path
 
-from tests.hal.guardian.two_servos import charge
+from tests.hal.guardian.two_servos import record
 from windup.hal.guardian.handle import Guardian
 from windup.hal.guardian.host import Host
-from windup.hal.guardian.order import IDLE, TICK, Order
-from windup.hal.guardian.process import Ending, watch
+from windup.hal.guardian.order import IDLE, TICK, GuardianOrder
+from windup.hal.guardian.process import StopReason, watch
 from windup.hal.guardian.takeover import OFF, Takeover
 from windup.hal.stopping.stop_flag import Outcome, StopFlag
 
@@ -19,7 +19,7 @@ def test_a_host_that_beats_but_does_not_see_the_request_is_silent(tmp_path: Path
     with subprocess.Popen(["sleep", "60"]) as program:
         os.write(writing, TICK + IDLE)
         flag.request()
-        assert watch(reading, Host(program.pid), flag) == (Ending.ASKED, True)
+        assert watch(reading, Host(program.pid), flag) == (StopReason.IGNORED_STOP, True)
         program.kill()
     os.close(reading)
     os.close(writing)
@@ -30,7 +30,7 @@ def test_the_guardian_is_known_to_who_asks_while_torque_may_be_on(
     sts_bus: Path, tmp_path: Path
 ) -> None:
     flag = StopFlag.create("op3", None, tmp_path)
-    guardian = Guardian([charge(sts_bus)], "limp", flag=flag)
+    guardian = Guardian([record(sts_bus)], "limp", flag=flag)
     assert flag.guardian == guardian.pid
     guardian.release()
     assert flag.guardian == 0
@@ -39,7 +39,7 @@ def test_the_guardian_is_known_to_who_asks_while_torque_may_be_on(
 
 def test_who_asks_is_told_what_the_guardian_has_read(sts_bus: Path, tmp_path: Path) -> None:
     flag = StopFlag.create("op3", None, tmp_path)
-    order = Order(host=os.getpid(), policy="limp", charges=(charge(sts_bus),))
+    order = GuardianOrder(host=os.getpid(), policy="limp", buses=(record(sts_bus),))
     stamp = flag.request()
     Takeover(order, lambda text: None, flag).carry_out("its program hangs")
     assert flag.done(stamp)

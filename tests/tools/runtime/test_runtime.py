@@ -118,7 +118,7 @@ def test_after_a_stop_torque_comes_on_only_when_asked_for(robot: RemoteRobot) ->
     with pytest.raises(UsageError, match="give --arm to switch its torque on again"):
         robot.stand(0.1)
     report = robot.run("stand", arm=True, seconds=0.1)
-    assert report.reason == "it lay there before: put it on its feet" or report.good
+    assert report.reason == "it was already lying down: put it on its feet" or report.good
 
 
 def test_it_goes_down_when_it_is_told_to(monkeypatch: pytest.MonkeyPatch) -> None:
