@@ -10,7 +10,7 @@ from windup.tools.remote.plain_options import options_of
 from windup.tools.robot.robot import Robot
 from windup.tools.runtime.known_behaviours import known_behaviour
 from windup.tools.stopping.interrupts import BrokenOffError, RunInterruptedError
-from windup.tools.terminal.output import plain
+from windup.tools.terminal.output import to_json_types
 
 SETTLE: Final = 1.0
 """Time to stand after a walk has come to rest, s."""
@@ -69,7 +69,7 @@ class BehaviourRun:
             good=report.good,
             reason=report.reason,
             lines=report.lines,
-            result=plain(report.result),
+            result=to_json_types(report.result),
             exit_status=0 if report.good else 1,
         )
 

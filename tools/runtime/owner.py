@@ -16,7 +16,7 @@ from windup.tools.runtime.limp import Limp
 from windup.tools.runtime.present_state import PresentState
 from windup.tools.runtime.start_broker import BrokerProcess
 from windup.tools.stopping.break_off import BreakOff
-from windup.tools.stopping.interrupts import WORDS, RunInterruptedError
+from windup.tools.stopping.interrupts import SIGNAL_NAMES, RunInterruptedError
 
 LOOK: Final = 64
 """Ticks between two looks at whether the broker lives."""
@@ -59,7 +59,7 @@ class Owner:
                 if order is not None and isinstance(order.message, Run):
                     self._run(order.client, order.message)
             except RunInterruptedError as stopped:
-                if stopped.by in WORDS.values():
+                if stopped.by in SIGNAL_NAMES.values():
                     raise
                 self._keep_off(f"{self._robot.description.name} was stopped by {stopped.by}")
             except WindupError as error:
