@@ -78,6 +78,7 @@ class Stepper:
         steps: Number of steps taken to prevent a fall.
         comforts: Number of comfort steps.
         phase: Present phase.
+        state: The robot's state.
     """
 
     def __init__(
@@ -90,6 +91,7 @@ class Stepper:
         no_step: KeepOutRegions | None = None,
     ) -> None:
         self.joints, self.footing, self.stance = joints, footing, stance
+        self.state = footing.state
         self.rule, self.stepping = rule, stepping
         self.no_step = no_step or KeepOutRegions()
         self._reach = stepping.reach.reach()
