@@ -31,25 +31,13 @@ from windup.hal.ranges import Range, read_number
 from windup.robots import RobotDescription
 from windup.tools.assembly.gaits import find_gait
 from windup.tools.assembly.shape import can_estimate, check_walks
+from windup.tools.assembly.state import state_of
 from windup.tools.assembly.steer import steering_of
 from windup.tools.assembly.step_models import memory_for
 from windup.tools.assembly.style_intervals import blended
 from windup.tools.assembly.walk_options import WalkOptions
 
 TARGET = Range(-1_000.0, 1_000.0)
-
-
-def state_of(robot: RobotDescription, ahead: float = 0.0) -> RobotState:
-    """Return a state of a robot, extrapolated by `ahead` s; whoever shares it computes it once."""
-    return RobotState(
-        robot.model,
-        robot.base,
-        robot.torso,
-        [foot.site for foot in robot.feet],
-        feet=[foot.body for foot in robot.feet],
-        contacts=robot.contacts,
-        ahead=ahead,
-    )
 
 
 def build_estimator(

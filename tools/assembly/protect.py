@@ -12,7 +12,7 @@ from windup.hal.controller import Controller
 from windup.hal.joints import Array, Mask
 from windup.robots import RobotDescription
 from windup.robots.records import Shares
-from windup.tools.assembly.build import state_of
+from windup.tools.assembly.state import state_of
 
 if TYPE_CHECKING:
     from windup.control.falling.protection import FallWay, Protected

@@ -24,9 +24,9 @@ from windup.hal.controller import Controller
 from windup.hal.errors import UnknownNameError
 from windup.hal.joints import Array
 from windup.robots import RobotDescription
-from windup.tools.assembly.build import state_of
 from windup.tools.assembly.robot_file import load_beside
 from windup.tools.assembly.shape import check_walks
+from windup.tools.assembly.state import state_of
 
 STEPPING: Final = "stepping.toml"
 FOOTPRINTS: Final = "footprints.toml"

@@ -20,9 +20,9 @@ from windup.hal.errors import UnknownNameError
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
 from windup.robots import RobotDescription
-from windup.tools.assembly.build import state_of
 from windup.tools.assembly.robot_file import load_beside
 from windup.tools.assembly.shape import check_walks
+from windup.tools.assembly.state import state_of
 from windup.tools.assembly.stepping import FOOTPRINTS, find_stepping, whole_body_of
 from windup.tools.robot.robot import Robot
 

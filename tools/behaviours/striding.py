@@ -18,9 +18,9 @@ from windup.hal.joints import Array
 from windup.hal.observation import BaseState, Observation
 from windup.hal.ranges import Range, read_number
 from windup.robots import RobotDescription
-from windup.tools.assembly.build import state_of
 from windup.tools.assembly.robot_file import load_beside
 from windup.tools.assembly.shape import check_walks
+from windup.tools.assembly.state import state_of
 from windup.tools.behaviours.directed import limbs_of
 from windup.tools.robot.robot import Robot
 

@@ -4,7 +4,7 @@ import pytest
 from windup.control.footprints.weight import holding_torque
 from windup.hal.observation import BaseState, JointState, Observation
 from windup.robots import RobotDescription
-from windup.tools.assembly.build import state_of
+from windup.tools.assembly.state import state_of
 
 
 def standing(joints: np.ndarray) -> Observation:

@@ -9,7 +9,7 @@ from windup.control.kinematics.robot_state import PER_OBSERVATION, RobotState
 from windup.hal.errors import StateMissingError
 from windup.hal.observation import BaseState, JointState, Observation
 from windup.robots import RobotDescription
-from windup.tools.assembly.build import state_of
+from windup.tools.assembly.state import state_of
 
 AHEAD = 0.02
 

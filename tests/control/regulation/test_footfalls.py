@@ -11,7 +11,7 @@ from windup.hal.observation import Observation
 from windup.robots import RobotDescription
 from windup.sim_twin.backend import TwinBackend
 from windup.sim_twin.twin import Twin
-from windup.tools.assembly.build import state_of
+from windup.tools.assembly.state import state_of
 
 DOWN = radians(-4.0)
 

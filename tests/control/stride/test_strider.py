@@ -9,7 +9,7 @@ from tests.control.stepping.test_footing import OP3, seen
 from windup.control.stride.pendulum import VelocityCommand
 from windup.control.stride.strider import Phase, Strider
 from windup.hal.observation import Observation
-from windup.tools.assembly.build import state_of
+from windup.tools.assembly.state import state_of
 from windup.tools.assembly.stepping import stepping_stance
 from windup.tools.behaviours.directed import limbs_of
 from windup.tools.behaviours.striding import find_stride

@@ -8,7 +8,7 @@ from windup.control.whole_body.whole_body import FASTEST, Objectives, Weights, W
 from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.observation import BaseState, JointState, Observation
 from windup.robots import load_robot
-from windup.tools.assembly.build import state_of
+from windup.tools.assembly.state import state_of
 
 HUMAN = load_robot("human")
 STANCE = HUMAN.poses["ready"]
