@@ -7,7 +7,6 @@ frame, z up; points are (2,) m on the ground.
 from dataclasses import dataclass
 from math import sqrt
 
-import mujoco
 import numpy as np
 
 from windup.hal.geometry.gravity import GRAVITY
@@ -32,12 +31,6 @@ class Momenta:
     com: Array
     velocity: Array
     angular: Array
-
-    @classmethod
-    def of(cls, data: mujoco.MjData, base: int, mass: float) -> "Momenta":
-        """Return the momenta of the subtree of body `base`, of `mass` kg, after `mj_subtreeVel`."""
-        com, velocity = data.subtree_com[base].copy(), data.subtree_linvel[base].copy()
-        return cls(mass, com, velocity, data.subtree_angmom[base].copy())
 
     @property
     def linear(self) -> Array:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
+from windup.control.kinematics.body_views import BodyViews
 from windup.control.kinematics.limb_ik import Pose
 from windup.control.kinematics.momenta import Momenta
 from windup.control.kinematics.rotation import facing
@@ -23,7 +24,6 @@ from windup.control.kinematics.soles import Indices, Soles
 from windup.hal.contacts import ContactSensors
 from windup.hal.controller import Outcomes
 from windup.hal.errors import StateMissingError
-from windup.hal.geometry.up_axis import UP_AXIS
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState, Observation
 
@@ -63,15 +63,14 @@ class RobotState:
         contacts: ContactSensors | None = None,
         ahead: float = 0.0,
     ) -> None:
-        self.model, self._data, self._ahead = model, mujoco.MjData(model), ahead
+        self.model, self._ahead = model, ahead
         self.base_body = model.body(base).id
-        self._torso = model.body(torso).id
+        self._views = BodyViews(model, self.base_body, model.body(torso).id)
         self.sites: Indices = np.array([model.site(name).id for name in sites], dtype=np.intp)
         self.mass = float(model.body_subtreemass[self.base_body])
         self._feet, self._contacts = feet, contacts
         self._soles: Soles | None = None
         self._observation: Observation | None = None
-        self._qpos, self._qvel = self._data.qpos, self._data.qvel  # views, looked up once
 
     def update(self, observation: Observation) -> "RobotState":
         """Take the observation of this tick, and return the state itself.
@@ -121,25 +120,25 @@ class RobotState:
         return self._soles
 
     @cached_property
-    def position_stage(self) -> mujoco.MjData:
-        """MuJoCo's data with the poses of all bodies and the centres of mass; to be read only."""
-        base, joints, data = self.base, self.observation.joints, self._data
-        qpos, qvel = self._qpos, self._qvel
+    def position_stage(self) -> BodyViews:
+        """Poses of all bodies and centres of mass, in MuJoCo's data."""
+        views, base, joints = self._views, self.base, self.observation.joints
+        qpos, qvel = views.qpos, views.qvel
         qpos[:3], qpos[3:7], qpos[7:] = base.position, base.orientation, joints.position
         qvel[:3], qvel[3:6], qvel[6:] = base.linear_velocity, base.angular_velocity, joints.velocity
         if self._ahead:
             mujoco.mj_integratePos(self.model, qpos, qvel, self._ahead)
-        mujoco.mj_kinematics(self.model, data)
-        mujoco.mj_comPos(self.model, data)
-        return data
+        mujoco.mj_kinematics(self.model, views.data)
+        mujoco.mj_comPos(self.model, views.data)
+        return views
 
     @cached_property
-    def velocity_stage(self) -> mujoco.MjData:
-        """The same data, also with the velocities and momenta of all bodies."""
-        data = self.position_stage
-        mujoco.mj_comVel(self.model, data)
-        mujoco.mj_subtreeVel(self.model, data)
-        return data
+    def velocity_stage(self) -> BodyViews:
+        """The same, with velocities and momenta of all bodies."""
+        views = self.position_stage
+        mujoco.mj_comVel(self.model, views.data)
+        mujoco.mj_subtreeVel(self.model, views.data)
+        return views
 
     @cached_property
     def joint_position(self) -> Array:
@@ -154,8 +153,7 @@ class RobotState:
     @cached_property
     def pose(self) -> Pose:
         """Pose of the base."""
-        data, base = self.position_stage, self.base_body
-        return Pose(data.xpos[base].copy(), data.xmat[base].reshape(3, 3).copy())
+        return Pose(self.position_stage.position.copy(), self.position_stage.axes.copy())
 
     @cached_property
     def yaw(self) -> float:
@@ -165,7 +163,7 @@ class RobotState:
     @cached_property
     def up(self) -> Array:
         """(3,) unit vector along the torso."""
-        return self.position_stage.xmat[self._torso, UP_AXIS].copy()
+        return self.position_stage.up.copy()
 
     @cached_property
     def feet(self) -> list[Pose]:
@@ -176,27 +174,29 @@ class RobotState:
     @cached_property
     def feet_position(self) -> Array:
         """(k, 3) positions of the k sites, m."""
-        return self.position_stage.site_xpos[self.sites]
+        return self.position_stage.site_position[self.sites]
 
     @cached_property
     def feet_axes(self) -> Array:
         """(k, 9) rotation matrices of the k sites, row by row."""
-        return self.position_stage.site_xmat[self.sites]
+        return self.position_stage.site_axes[self.sites]
 
     @cached_property
     def ground(self) -> Array:
         """(p, 3) the points of the soles that can touch the ground, m; see `soles`."""
-        return self.soles.seen(self.position_stage)
+        views = self.position_stage
+        return self.soles.seen(views.body_position, views.body_axes)
 
     @cached_property
     def com(self) -> Array:
         """(3,) centre of mass, m."""
-        return self.position_stage.subtree_com[self.base_body].copy()
+        return self.position_stage.com.copy()
 
     @cached_property
     def momenta(self) -> Momenta:
         """Mass, centre of mass and momenta of the whole body."""
-        return Momenta.of(self.velocity_stage, self.base_body, self.mass)
+        views = self.velocity_stage
+        return Momenta(self.mass, self.com, views.com_velocity.copy(), views.angular.copy())
 
     @property
     def com_velocity(self) -> Array:
@@ -207,7 +207,7 @@ class RobotState:
     def com_jacobian(self) -> Array:
         """(3, v) Jacobian of the centre of mass."""
         jacobian = np.zeros((3, self.model.nv))
-        mujoco.mj_jacSubtreeCom(self.model, self.position_stage, jacobian, self.base_body)
+        mujoco.mj_jacSubtreeCom(self.model, self.position_stage.data, jacobian, self.base_body)
         return jacobian
 
     @cached_property
@@ -242,12 +242,12 @@ class RobotState:
         if known is None:
             known = self._jacobians[foot] = np.zeros((6, self.model.nv))
             site = int(self.sites[foot])
-            mujoco.mj_jacSite(self.model, self.position_stage, known[:3], known[3:], site)
+            mujoco.mj_jacSite(self.model, self.position_stage.data, known[:3], known[3:], site)
         return known
 
     def points(self, sites: Indices) -> Array:
         """Return the positions (s, 3) of sites by their indices (s,), m."""
-        return self.position_stage.site_xpos[sites]
+        return self.position_stage.site_position[sites]
 
     def support(self, feet: Sequence[int]) -> "SupportRegion":
         """Return the convex hull of these feet's soles, whether or not they bear load."""

@@ -44,10 +44,10 @@ class Dynamics:
         if observation is self._observation:
             return
         state, model = self.state.update(observation), self.model
-        data = state.position_stage
+        data = state.position_stage.data
         mujoco.mj_makeM(model, data)
         mujoco.mj_fullM(model, data, self.mass)
-        mujoco.mj_rne(model, state.velocity_stage, 0, self.bias)
+        mujoco.mj_rne(model, state.velocity_stage.data, 0, self.bias)
         self._grounds = [
             pose.position + corners @ pose.rotation.T
             for pose, corners in zip(state.feet, self.corners, strict=True)
@@ -90,7 +90,7 @@ class Dynamics:
     def drift(self, end: int) -> Array:
         """Return the acceleration (6,) of an end at zero joint acceleration, dJ/dt v."""
         rate = np.zeros((6, self.model.nv))
-        site, data = int(self.state.sites[end]), self.state.velocity_stage
+        site, data = int(self.state.sites[end]), self.state.velocity_stage.data
         body = int(self.model.site_bodyid[site])
         mujoco.mj_jacDot(self.model, data, rate[:3], rate[3:], data.site_xpos[site], body)
         return np.asarray(rate @ self.velocity)
