@@ -135,6 +135,7 @@ def test_positions_are_extrapolated_and_velocities_are_not(
 def test_the_same_observation_is_computed_once(
     model: mujoco.MjModel, state: RobotState, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    _ = state.soles  # made once, from the model
     calls, real = [], mujoco.mj_kinematics
     monkeypatch.setattr(mujoco, "mj_kinematics", lambda *args: (calls.append(1), real(*args)))
     seen = observed(moving(model, 1))
