@@ -8,6 +8,7 @@ steps bring the feet back to the stance (Kenwright 2012, section IV).
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import hypot
 from typing import Literal
 
 import numpy as np
@@ -221,7 +222,7 @@ class Stepper:
     def _settle(self, now: float) -> None:
         """Start a comfort step if one is needed and the robot has stood still long enough."""
         footing, stepping = self.footing, self.stepping
-        if np.linalg.norm(footing.momenta.velocity[:2]) > STILL:
+        if hypot(*footing.momenta.velocity[:2]) > STILL:
             self._moved = now
         if now - self._moved < stepping.patience:
             return
@@ -242,7 +243,7 @@ class Stepper:
         if self.phase == "swing":
             self._swing(goals, now)
             return
-        against = self._against(footing.places.mean(axis=0))
+        against = self._against((footing.places[0] + footing.places[1]) / 2.0)
         place = self._centre(now) - against
         base = footing.upright(place, self._heading(now), height=self._height)
         for foot in (0, 1):
@@ -283,4 +284,4 @@ class Stepper:
     def _against(self, middle: Array) -> Array:
         """Return the displacement (2,) m to subtract from the base against the capture point."""
         away = self.stepping.balance * (capture_point(self.footing.momenta) - middle)
-        return np.clip(away, -MOST_SHIFT, MOST_SHIFT)
+        return np.minimum(np.maximum(away, -MOST_SHIFT), MOST_SHIFT)
