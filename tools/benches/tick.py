@@ -28,7 +28,7 @@ from windup.tools.robot.stack import State
 BARE: Final = "op3"
 STEPS, BATCHES = 50, 40
 WALK_SECONDS: Final = 20.0
-PUSHES, EVERY, SPEED = 8, 2.5, 0.45
+PUSHES, EVERY, SPEED = 8, 2.5, 0.6
 """Number of pushes while stepping, each in another direction, the time between them, s, and the
 speed that each gives the robot, m/s."""
 TARGETS: Final = {"op3_walking": 9.0, "op3_stepping": 12.0, "human_stepping": 19.0}
