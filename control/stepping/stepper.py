@@ -9,7 +9,6 @@ steps bring the feet back to the stance (Kenwright 2012, section IV).
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import hypot
-from typing import Literal
 
 import numpy as np
 from shapely.geometry.base import BaseGeometry
@@ -29,12 +28,13 @@ from windup.control.stepping.step_decision import (
     place,
     trigger_point,
 )
+from windup.control.stepping.stepper_block import STEPPER_NAMES, StepperPhase, publish_stepper
 from windup.control.stepping.stepping_file import Stepping
 from windup.hal.command import JointCommand
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
+from windup.hal.publishing.controller_block import ControllerBlock
 
-Phase = Literal["stand", "swing", "land", "comfort"]
 MOST_SHIFT = 0.06
 """Maximum displacement of the base against the capture point, m."""
 MOST_PITCH = 0.8
@@ -80,7 +80,10 @@ class Stepper:
         comforts: Number of comfort steps.
         phase: Present phase.
         state: The robot's state.
+        published: Names of what `publish` fills in.
     """
+
+    published = STEPPER_NAMES
 
     def __init__(
         self,
@@ -96,7 +99,7 @@ class Stepper:
         self.rule, self.stepping = rule, stepping
         self.no_step = no_step or KeepOutRegions()
         self._reach = stepping.reach.reach()
-        self.phase: Phase = "stand"
+        self.phase: StepperPhase = "stand"
         self.steps = self.comforts = 0
 
     def reset(self, observation: Observation) -> None:
@@ -137,6 +140,11 @@ class Stepper:
         self._height = self._above + part * (self.footing.height - self._above)
         self._pose(goals, now)
         return self._hold.at(goals)
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish the phase, the capture point and the target of the swing foot."""
+        target = self._flight.target if self.phase == "swing" else None
+        publish_stepper(block, self.phase, self.footing.momenta, target)
 
     @property
     def stepping_foot(self) -> int:

@@ -20,11 +20,14 @@ from windup.hal.port.port import Port
 from windup.hal.port.replug import Opener
 from windup.hal.servo_bus.bus_connection import BusConnection, BusPort
 from windup.hal.servo_bus.bus_readout import BusReadout
+from windup.hal.servo_bus.joint_readings import JointReadings
 from windup.hal.servo_bus.plausibility import Plausibility
 from windup.hal.servo_bus.units import Units
 from windup.hal.servo_bus.wiring import check_servos, row_groups
 from windup.hal.servos.servo_model import ServoMount
 
+ATTEMPTS = 30
+"""Maximum number of cyclic reads until every joint has answered."""
 BuildLine = Callable[[Port], BusReadout]
 
 
@@ -51,7 +54,7 @@ def lines_of(
         here = [mounts[row] for row in rows]
         family = family_of(here[0].model.name)
         bounds = units.last[rows], units.speed[rows], units.speed_unit[rows]
-        check = Plausibility(*bounds, weak=family.dialect.weak, first=units.first[rows])
+        check = Plausibility(*bounds, weak=family.protocol.weak, first=units.first[rows])
         ours = board if board is not None and board.bus == name else None
         names = [joints.names[row] for row in rows]
         return lambda port: BusReadout(Bus(port, family), here, rows, ours, check, names)
@@ -123,3 +126,18 @@ def power_up(bus: Bus, board: OpenCr) -> None:
 def names_of(joints: Joints, which: Mask) -> str:
     """Return the names of the joints `which` (n,) bool, separated by commas."""
     return ", ".join(np.array(joints.names)[which])
+
+
+def silent_joints(
+    joints: Joints, readings: JointReadings, read: Callable[[], object], began: float
+) -> str:
+    """Read until every joint has answered since `began` s, `ATTEMPTS` times at most.
+
+    Returns:
+        Names of the joints that have not answered, separated by commas.
+    """
+    for _ in range(ATTEMPTS):
+        read()
+        if (readings.answered > began).all():
+            break
+    return names_of(joints, readings.answered <= began)

@@ -102,11 +102,10 @@ def measure_tick(name: str, *, targets: bool = False) -> dict[str, Any]:
 
 
 def _walk(robot: Robot) -> LoopReport:
-    """Walk open loop, once to warm up, and return how the second time went."""
-    walker = build_walk(robot.description, WalkOptions(open_loop=True), None)
-    robot.run(walker, 1.0)
-    robot.twin.reset()
-    return robot.run(walker, WALK_SECONDS)
+    """Walk with kept step models, and return how that went, without the time of rollouts."""
+    walker = build_walk(robot.description, WalkOptions(model="library"), robot.predictor)
+    robot.start_at(walker.gait.file.start)
+    return robot.run(walker, WALK_SECONDS, rollouts=robot.predictor.stopwatch)
 
 
 def _measure_stepping(name: str, times: TickTimes) -> None:
