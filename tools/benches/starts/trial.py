@@ -16,9 +16,9 @@ from windup.sim_twin.lowest import lowest_point
 from windup.sim_twin.twin import Twin
 from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics
 from windup.sim_twin.wire.world.bus_world import BusWorld
+from windup.tools.behaviours.rise import rise
 from windup.tools.benches.starts.faults import Broken, Fault
 from windup.tools.benches.starts.postures import KINDS, Kind, Placed, random_posture
-from windup.tools.commands.rise import rise
 from windup.tools.robot.robot import Robot
 from windup.tools.testing.servo_bus import ServoBus
 
@@ -128,7 +128,7 @@ def _place(robot: Robot, world: BusWorld, placed: Placed) -> None:
     physics, twin = world.physics, robot.twin
     assert isinstance(physics, TwinPhysics)
     twin.reset(placed.pose)
-    twin.data.qpos[:2], twin.data.qpos[3:7] = 0.0, placed.turn
+    twin.data.qpos[:2], twin.data.qpos[3:7] = 0.0, placed.turn.as_quat(scalar_first=True)
     mujoco.mj_forward(twin.model, twin.data)
     twin.data.qpos[2] += placed.lift - lowest_point(twin.model, twin.data)
     mujoco.mj_forward(twin.model, twin.data)
