@@ -138,7 +138,8 @@ class Runner(Watched):
         approach = None if self.start is None else self.start.before(controller, down)
         protected = self.protected = None
         if self.protect and self._protection.possible and not down:
-            protected = self.protected = self._protection.around(approach or controller)
+            protected = self._protection.around(approach or controller, controller)
+            self.protected = protected
         wishes = stop_requests(self.backend.backend, keys=self.stack.real, flag=self.flag)
         with (
             counted_signals(self.stack.wired) as asked,
