@@ -8,11 +8,12 @@ from typing import Literal
 
 import numpy as np
 
+from windup.control.execution.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
+from windup.control.execution.swing import gaussian_progress, lift, smooth_progress
 from windup.control.footprints.directed_file import ServoDirected
-from windup.control.footprints.footprints import Footprint, between, onto, seen_from
-from windup.control.footprints.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
-from windup.control.footprints.swing import gaussian_progress, lift, smooth_progress
+from windup.control.footprints.footprints import Footprint
 from windup.control.kinematics.limb_ik import LimbIk, Pose
+from windup.control.kinematics.places import between, onto, seen_from
 from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.rotation import turn, way_round
 from windup.hal.joints import Array, Joints

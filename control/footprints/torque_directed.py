@@ -10,10 +10,11 @@ from typing import Literal
 
 import numpy as np
 
+from windup.control.execution.swing import smooth_progress
 from windup.control.footprints.directed_file import Directed
-from windup.control.footprints.footprints import Footprint, between, onto
-from windup.control.footprints.swing import smooth_progress
+from windup.control.footprints.footprints import Footprint
 from windup.control.footprints.torque_motion import PERIOD, TorqueMotion
+from windup.control.kinematics.places import between, onto
 from windup.control.whole_body.whole_body import WholeBody
 from windup.hal.command import JointCommand
 from windup.hal.contacts import ContactSensors

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from windup.control.footprints.footprints import ground_places
-from windup.control.footprints.swing import gaussian_progress, lift
+from windup.control.execution.swing import gaussian_progress, lift
+from windup.control.kinematics.places import ground_places
 from windup.control.kinematics.rotation import turn, turn_between, yaw_of
 from windup.control.whole_body.whole_body import Objectives, Plan, WholeBody
 from windup.hal.command import JointCommand

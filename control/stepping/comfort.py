@@ -5,10 +5,10 @@ from typing import Literal
 
 import numpy as np
 
-from windup.control.footprints.swing import swing_foot
+from windup.control.execution.footing import Footing
+from windup.control.execution.swing import swing_foot
 from windup.control.kinematics.momenta import capture_point
 from windup.control.kinematics.rotation import heading_between, turn, way_round
-from windup.control.stepping.footing import Footing
 from windup.control.stepping.stepping_file import Stepping
 from windup.hal.joints import Array
 

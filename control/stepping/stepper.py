@@ -13,12 +13,12 @@ from typing import Literal
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
+from windup.control.execution.footing import Footing
+from windup.control.execution.swing import gaussian_progress
 from windup.control.footprints.keep_out import KeepOutRegions
-from windup.control.footprints.swing import gaussian_progress
 from windup.control.kinematics.momenta import capture_point
 from windup.control.kinematics.rotation import facing, heading_between, turn
 from windup.control.stepping.comfort import STILL, ComfortStep
-from windup.control.stepping.footing import Footing
 from windup.control.stepping.step_decision import (
     Placement,
     StepRule,

@@ -8,9 +8,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from windup.control.footprints.footprints import Footprint, onto, seen_from
+from windup.control.footprints.footprints import Footprint
 from windup.control.footprints.torque_directed import TorqueDirected
 from windup.control.kinematics.momenta import capture_point
+from windup.control.kinematics.places import onto, seen_from
 from windup.control.kinematics.support import SupportRegion
 from windup.control.stepping.comfort import ASKEW
 from windup.hal.joints import Array

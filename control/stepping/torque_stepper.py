@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
+from windup.control.execution.swing import bezier, gaussian_progress
 from windup.control.footprints.keep_out import KeepOutRegions
-from windup.control.footprints.swing import bezier, gaussian_progress
 from windup.control.footprints.torque_motion import PERIOD, Swing, TorqueMotion
 from windup.control.kinematics.momenta import capture_point
 from windup.control.kinematics.rotation import yaw_of

@@ -7,12 +7,12 @@ import msgspec
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
+from windup.control.execution.footing import Footing
 from windup.control.footprints.directed_file import Directed
 from windup.control.footprints.footprints import Footprint
 from windup.control.footprints.keep_out import KeepOutRegions
 from windup.control.kinematics.robot_state import RobotState
 from windup.control.motions.play import PoseHolder
-from windup.control.stepping.footing import Footing
 from windup.control.stepping.step_decision import RULES
 from windup.control.stepping.stepper import Stepper
 from windup.control.stepping.stepping_file import Stepping, Support

@@ -11,9 +11,10 @@ import numpy as np
 from windup.control.footprints.directed_file import Directed, ServoDirected
 from windup.control.footprints.footprint_checks import FootprintChecks, outline
 from windup.control.footprints.footprint_walker import FootprintWalker
-from windup.control.footprints.footprints import Footprint, between, ground_places, seen_from
+from windup.control.footprints.footprints import Footprint
 from windup.control.footprints.torque_directed import TorqueDirected
 from windup.control.kinematics.limb_ik import LimbIk
+from windup.control.kinematics.places import between, ground_places, seen_from
 from windup.control.kinematics.soles import Soles
 from windup.hal.controller import Controller
 from windup.hal.errors import UnknownNameError

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.control.stepping.test_footing import OP3, STANCE, seen
+from tests.control.execution.test_footing import OP3, STANCE, seen
 from windup.control.stepping.comfort import ComfortStep
 from windup.control.stepping.step_decision import find_rule
 from windup.control.stepping.stepper import Stepper

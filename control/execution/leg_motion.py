@@ -11,9 +11,9 @@ from typing import Protocol
 
 import numpy as np
 
-from windup.control.footprints.footprints import ground_places
-from windup.control.footprints.weight import holding_torque
+from windup.control.execution.weight import holding_torque
 from windup.control.kinematics.limb_ik import LimbIk, Pose
+from windup.control.kinematics.places import ground_places
 from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.rotation import heading, turn, turn_between
 from windup.hal.command import JointCommand
