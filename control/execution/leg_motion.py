@@ -143,7 +143,10 @@ class LegMotion(ABC):
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the command of this tick."""
         self.update(observation)
-        aim = self.plan(observation.time, dt)
+        return self.command(self.plan(observation.time, dt), dt)
+
+    def command(self, aim: Aim, dt: float) -> JointCommand:
+        """Return the command that tracks `aim`; `update` has been called in this tick."""
         base = self._base(aim, dt)
         goals = self.stance.copy()
         for foot in range(2):

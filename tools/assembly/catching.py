@@ -10,11 +10,14 @@ if TYPE_CHECKING:
 
 
 def supervisor_for(
-    robot: RobotDescription, walker: "Balancer", catch: str | None
+    robot: RobotDescription, walker: "Balancer", catch: str | None, delay: float
 ) -> "Supervisor | None":
-    """Return the supervisor that catches pushes by the rule `catch`, or None without a rule."""
+    """Return the supervisor that catches pushes by the rule `catch`, or None without a rule.
+
+    The `delay` is from a state being measured to a command for it acting, s.
+    """
     if catch is None:
         return None
     from windup.tools.assembly.supervise import build_supervisor
 
-    return build_supervisor(robot, walker, catch)
+    return build_supervisor(robot, walker, catch, delay)

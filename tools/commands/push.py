@@ -132,7 +132,8 @@ class Push(WorldOptions, Common):
     def one(self, seed: int, plan: PushPlan, *, fall: bool = False) -> dict[str, Any]:
         """Return the result of one trial; with `fall` a robot that falls does so to the end."""
         world = self.world(load_robot(self.robot), seed)
-        rate = self.rate or find_stepping(load_robot(self.robot)).rate
+        steps = self.during == "stand" or self.catch
+        rate = self.rate or (find_stepping(load_robot(self.robot)).rate if steps else None)
         with replace(self, rate=rate).open_robot(seed, delay=self.delay, world=world) as robot:
             result: dict[str, Any] = {"reason": "interrupted", "survived": False, "seed": seed}
             robot.protect = self.protect and fall

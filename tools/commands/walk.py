@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import cpu_count
 from pathlib import Path
 from typing import Any, Literal
@@ -15,6 +15,7 @@ from windup.hal.errors import UsageError
 from windup.hal.geometry.up_axis import uprightness
 from windup.robots import load_robot
 from windup.tools.assembly.build import build_walk
+from windup.tools.assembly.catching import supervisor_for
 from windup.tools.assembly.stepping import find_stepping
 from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.command_line.typed import as_typed
@@ -94,7 +95,8 @@ class Walk(TwinOptions, Common):
         check_picture(self.plot)
         if self.plot is not None and self.seeds is not None:
             raise UsageError("--plot draws one walk: leave it or --seeds away")
-        build_walk(load_robot(self.robot), options, None)
+        robot = load_robot(self.robot)
+        supervisor_for(robot, build_walk(robot, options, None), options.catch, 0.0)
 
     def run(self) -> int:
         """Walk; returns the exit status."""
@@ -112,7 +114,8 @@ class Walk(TwinOptions, Common):
 
     def _one(self, seed: int, *, show: bool) -> dict[str, Any]:
         """Walk one seed and return its result."""
-        with self.open_robot(
+        rate = self.rate or (find_stepping(load_robot(self.robot)).rate if self.catch else None)
+        with replace(self, rate=rate).open_robot(
             seed,
             delay=self.delay,
             world=self.world(load_robot(self.robot), seed),

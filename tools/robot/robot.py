@@ -198,7 +198,7 @@ class Robot(Session):
         # A plan takes its time on a robot; an emulated one waits for it as long.
         wait = self.description.model_latency if self.stack.wired else 0.0
         walker = build_walk(self.description, options, self.predictor, latency=wait)
-        supervisor = supervisor_for(self.description, walker, options.catch)
+        supervisor = supervisor_for(self.description, walker, options.catch, self.stack.delay)
         end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
         report = WalkReport(
             self, walker, options, steps, self.predictor.stopwatch, self.seed,
@@ -207,7 +207,8 @@ class Robot(Session):
         with ExitStack() as stack:
             try:
                 if self.paced and walker.planner is not None:
-                    aside = plan_aside(self.description, options, self.predictor, self.period)
+                    period = (supervisor and supervisor.period) or self.period
+                    aside = plan_aside(self.description, options, self.predictor, period)
                     walker.planner = self._when_ready(stack.enter_context(aside))
                 self._walk(report, end, disturb, stand)
             except RunInterruptedError as stopped:
