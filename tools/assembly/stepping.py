@@ -54,7 +54,7 @@ def stepping_stance(robot: RobotDescription, name: str | None = None) -> Array:
 
 
 def footing_of(robot: RobotDescription, stance: Array, state: RobotState | None = None) -> Footing:
-    """Return the feet of `robot` for a pose (n,) rad to stand in, by a state of its own or a shared."""
+    """Return the feet of `robot`, for a pose (n,) rad to stand in; a state may be shared."""
     sites = [foot.site for foot in robot.feet]
     return Footing(state or state_of(robot), robot.base, sites, stance)
 
