@@ -12,7 +12,7 @@ from windup.control.whole_body.whole_body_file import WholeBodyFile
 from windup.hal.config import load_toml
 from windup.hal.joints import Array
 from windup.robots import RobotDescription
-from windup.tools.assembly.build import state_of
+from windup.tools.assembly.state import state_of
 
 WHOLE_BODY: Final = "whole_body.toml"
 
