@@ -152,6 +152,11 @@ class WalkExecutor(Executor[WalkMotion], Protocol):
     """Executor of slow steps to footprints; their weight is the centre of mass."""
 
     @property
+    def follows_feet(self) -> bool:
+        """Within a phase, the goal of the weight follows the measured feet."""
+        ...
+
+    @property
     def places(self) -> Array:
         """(2, 3) measured places of the feet: x m, y m, yaw rad."""
         ...

@@ -23,6 +23,7 @@ class LegExecutor(LegMotion):
     """
 
     _motion: WalkMotion
+    follows_feet = False
 
     def observe(self, observation: Observation) -> None:
         """Measure the robot; see `Executor.observe`."""

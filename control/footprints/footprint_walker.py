@@ -91,6 +91,8 @@ class FootprintWalker:
     def _advance(self, now: float) -> None:
         """Enter the next phase if the present one is over."""
         motion, shift = self.motion, self.motion.shift
+        if self.executor.follows_feet:
+            shift.goal = self._weight_goal(motion)
         gone = now - shift.began
         if gone < shift.seconds - 1e-9 or self.finished:
             return
@@ -139,7 +141,7 @@ class FootprintWalker:
             self._fix(motion, places)
         elif phase == "land":
             motion.apart = _apart(motion.foot, places[1 - motion.foot], motion.target)
-        goal, toward = self._goal(motion, yaw, places)
+        goal, toward = self._weight_goal(motion), self._yaw_goal(motion, yaw, places)
         start = before.shift.at(self._last)
         seconds = self._seconds(phase, float(np.hypot(*(goal - start))))
         motion.shift = Shift(start, goal, now, seconds, smooth_progress, smooth=True)
@@ -155,15 +157,21 @@ class FootprintWalker:
         if wanted.frame == "start":
             motion.target = seen_from(stance, onto(self._origin, wanted.place))
 
-    def _goal(self, motion: WalkMotion, yaw: float, places: Array) -> tuple[Array, float]:
-        """Return where the CoM (2,) and the heading of the base are to be, m and rad."""
+    def _weight_goal(self, motion: WalkMotion) -> Array:
+        """Return where the CoM (2,) is to be: between both feet or over the stance foot, m."""
         middle = self.executor.middle
         if motion.phase == "rest":
-            return 0.5 * (middle(0) + middle(1)), yaw + way_round(yaw, between(*places)[2])
-        stance = places[1 - motion.foot]
+            return np.asarray(0.5 * (middle(0) + middle(1)))
+        return middle(1 - motion.foot).copy()
+
+    def _yaw_goal(self, motion: WalkMotion, yaw: float, places: Array) -> float:
+        """Return the heading of the base at the end of a phase that begins at `yaw`, rad."""
+        if motion.phase == "rest":
+            return yaw + way_round(yaw, between(*places)[2])
         if motion.phase == "swing":
-            yaw += way_round(yaw, between(stance, onto(stance, motion.target))[2])
-        return middle(1 - motion.foot).copy(), yaw
+            stance = places[1 - motion.foot]
+            return yaw + way_round(yaw, between(stance, onto(stance, motion.target))[2])
+        return yaw
 
     def _seconds(self, phase: WalkPhase, far: float) -> float:
         """Return the duration of a phase in which the weight moves by `far` m, s."""

@@ -1,6 +1,5 @@
 """Format of a robot's `stepping.toml`: parameters of steps against pushes. SI units."""
 
-from math import inf
 from typing import Annotated, Literal
 
 from msgspec import Meta
@@ -51,7 +50,7 @@ class ComfortTable(Record, frozen=True, kw_only=True):
     """
 
     shift: Positive = 0.5
-    pace: Positive = inf
+    pace: Positive = 100.0
     least: Part = 0.0
     wait: Seconds = 0.3
     swing: Positive = 0.4

@@ -33,6 +33,7 @@ class Ideal:
     com_velocity: Array = field(default_factory=lambda: np.zeros(2))
     yaw: float = 0.0
     height: float = 0.25
+    follows_feet: bool = False
 
     def reset(self, observation: Observation) -> None: ...
 
@@ -89,8 +90,8 @@ def test_the_weight_shifts_before_each_step_and_comes_to_the_middle_at_the_end()
     )
     assert walk.walker.finished
     assert (walk.walker.landed, walk.walker.stood) == (2, 2)
-    assert body.places == pytest.approx(np.array([[0.1, 0.1, 0.0], [0.1, -0.1, 0.0]]))
-    assert body.com == pytest.approx([0.1, 0.0])
+    assert body.places == pytest.approx(np.array([[0.1, 0.1, 0], [0.1, -0.1, 0]]), abs=2e-3)
+    assert body.com == pytest.approx([0.1, 0.0], abs=2e-3)
 
 
 def test_a_foot_that_does_not_touch_is_waited_for_but_not_for_ever() -> None:
@@ -113,6 +114,6 @@ def test_footprints_in_the_frame_of_the_start_are_seen_from_the_stance_foot() ->
     body = Ideal()
     walk = Walk(body, [Footprint(0, np.array([0.05, 0.12, 0.3]), "start", duration=0.6)])
     walk.go(3.0)
-    assert body.places[0] == pytest.approx([0.05, 0.12, 0.3])
+    assert body.places[0] == pytest.approx([0.05, 0.12, 0.3], abs=2e-3)
     times = dict(walk.phases)
     assert times["land"] - times["swing"] == pytest.approx(0.6, abs=1.5 * TICK)
