@@ -19,6 +19,7 @@ from windup.tools.benches.leaks import measure_leaks
 from windup.tools.benches.random_starts import measure_starts
 from windup.tools.benches.safety.bench import ROBOTS, measure_safety
 from windup.tools.benches.servo import measure_servos
+from windup.tools.benches.slow.bench import measure_slow
 from windup.tools.benches.soak_table import fault_table
 from windup.tools.benches.startup import measure_startup
 from windup.tools.benches.tick import measure_tick
@@ -38,6 +39,7 @@ What = Literal[
     "safety",
     "guardian",
     "loop",
+    "slow",
     "faults",
     "unplug",
     "leaks",
@@ -55,6 +57,7 @@ USED: dict[What, tuple[str, ...]] = {
     "safety": ("robot", "moments", "rows", "seed"),
     "guardian": ("robot", "minutes"),
     "loop": ("robot", "minutes"),
+    "slow": ("robot", "minutes"),
     "faults": ("reads", "seed"),
     "unplug": ("robot", "times", "seed"),
     "leaks": ("robot", "times"),
@@ -79,6 +82,7 @@ class Bench(Command):
     safety: end a moving robot in every way there is, and check that torque goes off (an hour).
     guardian: takeovers during a walk beside a busy process, where none is due (give --minutes 30).
     loop: wake-up lateness of our loop at 125 Hz, beside a C program that only sleeps.
+    slow: late ticks and plans of walks that have 35 % of one core, where none is due (as root).
     faults: readings that are wrong or lost under each kind of bus fault (3 minutes).
     unplug: a robot whose adapter is pulled out and plugged in again (4 minutes).
     starts: starts of a robot from random poses, without and with a fault in it (5 min).
@@ -87,7 +91,7 @@ class Bench(Command):
     leaks: resources left over by opening and closing a robot 1000 times (10 minutes); status 1 if
     that is more than 5 MB, or any file, thread or process."""
     robot: str | None = None
-    """Name of the robot, or path of its folder; op3 by default, safety: op3 and duck."""
+    """Name of the robot, or path of its folder; op3 by default, safety and slow: op3 and duck."""
     vendor: Maker = "dynamixel2"
     """bus: the servos and their protocol: STS3215, MX-28 (protocol 1), or XM430 (protocol 2)."""
     moments: Count = 20
@@ -100,8 +104,8 @@ class Bench(Command):
     """unplug, leaks, starts, fuzz and startup: repetitions; 100, 1000, 100, 1000, and 20."""
     seed: Seed = 0
     """safety, faults, unplug, fuzz: seed of the random numbers; starts: of the first start."""
-    minutes: Annotated[float, Range(0.0, 10_000.0, "minutes", above=True)] = 10.0
-    """loop, guardian: duration."""
+    minutes: Annotated[float, Range(0.0, 10_000.0, "minutes", above=True)] | None = None
+    """loop, guardian, slow: duration of all walks, or of each; 10, 10, and 1."""
     json: Path | None = None
     """Write the result as JSON to a file, or to standard output with '-'."""
 
@@ -126,8 +130,8 @@ class Bench(Command):
             "balance": measure_balance,
             "servo": measure_servos,
             "bus": partial(measure_bus, maker=self.vendor),
-            "loop": partial(measure_jitter, minutes=self.minutes),
-            "guardian": partial(measure_takeovers, minutes=self.minutes),
+            "loop": partial(measure_jitter, minutes=self.minutes or 10.0),
+            "guardian": partial(measure_takeovers, minutes=self.minutes or 10.0),
             "unplug": partial(measure_unplugs, times=self.times or 100, seed=self.seed),
             "leaks": partial(measure_leaks, times=self.times or 1_000),
             "starts": partial(measure_starts, starts=self.times or 100, seed=self.seed),
@@ -136,6 +140,8 @@ class Bench(Command):
         }
         if self.what == "safety":
             return self._safety()
+        if self.what == "slow":
+            return self._slow()
         if self.what == "faults":
             return self._faults()
         robot = {"robot": self.robot or "op3"} if "robot" in USED[self.what] else {}
@@ -167,4 +173,10 @@ class Bench(Command):
             soft_wrap=True,
         )
         write_json(self.json, "bench safety", result)
+        return 0 if result["met"] else 1
+
+    def _slow(self) -> int:
+        """Measure walks on a slow computer; each prints its line."""
+        result = measure_slow(self.robot, self.minutes or 1.0)
+        write_json(self.json, "bench slow", result)
         return 0 if result["met"] else 1

@@ -2,7 +2,7 @@
 
 ``python -m windup.tools.testing.pty_server URL PATH``. It exchanges JSON objects, one a line: on
 standard output first the paths by bus or an error, then an answer to each order that arrives on
-standard input. It ends at the end of standard input, and therefore with its parent.
+standard input, with its number. It ends with standard input, and therefore with its parent.
 """
 
 import json
@@ -33,10 +33,12 @@ def _begin(emulator: Emulator) -> None:
 def _listen(emulator: Emulator) -> None:
     """Execute orders until standard input ends, then stop the emulator."""
     for line in sys.stdin:
+        order = json.loads(line)
         try:
-            _tell(_obey(emulator, json.loads(line)))
+            answer = _obey(emulator, order)
         except WindupError as error:
-            _tell({"error": str(error)})
+            answer = {"error": str(error)}
+        _tell(answer | {"number": order["number"]})
     emulator.stop()
 
 

@@ -15,7 +15,7 @@ def test_it_survives_dropouts(servo_bus):
 Every run of pytest imports this file, so the fixtures import the rest when they are used.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
@@ -52,8 +52,22 @@ class MakeServoPty(Protocol):
         ...
 
 
+FAILED = pytest.StashKey[bool]()
+"""Whether a test has failed, for its fixtures."""
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item,
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Note that a test has failed."""
+    report = yield
+    item.stash[FAILED] = item.stash.get(FAILED, False) or report.failed
+    return report
+
+
 @pytest.fixture
-def servo_bus() -> Iterator[MakeServoBus]:
+def servo_bus(request: pytest.FixtureRequest) -> Iterator[MakeServoBus]:
     """Return a function that makes an emulated servo bus: ``servo_bus(servos="STS3215:1-6")``."""
     from windup.tools.testing.servo_bus import ServoBus
 
@@ -61,8 +75,12 @@ def servo_bus() -> Iterator[MakeServoBus]:
 
         def make(robot: str | Path = "bench", **options: "Unpack[BusOptions]") -> ServoBus:
             bus = ServoBus(robot, **options)
-            stack.callback(bus.close)
+            stack.callback(close, bus)
             return bus
+
+        def close(bus: ServoBus) -> None:
+            failed = request.node.stash.get(FAILED, False)
+            (bus.drop_golden if failed else bus.close)()
 
         yield make
 

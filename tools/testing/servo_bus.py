@@ -80,6 +80,7 @@ class ServoBus:
         self._robots: list[Robot] = []
         self._sdk_ports: list[Any] = []
         self._taps: list[Tap] = []
+        self._recorded: list[Path] = []
 
     def robot(self, **options: Any) -> "Robot":
         """Return the robot, opened with the real driver on these buses; see `Robot.open`.
@@ -177,11 +178,26 @@ class ServoBus:
         self._taps.append(Checker(self.world, Path(path)))
 
     def golden(self, path: str | Path) -> None:
-        """Check against a trace if it is there; if not, record it for the next time."""
+        """Check against a trace if it is there; if not, record it for the next time.
+
+        A test that fails leaves no recording.
+        """
         if Path(path).exists():
             self.check(path)
         else:
             self.record(path)
+            self._recorded.append(Path(path))
+
+    def drop_golden(self) -> None:
+        """Close, and remove what `golden` has recorded: the test has failed."""
+        try:
+            self.close()
+        finally:
+            self._remove_recorded()
+
+    def _remove_recorded(self) -> None:
+        for path in self._recorded:
+            path.unlink(missing_ok=True)
 
     def close(self) -> None:
         """Disconnect robots, close ports of SDKs, end traces, and forget the world.
@@ -215,7 +231,10 @@ class ServoBus:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._ending().__exit__(kind, error, trace)
+        with ExitStack() as stack:
+            if error is not None:
+                stack.callback(self._remove_recorded)
+            self._ending().__exit__(kind, error, trace)
 
     def _url(self, bus: str) -> str:
         return f"{self.url}&bus={bus}" if bus else self.url

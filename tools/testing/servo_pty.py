@@ -95,12 +95,13 @@ class ServoPty:
             [sys.executable, "-m", SERVER, url, str(place)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
-            text=True,
+            bufsize=0,  # what `select` calls ready is all that has not been read
             start_new_session=True,  # Ctrl-C is sent to the test only
         )
         self.faults = PtyFaults(
             lambda text: self._ask({"inject": text}), lambda: self._ask({"clear": True})
         )
+        self._orders = 0
         try:
             self.paths: dict[str, str] = self._hear()["paths"]
         except BaseException:
@@ -133,29 +134,36 @@ class ServoPty:
         stdin = self._process.stdin
         if stdin is None or stdin.closed:
             raise UsageError("these servos are closed; nothing can be asked of them any more")
+        self._orders += 1
         with suppress(BrokenPipeError):  # the answer says that the process has ended
-            stdin.write(json.dumps(order) + "\n")
-            stdin.flush()
+            stdin.write(json.dumps(order | {"number": self._orders}).encode() + b"\n")
         return self._hear()
 
     def _hear(self) -> dict[str, Any]:
-        """Return the next answer.
+        """Return the answer to the last order; late answers to earlier ones are left out.
 
         Raises:
             UsageError: The order is not possible.
             PortError: The process has ended or does not answer.
         """
+        answer = self._line()
+        while answer.get("number", self._orders) != self._orders:
+            answer = self._line()
+        if "error" in answer:
+            raise UsageError(answer["error"])
+        return answer
+
+    def _line(self) -> dict[str, Any]:
+        """Return the next line of the process; see `_hear`."""
         stdout = self._process.stdout
         assert stdout is not None
         ready, _, _ = select.select([stdout], [], [], PATIENCE)
-        line = stdout.readline() if ready else ""
+        line = stdout.readline() if ready else b""
         if not line:
             with suppress(subprocess.TimeoutExpired):
                 self._process.wait(END if ready else 0.0)  # it ends soon after its output
             raise PortError(f"the process that emulates these servos {self._silence()}")
         answer: dict[str, Any] = json.loads(line)
-        if "error" in answer:
-            raise UsageError(answer["error"])
         return answer
 
     def _silence(self) -> str:

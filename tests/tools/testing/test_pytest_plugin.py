@@ -90,3 +90,18 @@ def test_a_golden_trace_fails_where_the_bytes_change(pytester: pytest.Pytester) 
     result = run(pytester)
     result.assert_outcomes(passed=2, errors=1)
     result.stdout.fnmatch_lines(["*ask.trace, line 2: byte 2 of 6 differs*"])
+
+
+def test_a_test_that_fails_leaves_no_golden_trace(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(
+        """
+        def test_fails(servo_bus):
+            bus = servo_bus("bench", servos="STS3215:1-2")
+            bus.golden("ask.trace")
+            with bus.serial() as port:
+                port.write(bytes.fromhex("FF FF 01 02 01 FB"))
+                assert port.read(6) == b""
+        """
+    )
+    run(pytester).assert_outcomes(failed=1)
+    assert not (pytester.path / "ask.trace").exists()

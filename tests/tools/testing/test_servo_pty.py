@@ -109,7 +109,12 @@ def test_one_that_is_silent_is_not_called_dead(monkeypatch: pytest.MonkeyPatch) 
         pty._process.send_signal(signal.SIGSTOP)
         with pytest.raises(PortError, match=r"runs, and has not answered for 0\.2 s"):
             pty.driven()
-        pty._process.send_signal(signal.SIGCONT)
+        monkeypatch.setattr(servo_pty, "PATIENCE", PATIENCE)
+        with opened(pty) as port:
+            pty._process.send_signal(signal.SIGCONT)
+            port.write(encode(1, 3, bytes((40, 1))))
+            port.read(6)
+        assert pty.driven() == 1  # and not 0, the late answer
 
 
 def test_a_robot_of_two_buses_has_two_paths() -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from windup.hal.errors import FirstMotionError, PostureError, WindupError
 from windup.hal.observation import Observation
 from windup.robots import load_robot
+from windup.sim_twin.lowest import lowest_point
 from windup.sim_twin.twin import Twin
 from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics
 from windup.sim_twin.wire.world.bus_world import BusWorld
@@ -129,23 +130,12 @@ def _place(robot: Robot, world: BusWorld, placed: Placed) -> None:
     twin.reset(placed.pose)
     twin.data.qpos[:2], twin.data.qpos[3:7] = 0.0, placed.turn
     mujoco.mj_forward(twin.model, twin.data)
-    twin.data.qpos[2] += placed.lift - _lowest(twin)
+    twin.data.qpos[2] += placed.lift - lowest_point(twin.model, twin.data)
     mujoco.mj_forward(twin.model, twin.data)
     physics.held, physics.hangs = placed.held, placed.hangs
     physics.grasp()
     clock = robot.backend.clock
     clock.wait_until(clock.now() + LIE)
-
-
-def _lowest(twin: Twin) -> float:
-    """Return the height of the lowest corner of the boxes around the robot's geoms, m."""
-    model, data = twin.model, twin.data
-    solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
-    geoms = np.flatnonzero(solid & (model.geom_bodyid > 0))
-    up = data.geom_xmat[geoms].reshape(-1, 3, 3)[:, 2, :]
-    centre, size = model.geom_aabb[geoms, :3], model.geom_aabb[geoms, 3:]
-    heights = data.geom_xpos[geoms, 2] + (up * centre).sum(axis=1) - (np.abs(up) * size).sum(axis=1)
-    return float(heights.min())
 
 
 def _break(world: BusWorld, broken: Broken) -> None:
