@@ -64,11 +64,16 @@ class CatchTable(Record, frozen=True):
     Attributes:
         back: Minimum backward deviation, m.
         slant: Maximum ratio of the lateral to the backward deviation.
+        calm: Deviation below which a walk is undisturbed, m.
+        fresh: Maximum time from the last undisturbed tick to a takeover, s; later the walk does
+            better.
         resume: Time to move to the first pose of the walk before it resumes, s.
     """
 
     back: Positive
     slant: Positive
+    calm: Positive = 0.02
+    fresh: Seconds = 0.12
     resume: Seconds = 1.0
 
     def meets(self, thrown: Array) -> bool:

@@ -24,10 +24,6 @@ from windup.hal.observation import Observation
 Holder = Literal["walk", "step", "return"]
 REST = 0.5
 """Minimum time of standing still before the walk resumes, s."""
-CALM = 0.02
-"""Deviation of the capture point below which a walk is undisturbed, m."""
-FRESH = 0.12
-"""Maximum time from the last undisturbed tick to a takeover, s; later the walk does better."""
 LONGEST = 8.0
 """Time-out of standing still, s; a robot on its feet after this only rocks, and walks on."""
 
@@ -158,9 +154,9 @@ class Supervisor:
 
     def _lost(self, thrown: Array, now: float) -> bool:
         """Return whether a recent push meets the criterion for a takeover."""
-        if float(np.linalg.norm(thrown)) < CALM:
+        if float(np.linalg.norm(thrown)) < self.table.calm:
             self._calm = now
-        return self.table.meets(thrown) and now - self._calm <= FRESH
+        return self.table.meets(thrown) and now - self._calm <= self.table.fresh
 
     def _catch(self, observation: Observation, thrown: Array) -> None:
         """Hand over to the stepper."""
