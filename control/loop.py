@@ -31,12 +31,24 @@ class Recorder(Protocol):
     def record(
         self,
         observation: Observation,
-        command: JointCommand,
-        seconds: float,
+        asked: JointCommand,
+        applied: JointCommand,
+        tick_time: float,
+        lateness: float,
         tick: int,
         missed: int,
     ) -> None:
-        """Take down what was seen, what the joints were told, and how long that took, s."""
+        """Record one tick.
+
+        Args:
+            observation: What was observed.
+            asked: Command of the controller.
+            applied: Command that the joints really got.
+            tick_time: Duration of read, estimate, step and write, s.
+            lateness: Time from the scheduled start of the tick until it began, s.
+            tick: Number of ticks of the run so far.
+            missed: Number of ticks skipped so far.
+        """
         ...
 
 
@@ -87,6 +99,11 @@ class Schedule:
         """Time since it began, s."""
         return self._clock.now() - self._started
 
+    @property
+    def due(self) -> float:
+        """Time from the beginning until the present tick is due, s."""
+        return self._tick * self._period
+
     def advance(self) -> int:
         """Go on to the next tick that is still to come; return how many are left out."""
         self._tick += 1
@@ -132,7 +149,7 @@ def run_loop(
     report = report or LoopReport()
     rollouts = rollouts or Stopwatch()
     schedule, wall_started = Schedule(backend.clock, period), wall.perf_counter()
-    first = True
+    first, late = True, 0.0
     while True:
         began, playing = wall.perf_counter(), rollouts.seconds
         observation = backend.read()
@@ -144,13 +161,15 @@ def run_loop(
         if first:
             controller.reset(observation)
             first = False
-        command = backend.write(controller.step(observation, period))
+        asked = controller.step(observation, period)
+        applied = backend.write(asked)
         spent = wall.perf_counter() - began - (rollouts.seconds - playing)
         report.tick.append(spent)
         report.ticks += 1
         if recorder is not None:
-            recorder.record(observation, command, spent, report.ticks, report.missed)
+            recorder.record(observation, asked, applied, spent, late, report.ticks, report.missed)
         report.missed += schedule.advance()
         schedule.wait()
         report.sim_time = schedule.elapsed
+        late = report.sim_time - schedule.due
         report.wall_time = wall.perf_counter() - wall_started

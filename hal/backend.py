@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Protocol, runtime_checkable
 
 from windup.hal.command import JointCommand
-from windup.hal.joints import Joints
+from windup.hal.joints import Flags, Joints
 from windup.hal.observation import Observation
 from windup.hal.torque_loss import Loss
 from windup.hal.torque_state import TorqueState
@@ -136,4 +136,14 @@ class BusHealth(Protocol):
 
     def bus_errors(self) -> Mapping[str, int]:
         """Return the number of errors so far by kind; the keys are fixed."""
+        ...
+
+
+@runtime_checkable
+class ClampReporter(Protocol):
+    """A backend that reports which joints its last command was changed at, and by what."""
+
+    @property
+    def clamp_bits(self) -> Flags | None:
+        """(n,) bits of the clamps in the order of `BusHealth.clamps`; None if none acted."""
         ...

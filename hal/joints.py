@@ -10,6 +10,8 @@ from windup.hal.errors import UnknownNameError
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
+Flags = npt.NDArray[np.uint32]
+"""Bits by joint: what the bits mean is told where such an array stands."""
 ARRAYS = ("lower", "upper", "stiffness", "damping", "torque", "velocity", "goal_speed")
 
 

@@ -8,7 +8,7 @@ arms would not absorb the impact.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
-from math import cos
+from math import cos, nan
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from windup.hal.errors import StateMissingError
 from windup.hal.geometry.up_axis import uprightness
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import JointState, Observation
+from windup.hal.publishing.controller_block import BlockNames, BlockPart, ControllerBlock
+from windup.hal.publishing.run_state import RunState
 
 EFFORT = 0.85
 """Maximum commanded torque, as a share of a joint's largest torque."""
@@ -81,6 +83,9 @@ class Phase(Enum):
     LYING = "lying"
 
 
+FALLS = tuple(phase.value for phase in Phase if phase is not Phase.SAFE)
+
+
 class Protected:
     """A controller that is replaced by a protective fall once a fall cannot be prevented.
 
@@ -105,6 +110,7 @@ class Protected:
     ) -> None:
         self.controller, self.predictor = controller, predictor
         self.ways, self.joints = ways, joints
+        self._part = BlockPart.of(controller)
         self._clear()
 
     def _clear(self) -> None:
@@ -122,6 +128,23 @@ class Protected:
     def finished(self) -> bool:
         """True once the robot lies still, or `LONGEST` s after the fall was predicted."""
         return self.phase is Phase.LYING
+
+    @property
+    def published(self) -> BlockNames:
+        """Names of what the controller publishes, with the phases of a fall after its own."""
+        falls = BlockNames(phases=FALLS, reasons=("a fall cannot be prevented",))
+        return self._part.names + falls
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish what the controller does, or the phase of the fall."""
+        if not self.active:
+            self._part.publish(block)
+            return
+        names = self._part.names
+        lies = self.phase is Phase.LYING
+        block.run_state = RunState.FALLEN if lies else RunState.FALLING
+        block.phase = len(names.phases) + FALLS.index(self.phase.value)
+        block.phase_time, block.reason = nan, len(names.reasons)
 
     def reset(self, observation: Observation) -> None:
         """Start over, with no fall predicted.

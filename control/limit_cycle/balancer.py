@@ -7,12 +7,15 @@ step. Without a planner the same controller walks open loop.
 
 from collections import deque
 from dataclasses import dataclass, field
+from math import nan
 
 import numpy as np
 
 from windup.control.kinematics.robot_state import RobotState
+from windup.control.limit_cycle.moment import Moment
 from windup.control.limit_cycle.planner import Planner, StepRequest
 from windup.control.limit_cycle.policy import policy_input
+from windup.control.limit_cycle.walk_block import put_walk, reason_of, walk_names
 from windup.control.pose_graph.gait import Gait
 from windup.control.pose_graph.goal_limits import GoalLimits
 from windup.control.pose_graph.pose_tracker import PoseTracker
@@ -28,23 +31,10 @@ from windup.hal.controller import Outcomes, RolloutStart
 from windup.hal.errors import StateMissingError
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
+from windup.hal.publishing.controller_block import BlockNames, ControllerBlock
+from windup.hal.publishing.run_state import RunState
 
 IN_FLIGHT = 32  # number of commands kept; more ticks than the latency of any robot
-
-
-@dataclass(frozen=True)
-class Moment:
-    """Position in the pose graph during a step.
-
-    Attributes:
-        state: Index of the graph's state.
-        elapsed: Time since the state was entered, s.
-        stance: Index of the stance foot.
-    """
-
-    state: int
-    elapsed: float
-    stance: int
 
 
 @dataclass
@@ -119,6 +109,7 @@ class Balancer:
         """
         self.records.clear()
         self.replans = self.late = 0
+        self._lateness = nan
         self.resume(observation)
 
     def resume(self, observation: Observation) -> None:
@@ -139,7 +130,8 @@ class Balancer:
         scale = np.zeros((1, len(self.gait.perturbations)))
         self._tracker = PoseTracker(self.gait, self.contacts, scale, None, self.torso_servo)
         self._start = None
-        self._asked = False
+        self._shown: Array | None = None  # scalings published last
+        self._asked = self._replanned = False
         self._kept: dict[int, Array] = {}
         self._turned = 0.0
         self.steering.reset()
@@ -170,11 +162,27 @@ class Balancer:
         self._sent.append(goals)
         return self._hold.at(goals)
 
+    @property
+    def published(self) -> BlockNames:
+        """Names of what `publish` fills in."""
+        return walk_names(self.gait, self.regulation, self.perturbations)
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish the state of the graph and of the planning, and what they led to."""
+        tracker = self._tracker
+        block.run_state = RunState.WALKING
+        block.phase, block.phase_time = int(tracker.state[0]), float(tracker.elapsed[0])
+        block.plans, block.late_plans, block.plan_lateness = self.begun, self.late, self._lateness
+        block.reason = reason_of(self.planner is not None, self._asked, self._replanned)
+        if (scale := tracker.scale) is not self._shown:
+            self._shown, plan = scale, self._kept.get(self._first)
+            put_walk(block.values, self.records, self._target, plan, self.steering, scale[0])
+
     def _begin_step(self, observation: Observation, here: Outcomes, dt: float) -> None:
         """Store the start of the step and request its scalings."""
         start = StepStart(observation.time, int(self._tracker.stance()[0]), here)
         self._start = start
-        self._first = int(self._tracker.state[0])
+        self._first, self._replanned = int(self._tracker.state[0]), False
         self.steering.begin_step(start)
         scale = self.steering.scale(start)
         self._target = self._wanted(start)
@@ -200,7 +208,7 @@ class Balancer:
         if self.steering.slip is not None:
             self.steering.slip.entered(state, here.feet[0, start.stance])
         if shaken.detect(state, here.com_velocity[0], start.heading) and self.planner is not None:
-            self.replans += 1
+            self.replans, self._replanned = self.replans + 1, True
             self._ask(observation, start, self._tracker.scale[0], dt)
 
     def _ask(self, observation: Observation, start: StepStart, before: Array, dt: float) -> None:
@@ -216,6 +224,7 @@ class Balancer:
             flight, now, start.stance, self._first, self._scale, before, self._target, start
         )
         self._asked, self._late_from = True, request.due(self.planner.latency) + dt
+        self._planned = observation.time + request.ticks(self.planner.latency) * dt
         self.planner.ask(request)
 
     def _before(self) -> Array:
@@ -237,6 +246,7 @@ class Balancer:
             return
         self._asked = False
         self.late += time >= self._late_from
+        self._lateness = time - self._planned
         scale = self._scale.copy()
         scale[self._columns] += answer
         self._kept[self._first] = answer

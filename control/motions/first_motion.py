@@ -17,6 +17,7 @@ from windup.hal.errors import FirstMotionError
 from windup.hal.geometry.smooth_step import PEAK, smooth_step
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
+from windup.hal.publishing.controller_block import UNKNOWN, BlockNames, BlockPart, ControllerBlock
 
 STIFFENING = 0.6
 """Minimum duration of the stiffness ramp, s."""
@@ -95,7 +96,20 @@ class Approach:
     ) -> None:
         self.controller, self.motion, self.joints = controller, motion, motion.joints
         self._planted = planted
+        self._part = BlockPart.of(controller)
         self.active = self._needed()
+
+    @property
+    def published(self) -> BlockNames:
+        """Names of what the controller publishes."""
+        return self._part.names
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish what the controller does, once it has the robot."""
+        if self.active:
+            block.phase = block.reason = UNKNOWN
+        else:
+            self._part.publish(block)
 
     def reset(self, observation: Observation) -> None:
         """Start at the present pose.

@@ -10,6 +10,8 @@ from windup.hal.controller import PolicyInput
 from windup.hal.geometry.smooth_step import smooth_step
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
+from windup.hal.publishing.controller_block import BlockNames, ControllerBlock
+from windup.hal.publishing.run_state import RunState
 
 
 class PoseHolder:
@@ -59,6 +61,9 @@ class GraphPlayer:
     def __init__(self, gait: Gait, joints: Joints, contacts: ContactSensors) -> None:
         self.joints = joints
         self._tracker = PoseTracker(gait, contacts, np.zeros((1, len(gait.perturbations))))
+        self.published = BlockNames(phases=gait.graph.names)
+        steps = bool(gait.graph.ends_step.any())
+        self._state = RunState.WALKING if steps else RunState.STANDING
 
     def reset(self, observation: Observation) -> None:
         """Start at the first state."""
@@ -74,6 +79,11 @@ class GraphPlayer:
         nothing = np.zeros((1, 0))
         state = PolicyInput(nothing, nothing, nothing, nothing, observation.contacts[None])
         return self._hold.at(self._tracker.step(state, dt)[0])
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish the state of the graph."""
+        block.run_state, block.phase = self._state, int(self._tracker.state[0])
+        block.phase_time = float(self._tracker.elapsed[0])
 
     @property
     def finished(self) -> bool:

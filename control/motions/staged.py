@@ -14,8 +14,11 @@ from windup.hal.contacts import ContactSensors
 from windup.hal.geometry.smooth_step import smooth_step
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
+from windup.hal.publishing.controller_block import BlockNames, ControllerBlock
+from windup.hal.publishing.run_state import RunState
 
 EPSILON = 1e-9
+REASONS = ("in time", "tried again", "finished", "given up")
 
 
 class StagedPlayer:
@@ -43,6 +46,8 @@ class StagedPlayer:
         table, names = gait.file.upright, gait.graph.names
         self._upright = None if table is None else UprightFeedback(table, joints, names)
         self.finished, self.retries = False, 0
+        self.published = BlockNames(phases=names, reasons=REASONS)
+        self._run_state = RunState.STANDING if gait.file.lying is None else RunState.RISING
 
     @property
     def ends_down(self) -> bool:
@@ -81,6 +86,14 @@ class StagedPlayer:
         if self._upright is not None:
             goal = self._upright.apply(goal, observation, self._state)
         return self._hold.at(goal)
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish the state of the graph, and whether it is tried again."""
+        block.run_state, block.phase = self._run_state, self._state
+        block.phase_time = self._elapsed
+        block.reason = int(self._missed[self._state] > 0)
+        if self.finished or self.failed:
+            block.reason = 2 if self.finished else 3
 
     def _enter(self, state: int) -> None:
         self._state, self._elapsed, self._from = state, 0.0, self._goal

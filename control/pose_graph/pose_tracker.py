@@ -81,6 +81,11 @@ class PoseTracker:
         """(m,) indices of the present states."""
         return self._state
 
+    @property
+    def elapsed(self) -> Array:
+        """(m,) times in the present states, s; changed in place by the next tick."""
+        return self._elapsed
+
     def restart(self) -> None:
         """Go back to the first state."""
         at = TrackerState.begin(len(self.scale))

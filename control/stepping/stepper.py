@@ -7,7 +7,6 @@ back to the stance (Kenwright 2012, section IV).
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
@@ -27,13 +26,13 @@ from windup.control.stepping.step_decision import (
     place,
     trigger_point,
 )
+from windup.control.stepping.stepper_block import STEPPER_NAMES, StepperPhase, publish_stepper
 from windup.control.stepping.stepping_file import Stepping
 from windup.hal.command import JointCommand
 from windup.hal.geometry.smooth_step import smooth_step
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
-
-Phase = Literal["stand", "swing", "land", "comfort"]
+from windup.hal.publishing.controller_block import ControllerBlock
 
 
 class Stepper:
@@ -50,9 +49,11 @@ class Stepper:
         comforts: Number of comfort steps.
         phase: Present phase.
         motion: What the robot should do, but for comfort steps.
+        published: Names of what `publish` fills in.
     """
 
     motion: Motion
+    published = STEPPER_NAMES
 
     def __init__(
         self,
@@ -64,7 +65,7 @@ class Stepper:
         self.executor, self.rule, self.stepping = executor, rule, stepping
         self.no_step = no_step or KeepOutRegions()
         self._reach = stepping.reach.reach()
-        self.phase: Phase = "stand"
+        self.phase: StepperPhase = "stand"
         self.steps = self.comforts = 0
         self._flight: Swing | None = None
 
@@ -106,6 +107,12 @@ class Stepper:
             self._decide(now)
         motion = self._comfort.motion if self.phase == "comfort" else self.motion
         return self.executor.realise(motion, now, dt)
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish the phase, the capture point and the target of the swing foot."""
+        swing = self.motion.swing
+        target = None if swing is None else swing.target
+        publish_stepper(block, self.phase, self.executor.feet.momenta, target)
 
     @property
     def stepping_foot(self) -> int:

@@ -20,6 +20,8 @@ from windup.control.stepping.stepping_file import CatchTable
 from windup.hal.command import JointCommand
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
+from windup.hal.publishing.controller_block import UNKNOWN, BlockNames, BlockPart, ControllerBlock
+from windup.hal.publishing.run_state import RunState
 
 Holder = Literal["walk", "step", "return"]
 REST = 0.5
@@ -91,6 +93,22 @@ class Supervisor:
         self._throw = CapturePointDeviation()
         self.holder: Holder = "walk"
         self.catches: list[Catch] = []
+        self._walk = BlockPart.of(walker)
+        self._step = BlockPart.of(stepper, before=self._walk.names)
+
+    @property
+    def published(self) -> BlockNames:
+        """Names of what the walk publishes, then of what the stepper does."""
+        return self._step.all_names
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish what the part in control does."""
+        self._walk.publish(block)
+        if self.holder == "step":
+            self._step.publish(block)
+        elif self.holder == "return":
+            block.run_state = RunState.STANDING
+            block.phase = block.reason = UNKNOWN
 
     def reset(self, observation: Observation) -> None:
         """Start walking.

@@ -18,7 +18,7 @@ from windup.hal.guard.limits import SafetyLimits, StopPolicy
 from windup.hal.guard.presence import Presence
 from windup.hal.guard.watch import HealthWatch
 from windup.hal.heartbeat import no_heartbeat
-from windup.hal.joints import Array, Joints
+from windup.hal.joints import Array, Flags, Joints
 from windup.hal.observation import Observation
 from windup.hal.torque_state import TorqueState
 
@@ -26,6 +26,8 @@ CROUCH_SECONDS = 1.5
 TICK = 0.008
 REPLUG_TIME = 2.0
 """Maximum time until a replugged port can be opened, s."""
+POWERS = np.uint32(1) << np.arange(len(FIELDS), dtype=np.uint32)
+"""Bit of each row of a command in `GuardedBackend.clamp_bits`."""
 
 
 @dataclass
@@ -40,6 +42,8 @@ class GuardedBackend:
         watch: Judges the health of every joint; None for joints without servos.
         clamps: Maps each row of a command to the number of commands clamped in it.
         clamped_joints: (n,) number of commands in which each joint was clamped.
+        clamp_bits: (n,) bits of the rows of the last command in which each joint was clamped; None
+            if it was not clamped.
         heartbeat: Called with every command; feeds the guardian.
         lock: Held while the backend is used: between two runs, a thread holds an idle robot.
     """
@@ -51,6 +55,7 @@ class GuardedBackend:
     watch: HealthWatch | None = None
     clamps: dict[str, int] = field(default_factory=lambda: dict.fromkeys(FIELDS, 0))
     clamped_joints: Array = field(init=False)
+    clamp_bits: Flags | None = field(default=None, init=False, repr=False)
     heartbeat: Callable[[], None] = field(init=False, repr=False)
     lock: RLock = field(default_factory=RLock, init=False, repr=False)
     _last: Observation | None = field(default=None, init=False, repr=False)
@@ -191,6 +196,7 @@ class GuardedBackend:
             self._refuse(block)
         np.maximum(block, self.limits.lower, out=self._buffer)
         np.minimum(self._buffer, self.limits.upper, out=self._buffer)
+        self.clamp_bits = None
         if not (self._buffer == block).all():
             self._count(block)
             command = JointCommand(self._buffer.copy())
@@ -272,3 +278,4 @@ class GuardedBackend:
         for row in np.flatnonzero(changed.any(axis=1)):
             self.clamps[FIELDS[row]] += 1
         self.clamped_joints += changed.any(axis=0)
+        self.clamp_bits = POWERS @ changed

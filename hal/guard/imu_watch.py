@@ -12,7 +12,7 @@ from math import isfinite, nan
 import numpy as np
 
 from windup.hal.guard.finding import AGAIN, CHECK, Finding, Saying
-from windup.hal.guard.gyro_watch import LONGEST, NEXT, GyroWatch, Verdict
+from windup.hal.guard.gyro_watch import LONGEST, NEXT, SPIN, GyroWatch, Verdict
 from windup.hal.guard.stuck_axis import StuckAxis
 from windup.hal.joints import Array
 from windup.hal.observation import ImuState, Observation
@@ -31,6 +31,8 @@ STUCK = Saying(
     "imu frozen", "stuck at one sample for {:.1f} s", "at {:.1f} s", AGAIN, who="the IMU"
 )
 NO_NUMBER = Saying("imu not a number", "not a number", "", AGAIN, who="a reading of the IMU")
+IMU_KINDS = tuple(saying.name for saying in (SILENCE, STUCK, NO_NUMBER, SPIN))
+"""Names of all kinds of finding."""
 
 
 class ImuWatch:
@@ -45,6 +47,11 @@ class ImuWatch:
         self._warnings: dict[str, Finding] = {}
         self._present = ""
         self._time = -np.inf
+
+    @property
+    def present(self) -> str:
+        """Name of the present finding, or "" if there is none."""
+        return self._present
 
     @property
     def warnings(self) -> list[Finding]:

@@ -30,6 +30,10 @@ class HealthWatch:
         joints: The joints.
         levels: Warning and stop levels.
         look: Text appended to messages: the command that shows details.
+
+    Attributes:
+        present: (5, n) bool in the order of `Kind`: values beyond their warning level for long
+            enough, at the last check; None if there were none.
     """
 
     def __init__(self, joints: Joints, levels: HealthLevels, look: str = "") -> None:
@@ -39,6 +43,7 @@ class HealthWatch:
         self._strain = Strain(levels.torque, self._values[Kind.LOAD], self._values[Kind.STALL])
         self._persistence = Persistence(levels)
         self._time = -np.inf
+        self.present: Mask | None = None
         # Warnings so far: by kind their number and first time, s; and the worst values.
         self._warned: Mask = np.zeros_like(self._values, dtype=bool)
         self._counts = np.zeros(len(Kind), dtype=np.int64)
@@ -65,8 +70,11 @@ class HealthWatch:
         _health(joints, self._values)
         self._strain.update(joints, command, min(abs(passed), LONGEST))
         due = self._persistence.due(self._values, now, joints.health_age)
+        self.present = None
         if due is None:
             return None
+        if due[0].any():
+            self.present = due[0]
         self._note(due[0], now)
         if not due[1].any():
             return None

@@ -17,7 +17,7 @@ import msgspec
 from windup.hal.errors import PortError
 from windup.hal.in_words import in_words
 from windup.hal.port.open_port import stable_url
-from windup.hal.telemetry.layout import runtime_folder
+from windup.hal.telemetry.runtime_folder import runtime_folder
 
 LOOK_AGAIN = 0.05
 """Time between two attempts to take a lock that is held, s."""

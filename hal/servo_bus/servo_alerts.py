@@ -74,8 +74,9 @@ def count_errors(links: Sequence[BusConnection], watchdog_trips: int) -> dict[st
     """Return the number of errors so far by kind; the keys are fixed."""
     counts = dict.fromkeys(ERROR_KINDS, 0)
     for link in links:
+        found = link.bus.exchange.errors.get  # a `Counter` looks up missing keys slowly
         for kind in ERROR_KINDS:
-            counts[kind] += link.bus.exchange.errors[kind]
+            counts[kind] += found(kind, 0)
     counts["unplugged"] = sum(link.losses for link in links)
     counts["watchdog"] = watchdog_trips
     return counts

@@ -1,6 +1,5 @@
 """The backend of real robots: joints on servo buses of one or several families."""
 
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
@@ -14,17 +13,18 @@ from windup.hal.errors import HardwareError, PortError
 from windup.hal.heartbeat import Heartbeat, beating, no_heartbeat
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.imu.source import ImuConnection, ImuSource
-from windup.hal.joints import Array, Joints
+from windup.hal.joints import Array, Flags, Joints
 from windup.hal.observation import Observation
 from windup.hal.port.open_port import open_port
 from windup.hal.port.port import Port
 from windup.hal.servo_bus.bus_connection import BusConnection, BusPort
 from windup.hal.servo_bus.bus_readout import BusReadout
 from windup.hal.servo_bus.coupling import Coupling, Couplings
+from windup.hal.servo_bus.driver_clamps import DriverClamps
 from windup.hal.servo_bus.joint_readings import JointReadings
 from windup.hal.servo_bus.joint_torque import JointTorque
 from windup.hal.servo_bus.servo_alerts import ServoAlerts, count_errors
-from windup.hal.servo_bus.servo_setup import lines_of, names_of, open_links, set_up
+from windup.hal.servo_bus.servo_setup import lines_of, open_links, set_up, silent_joints
 from windup.hal.servo_bus.stop_button import StopButton
 from windup.hal.servo_bus.units import Units
 from windup.hal.servo_bus.wiring import check_mounts
@@ -33,8 +33,6 @@ from windup.hal.torque_loss import Loss
 from windup.hal.torque_state import TorqueState
 
 __all__ = ["BusPort", "ServoBackend"]
-
-ATTEMPTS = 30
 
 
 class ServoBackend:
@@ -98,9 +96,10 @@ class ServoBackend:
         self.button = StopButton()
         self._torque = JointTorque(joints, self._couplings)
         self.lost_joints: Mapping[str, Loss] = {}
-        self.clamps: Counter[str] = Counter(goal=0, gain=0, unarmed=0, lost=0)
         self.watchdog_trips = 0
         n = len(joints)
+        self._clamped = DriverClamps(self._couplings, n)
+        self.clamps = self._clamped.counts
         self.readings = JointReadings(self.units, self._couplings, imu, contacts)
         self.arming_stiffness: Array = joints.stiffness
         self._realised = np.empty((2, n))
@@ -126,6 +125,11 @@ class ServoBackend:
     def alerts(self) -> dict[str, tuple[str, ...]]:
         """Maps joint name to the hardware errors that its servo reports."""
         return self._alerts.now
+
+    @property
+    def clamp_bits(self) -> Flags | None:
+        """(n,) clamps that changed each joint's part of the last command; see `ClampReporter`."""
+        return self._clamped.bits
 
     @property
     def lost(self) -> dict[str, str]:
@@ -164,22 +168,13 @@ class ServoBackend:
         for line in self.lines:
             line.bus.exchange.turnaround = TURNAROUND
             line.reads.probe_fast()
-        if silent := self._silent():
+        if silent := silent_joints(self.joints, self.readings, self.read, self.clock.now()):
             raise HardwareError(f"no answer to cyclic reads from {silent}; run `windup scan`")
         self.read_health()
 
     def read_health(self) -> None:
         """Read voltage and temperature of every servo now, except on lost ports."""
         self.readings.read_health(self.links)
-
-    def _silent(self) -> str:
-        """Read until every joint has answered, `ATTEMPTS` times at most; return silent joints."""
-        began = self.clock.now()
-        for _ in range(ATTEMPTS):
-            self.read()
-            if (self.readings.answered > began).all():
-                break
-        return names_of(self.joints, self.readings.answered <= began)
 
     def request(self) -> None:
         """Request the state of every joint, without waiting for it."""
@@ -215,17 +210,19 @@ class ServoBackend:
             goal = self._couplings.servos(goal)
         counts = np.rint(self.units.counts(goal))
         inside = np.minimum(np.maximum(counts, self.units.first), self.units.last)
-        if (inside != counts).any():
-            self.clamps["goal"] += 1
+        self._clamped.begin()
+        if (outside := inside != counts).any():
+            self._clamped.note("goal", outside)
         real = np.zeros(block.shape)
         angle = self.units.angle(inside)
         real[0] = self._couplings.joints(angle) if self._couplings else angle
         real[3:] = self._realised
         for link in self.links:
-            if (clamp := link.send_goals(inside[link.line.rows])) is not None:
-                self.clamps[clamp] += 1
+            rows = link.line.rows
+            if (clamp := link.send_goals(inside[rows])) is not None:
+                self._clamped.note_withheld(clamp, rows, link.check.withheld)
             if link.check.withheld is not None:
-                real[3:, link.line.rows[link.check.withheld]] = 0.0
+                real[3:, rows[link.check.withheld]] = 0.0
         return JointCommand(real)
 
     def goal_counts(self, pose: Array) -> Array:
@@ -292,7 +289,7 @@ class ServoBackend:
     def _send_gains(self, stiffness: Array) -> None:
         wanted = self._couplings.servo_gains(stiffness)
         registers, beyond = self.units.p_registers(wanted)
-        self.clamps["gain"] += beyond
+        self._clamped.note_gains(beyond)
         for link in self.links:
             link.send_gains(registers[link.line.rows])
         self._realised[0] = self._couplings.joint_gains(registers * self.units.stiffness)

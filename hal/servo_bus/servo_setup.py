@@ -20,11 +20,14 @@ from windup.hal.port.port import Port
 from windup.hal.port.replug import Opener
 from windup.hal.servo_bus.bus_connection import BusConnection, BusPort
 from windup.hal.servo_bus.bus_readout import BusReadout
+from windup.hal.servo_bus.joint_readings import JointReadings
 from windup.hal.servo_bus.plausibility import Plausibility
 from windup.hal.servo_bus.units import Units
 from windup.hal.servo_bus.wiring import check_servos, row_groups
 from windup.hal.servos.servo_model import ServoMount
 
+ATTEMPTS = 30
+"""Maximum number of cyclic reads until every joint has answered."""
 BuildLine = Callable[[Port], BusReadout]
 
 
@@ -123,3 +126,18 @@ def power_up(bus: Bus, board: OpenCr) -> None:
 def names_of(joints: Joints, which: Mask) -> str:
     """Return the names of the joints `which` (n,) bool, separated by commas."""
     return ", ".join(np.array(joints.names)[which])
+
+
+def silent_joints(
+    joints: Joints, readings: JointReadings, read: Callable[[], object], began: float
+) -> str:
+    """Read until every joint has answered since `began` s, `ATTEMPTS` times at most.
+
+    Returns:
+        Names of the joints that have not answered, separated by commas.
+    """
+    for _ in range(ATTEMPTS):
+        read()
+        if (readings.answered > began).all():
+            break
+    return names_of(joints, readings.answered <= began)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from windup.hal.families import family_of
 from windup.hal.families.gain import Gain
-from windup.hal.joints import Array
+from windup.hal.joints import Array, Mask
 from windup.hal.servos.servo_model import ServoMount
 
 Rows = npt.NDArray[np.intp]
@@ -72,17 +72,17 @@ class Units:
         """Return the joint angles (n,) rad for counts (n,)."""
         return np.asarray((counts - self.zero) * self.scale[0])
 
-    def p_registers(self, stiffness: Array) -> tuple[Array, bool]:
-        """Return P registers (n,) nearest to `stiffness` (n,) N m/rad, and if any is clamped.
+    def p_registers(self, stiffness: Array) -> tuple[Array, Mask]:
+        """Return P registers (n,) nearest to `stiffness` (n,) N m/rad, and which are clamped.
 
         A P register is clamped where the wanted stiffness exceeds its range.
         """
         registers = stiffness / self.stiffness
-        beyond = False
+        beyond: Mask = np.zeros(len(registers), dtype=bool)
         for gain, rows in self.gains:
             nearest = gain.nearest(registers[rows])
             inside = gain.within(nearest)
-            beyond |= bool((inside != nearest).any())
+            beyond[rows] = inside != nearest
             registers[rows] = inside
         return registers, beyond
 

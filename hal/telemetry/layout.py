@@ -1,158 +1,74 @@
-"""Layout and location of the file of a telemetry ring.
+"""Layout of the file of a telemetry ring: a head of fixed size, and where the rest of it is.
 
-The numbers are little-endian::
+After the head come the header as JSON, the records of the last ticks, the names of the last runs,
+and the last marks. The record of tick s is number s modulo `records`, that of run r is number r
+modulo `name_slots`, and that of mark m number m modulo `mark_slots`. All numbers are little-endian.
+The first two fields of the head are the same in every version.
 
-    offset  bytes  what
-    0       8      magic
-    8       16     version, offset of the first slot, number of slots, bytes of a slot
-    24      8      sequence number of the newest tick, from 1; 0 before any
-    32      4      1 after a run has ended, 2 after the session has been closed, else 0
-    36      128    why the run ended, UTF-8, zero-padded
-    164     4      length of the JSON that follows, a `Header`, bytes
-    168     ..     JSON
-
-followed by the slots; tick s is in slot s modulo their number. A slot consists of the sequence
-number, a CRC-32 of the numbers after it (initialised with the sequence number), four unused bytes,
-and float64 numbers, whose names and shapes follow from the JSON (`Header.fields`).
+A record is written in this order: its sequence number becomes 0, its bytes are copied, its sequence
+number becomes that of the tick, and then `sequence` of the head does. A reader copies a record and
+takes it if its sequence number is that of the tick before and after, and its checksum is right:
+the checksum covers computers on which the order of writes is not that of reads.
 """
 
-import os
-import re
-import stat
 import struct
-import tempfile
 import zlib
-from pathlib import Path
+from typing import Final
 
-import msgspec
 import numpy as np
 
-from windup.hal.command import FIELDS
-from windup.hal.errors import TelemetryError
-
-MAGIC = b"WINDUPTR"
-VERSION = 2
-FIXED = struct.Struct("<8sIIIIQI128sI")
-SIZES = struct.Struct("<IIII")
-SIZES_AT, HEAD_AT, ENDED_AT = 8, 24, 32
-ENDED = struct.Struct("<I128s")
-STATE = struct.Struct("<I")
+MAGIC: Final = b"WINDUPTR"
+VERSION: Final = 3
+ALIGNMENT: Final = 64
 RUNS, OVER, CLOSED = 0, 1, 2
-HEAD = struct.Struct("<Q")
-PAYLOAD_AT = 16
-ALIGNMENT = 64
+"""Values of `phase` in the head: a run goes on; it has ended; the session was closed as well."""
 
-Field = tuple[str, tuple[int, ...]]
-
-
-class Header(msgspec.Struct, frozen=True, kw_only=True):
-    """The constant data of a ring.
-
-    Attributes:
-        robot: Name of the robot.
-        port: URL of its port, or None for a twin.
-        rate_hz: Rate of the loop, Hz.
-        joints: Names of the n joints.
-        contacts: Names of the k contact sensors.
-        errors: Kinds of bus errors that are counted.
-        alerts: Meanings of the bits of `alert`, lowest first.
-        pid: Process id of the writer.
-        started: Time when the writer began, s since 1970.
-        clamps: Names of the clamps that the guard counts.
-        estimated: Whether the base state is estimated from the IMU.
-        driver_clamps: Names of the clamps that the servo driver counts.
-    """
-
-    robot: str
-    port: str | None
-    rate_hz: float
-    joints: tuple[str, ...]
-    contacts: tuple[str, ...]
-    errors: tuple[str, ...]
-    alerts: tuple[str, ...]
-    pid: int
-    started: float
-    clamps: tuple[str, ...] = FIELDS
-    estimated: bool = False
-    driver_clamps: tuple[str, ...] = ()
-
-    def fields(self) -> list[Field]:
-        """Return the names and shapes of the numbers of a slot, in order.
-
-        time s on the backend's clock, wall s since 1970, tick and missed ticks of the run,
-        tick_time s, plans of the run and late ones | joints: rad, rad/s, N m, V, degrees C, age s,
-        health_age s (age of volts and degrees) | command: target position, rad, stiffness N m/rad
-        | clamped: commands in which each joint was clamped | alert: bits | IMU: wxyz, rad/s, m/s2 |
-        contacts: N | base: m, wxyz, m/s, rad/s. Quantities that are not measured are NaN.
-        """
-        n = (len(self.joints),)
-        run = ("time", "wall", "tick", "missed", "tick_time", "plans", "late_plans")
-        scalars = (*run, "imu_age", "base_confidence")
-        joints = ("position", "velocity", "torque", "voltage", "temperature", "age", "health_age")
-        told = ("command", "stiffness", "clamped", "alert")
-        return [
-            *((name, ()) for name in scalars),
-            ("clamps", (len(self.clamps),)),
-            ("driver_clamps", (len(self.driver_clamps),)),
-            ("errors", (len(self.errors),)),
-            *((name, n) for name in (*joints, *told)),
-            ("contacts", (len(self.contacts),)),
-            ("imu_orientation", (4,)),
-            ("imu_angular_velocity", (3,)),
-            ("imu_acceleration", (3,)),
-            ("base_position", (3,)),
-            ("base_orientation", (4,)),
-            ("base_linear_velocity", (3,)),
-            ("base_angular_velocity", (3,)),
-        ]
-
-    def dtype(self) -> np.dtype[np.void]:
-        """Return the NumPy record type of a slot."""
-        numbers = [(name, "<f8", shape) for name, shape in self.fields()]
-        return np.dtype([("sequence", "<u8"), ("checksum", "<u4"), ("unused", "<u4"), *numbers])
+TABLE: Final = """
+magic         S8    WINDUPTR
+version       <u4   version of the format
+json_size     <u4   size of the header, bytes
+sequence      <u8   number of the newest tick, from 1; 0 before any
+runs          <u8   number of runs begun
+marks         <u8   number of marks
+state         <u4   state of the robot now, also between two ticks: a code of `states`
+phase         <u4   0 while a run goes on, 1 after it has ended, 2 after the session was closed
+reason        S128  why the last run ended, UTF-8
+records_at    <u8   offset of the first record
+names_at      <u8   offset of the first slot of names
+marks_at      <u8   offset of the first slot of marks
+records       <u4   number of records
+record_size   <u4   size of a record, bytes
+name_slots    <u4   number of slots of names
+name_size     <u4   size of such a slot, bytes
+mark_slots    <u4   number of slots of marks
+mark_size     <u4   size of such a slot, bytes
+"""
+_LINES = [line.split(maxsplit=2) for line in TABLE.strip().splitlines()]
+HEAD: Final = np.dtype([(name, kind) for name, kind, _ in _LINES])
+MEANINGS: Final = {name: meaning for name, _, meaning in _LINES}
+NAME_SLOTS, NAME_SIZE = 8, 16384
+MARK_SLOTS, MARK_SIZE = 64, 256
+NUMBER: Final = struct.Struct("<Q")
+CODE: Final = struct.Struct("<I")
+SLOT: Final = struct.Struct("<QII")
+"""Begin of a slot of text: its number, the size of its text, bytes, and a CRC-32 of that."""
+CHECK: Final = struct.Struct("<QI")
+"""Begin of a record: sequence number and checksum."""
+REASON: Final = struct.Struct("<128s")
 
 
-def checksum(sequence: int, payload: bytes | memoryview) -> int:
-    """Return the CRC-32 of a slot's numbers `payload`, initialised with `sequence`."""
-    return zlib.crc32(payload, sequence & 0xFFFFFFFF)
+def at(name: str) -> int:
+    """Return the offset of a field of the head, bytes."""
+    fields = HEAD.fields
+    assert fields is not None
+    return int(fields[name][1])
 
 
-def ring_path(robot: str, port: str | None = None) -> Path:
-    """Return the path of the ring of `robot` on `port`; None means its twin.
-
-    >>> ring_path("op3", "/dev/ttyUSB0").name
-    'op3@dev_ttyUSB0-6fb529ce.ring'
-    """
-    place = "twin"
-    if port is not None:
-        plain = re.sub(r"\W+", "_", port).strip("_")[:64]
-        place = f"{plain}-{zlib.crc32(port.encode()):08x}"
-    return runtime_folder() / f"{re.sub(r'[^A-Za-z0-9_-]', '_', robot)}@{place}.ring"
+def aligned(offset: int) -> int:
+    """Return the next multiple of `ALIGNMENT`."""
+    return -(-offset // ALIGNMENT) * ALIGNMENT
 
 
-def runtime_folder() -> Path:
-    """Return the user's private folder for rings, created if needed.
-
-    It is in memory if possible: while a disk writes back a page, changes of that page block.
-
-    Raises:
-        TelemetryError: It belongs to another user, or cannot be created.
-    """
-    folder = _runtime_base()
-    try:
-        folder.mkdir(mode=0o700, exist_ok=True)
-        found = folder.lstat()
-    except OSError as error:
-        raise TelemetryError(f"{folder}: cannot be made: {error.strerror}") from None
-    if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid():
-        raise TelemetryError(f"{folder}: is not your folder; remove it or set XDG_RUNTIME_DIR")
-    return folder
-
-
-def _runtime_base() -> Path:
-    given = os.environ.get("XDG_RUNTIME_DIR")
-    if given and Path(given).is_dir():
-        return Path(given) / "windup"
-    memory = Path("/dev/shm")
-    base = memory if os.access(memory, os.W_OK) else Path(tempfile.gettempdir())
-    return base / f"windup-{os.getuid()}"
+def checksum(number: int, payload: bytes | memoryview) -> int:
+    """Return the CRC-32 of `payload`, initialised with `number`."""
+    return zlib.crc32(payload, number & 0xFFFFFFFF)

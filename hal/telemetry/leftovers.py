@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Final
 
 from windup.hal.errors import TelemetryError
-from windup.hal.telemetry.ring import TelemetryReader
+from windup.hal.telemetry.reader import TelemetryReader
 
 KEPT: Final = 3600.0
 """Maximum time for which a finished ring is kept, s."""

@@ -121,6 +121,50 @@ def test_an_estimator_fills_in_what_the_controller_sees() -> None:
     assert all(seen.base is truth for seen in controller.seen)
 
 
+@dataclass
+class Notes:
+    """Records the ticks of a run."""
+
+    applied: list[float] = field(default_factory=list)
+    asked: list[float] = field(default_factory=list)
+    late: list[float] = field(default_factory=list)
+    counts: list[tuple[int, int]] = field(default_factory=list)
+
+    def record(
+        self,
+        observation: Observation,
+        asked: JointCommand,
+        applied: JointCommand,
+        tick_time: float,
+        lateness: float,
+        tick: int,
+        missed: int,
+    ) -> None:
+        self.asked.append(float(asked.position[0]))
+        self.applied.append(float(applied.position[0]))
+        self.late.append(lateness)
+        self.counts.append((tick, missed))
+
+
+def test_a_recorder_gets_what_was_asked_what_was_applied_and_how_late_a_tick_began() -> None:
+    class Reaching(Counter):
+        def step(self, observation: Observation, dt: float) -> JointCommand:
+            return JointCommand.hold(JOINTS, np.full(N, 9.0))
+
+    notes = Notes()
+    run_loop(
+        guard(late={2: 0.1, 4: 2.5 * PERIOD}),
+        Reaching(),
+        period=PERIOD,
+        until=lambda observation: "done" if observation.time >= 2.0 else None,
+        recorder=notes,
+    )
+    assert set(notes.asked) == {9.0}
+    assert set(notes.applied) == {1.0}, "the guard's limit"
+    assert notes.late == pytest.approx([0.0, 0.0, 0.1, 0.0, 2.5 * PERIOD, 0.5 * PERIOD, 0.0])
+    assert notes.counts[-1] == (7, 1)
+
+
 def test_an_interrupted_run_has_measured_something() -> None:
     report = LoopReport()
 

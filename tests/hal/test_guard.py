@@ -69,6 +69,10 @@ def test_every_clamp_has_a_name_and_a_counter(
     assert guard.clamps == {**dict.fromkeys(FIELDS, 0), name: 3}
     np.testing.assert_array_equal(guard.clamped_joints, 3.0 * (np.arange(N) == joint))
     assert command.block[row, joint] == value, "the caller's own command is left alone"
+    assert guard.clamp_bits is not None
+    assert guard.clamp_bits.tolist() == [(1 << row) * (k == joint) for k in range(N)]
+    guard.write(hold())
+    assert guard.clamp_bits is None
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])

@@ -14,7 +14,7 @@ from typing import Any, Final
 from rich.console import Console
 from rich.progress import Progress
 
-from windup.hal.telemetry.layout import runtime_folder
+from windup.hal.telemetry.runtime_folder import runtime_folder
 from windup.robots import load_robot
 from windup.sim_twin.wire import parse_address
 from windup.sim_twin.wire.serve.emulate import emulate

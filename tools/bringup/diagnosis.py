@@ -14,8 +14,8 @@ from windup.hal.errors import TelemetryError
 from windup.hal.guard import HealthLevels, Kind
 from windup.hal.guard.finding import SAYINGS, named
 from windup.hal.joints import Joints
-from windup.hal.telemetry.layout import Header
-from windup.hal.telemetry.ring import TelemetryReader, Ticks
+from windup.hal.telemetry.header import Header, bits_of
+from windup.hal.telemetry.reader import TelemetryReader, Ticks
 from windup.robots import RobotDescription
 from windup.tools.bringup.replay import findings
 from windup.tools.terminal.slowness import PLANS, TICKS, Slowness
@@ -130,6 +130,11 @@ class Diagnosis:
         return "running" if self.silence < STANDSTILL else "standing still"
 
     @property
+    def robot_state(self) -> str:
+        """State of the robot in the newest tick, such as "walking"."""
+        return self.header.states[int(self.newest["state"])]
+
+    @property
     def rate(self) -> float | None:
         """Ticks per second of the backend's time over the ring, Hz; None if unknown."""
         seconds = float(self.newest["time"] - self.ticks[0]["time"])
@@ -154,7 +159,7 @@ class Diagnosis:
 
     def change(self, name: str) -> Any:
         """Return the growth of a counter over the ring."""
-        return self.newest[name] - self.ticks[0][name]
+        return self.newest[name].astype(np.int64) - self.ticks[0][name].astype(np.int64)
 
     def bus_errors(self) -> dict[str, int]:
         """Return the number of bus errors by kind, over the ring."""
@@ -188,7 +193,7 @@ class Diagnosis:
                 "clamped_share": float(share),
                 "temperature_c": float(temperature),
                 "voltage_v": float(voltage),
-                "alerts": self._alerts(alert),
+                "alerts": bits_of(alert, self.header.alerts),
             }
             for name, age, share, temperature, voltage, alert in columns
         ]
@@ -196,11 +201,13 @@ class Diagnosis:
     def result(self) -> dict[str, Any]:
         """Return the whole diagnosis as plain data."""
         tick = np.percentile(self.ticks["tick_time"], [50, 99]) * 1e3
+        late = np.percentile(self.ticks["lateness"], [50, 99]) * 1e3
         return {
             "robot": self.header.robot,
             "port": self.header.port,
             "healthy": self.healthy,
             "state": self.state,
+            "robot_state": self.robot_state,
             "reason": self.ended,
             "silence_s": self.silence,
             "rate_hz": self.rate,
@@ -209,6 +216,7 @@ class Diagnosis:
             "missed": int(self.newest["missed"]),
             "missed_share": self.missed,
             "tick_ms": {"p50": float(tick[0]), "p99": float(tick[1])},
+            "lateness_ms": {"p50": float(late[0]), "p99": float(late[1])},
             "imu_age_s": float(self.newest["imu_age"]),
             "bus_errors": self.bus_errors(),
             "clamps": {name: count for name, count in self.clamps().items() if count},
@@ -263,14 +271,10 @@ class Diagnosis:
     def _complain(self, who: str, what: str, do: str) -> None:
         self.complaints.append(Complaint(who, what, do))
 
-    def _alerts(self, bits: float) -> list[str]:
-        return [kind for bit, kind in enumerate(self.header.alerts) if int(bits) >> bit & 1]
-
 
 def _last_run(ticks: Ticks) -> Ticks:
     """Return the ticks of the last run in the ring."""
-    again = np.flatnonzero(np.diff(ticks["tick"]) <= 0)
-    return ticks[int(again[-1]) + 1 :] if len(again) else ticks
+    return ticks[ticks["run"] == ticks["run"][-1]] if len(ticks) else ticks
 
 
 def _alive(pid: int) -> bool:

@@ -12,8 +12,8 @@ from rich.table import Table
 from rich.text import Text
 
 from windup.hal.errors import TelemetryError, UsageError
-from windup.hal.telemetry.layout import ring_path
-from windup.hal.telemetry.ring import TelemetryReader
+from windup.hal.telemetry.reader import TelemetryReader
+from windup.hal.telemetry.runtime_folder import ring_path
 from windup.robots import RobotDescription, load_robot
 from windup.tools.bringup.diagnosis import Diagnosis, Limits
 from windup.tools.options.faults import with_faults
@@ -93,7 +93,8 @@ def picture(diagnosis: Diagnosis) -> Group:
     rate = "" if result["rate_hz"] is None else f"{result['rate_hz']:.1f} Hz of "
     why = "" if result["reason"] is None else f" ({result['reason']})"
     lines = [
-        f"{result['robot']}: {result['state']}{why}, last tick {result['silence_s']:.1f} s ago",
+        f"{result['robot']}: {result['state']}{why}, {result['robot_state']} in the last tick, "
+        f"{result['silence_s']:.1f} s ago",
         f"{rate}{result['rate_nominal_hz']:g} Hz, {result['missed']} of {result['ticks']} ticks "
         f"missed, tick {result['tick_ms']['p50']:.2f} ms, p99 {result['tick_ms']['p99']:.2f} ms",
         _counts("bus errors", result["bus_errors"]),

@@ -4,14 +4,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from windup.hal.command import FIELDS, JointCommand
+from windup.hal.command import JointCommand
 from windup.hal.guard import HealthLevels, HealthWatch
 from windup.hal.guard.finding import Finding
 from windup.hal.guard.imu_watch import ImuWatch
 from windup.hal.joints import Joints
 from windup.hal.observation import ImuState, JointState, Observation
-from windup.hal.telemetry.layout import Header
-from windup.hal.telemetry.ring import Ticks
+from windup.hal.telemetry.header import Header
+from windup.hal.telemetry.reader import Ticks
 
 JOINTS = ("position", "velocity", "torque", "voltage", "temperature", "age", "health_age")
 
@@ -26,7 +26,7 @@ def findings(
     for tick in ticks:
         observation = observed(tick)
         if watched:
-            found = health.update(observation, told(tick))
+            found = health.update(observation, JointCommand(tick["applied"]))
             if found is not None:
                 stops.setdefault(found.saying.name, found)
         if header.estimated:
@@ -47,11 +47,3 @@ def observed(tick: np.void) -> Observation:
             float(tick["imu_age"]),
         )
     return Observation(float(tick["time"]), joints, imu, tick["contacts"], None)
-
-
-def told(tick: np.void) -> JointCommand:
-    """Return the command of a tick, as far as telemetry contains it."""
-    block = np.zeros((len(FIELDS), len(tick["command"])))
-    block[FIELDS.index("position")] = tick["command"]
-    block[FIELDS.index("stiffness")] = tick["stiffness"]
-    return JointCommand(block)

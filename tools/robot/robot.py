@@ -261,12 +261,9 @@ class Robot(Session):
 
     def _looking(self, end: Until, report: WalkReport) -> Until:
         """Return `end`, with a look at place, feet and plans first."""
-        walker = report.walker
 
         def until(observation: Observation) -> str | None:
             report.update(observation)
-            if self.telemetry is not None:
-                self.telemetry.plans = walker.begun, walker.late
             return end(observation)
 
         return until

@@ -2,33 +2,34 @@
 
 import logging
 from collections.abc import Callable
-from contextlib import nullcontext, suppress
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from types import TracebackType
 from typing import Self
 
 from windup.control.estimation.estimator import BaseEstimator
 from windup.control.estimation.imu_gate import ImuGate
-from windup.control.loop import Estimator, LoopReport, Until, run_loop
+from windup.control.loop import Estimator, LoopReport, Recorder, Until, run_loop
 from windup.control.motions.play import PoseHolder
 from windup.hal.clock import punctual
 from windup.hal.controller import Controller, Stopwatch
-from windup.hal.errors import ControllerError, TelemetryError, WindupError
+from windup.hal.errors import ControllerError, WindupError
+from windup.hal.guard import StopPolicy
 from windup.hal.guard.finding import Finding
 from windup.hal.guard.imu_watch import ImuWatch
 from windup.hal.observation import Observation
+from windup.hal.publishing.run_state import RunState
 from windup.hal.ranges import numbers_checked
-from windup.hal.telemetry.layout import ring_path
-from windup.hal.telemetry.leftovers import remove_leftovers
-from windup.hal.telemetry.ring import TelemetryWriter
 from windup.sim_twin.backend import TwinClock
 from windup.sim_twin.wire.world.clocks import VirtualClock
 from windup.tools.assembly.protect import Protection
 from windup.tools.robot.armed import Armed
 from windup.tools.robot.run_end import RunEnd
+from windup.tools.robot.run_telemetry import RunTelemetry
 from windup.tools.robot.stack import look_with
 from windup.tools.robot.stopping import INTERRUPTED
 from windup.tools.stopping.interrupts import (
+    Asked,
     RunInterruptedError,
     counted_signals,
     note_interruption,
@@ -51,7 +52,7 @@ class Session(Armed):
         paced: Its time is real time.
         protect: A fall that cannot be prevented is softened, where the robot's file says how.
         watch: All are called with every observation: whoever draws, logs or looks on.
-        telemetry: Where everybody else can read how it goes, once it runs.
+        telemetry: What other processes can read of its runs.
         imu: Judges the IMU, where the base state is estimated from it.
         slowness: Ticks and plans that came late in all runs.
     """
@@ -60,7 +61,7 @@ class Session(Armed):
     paced: bool = False
     protect: bool = True
     watch: list[Watch] = field(default_factory=list, init=False)
-    telemetry: TelemetryWriter | None = field(default=None, init=False)
+    telemetry: RunTelemetry = field(init=False)
     imu: ImuWatch = field(default_factory=ImuWatch, init=False)
     slowness: Slowness = field(init=False)
 
@@ -70,8 +71,7 @@ class Session(Armed):
         self.slowness = Slowness(
             1.0 / self.period, simulated=isinstance(self.backend.clock, VirtualClock)
         )
-        with suppress(TelemetryError):  # a run says so
-            remove_leftovers(ring_path(self.description.name, self.stack.port))
+        self.telemetry = RunTelemetry(self.description, self.stack, self.period, self.imu)
 
     @property
     def warnings(self) -> list[Finding]:
@@ -200,24 +200,26 @@ class Session(Armed):
         estimator: Estimator | None,
     ) -> None:
         """Run the loop; stop the robot if it ends by an error or a wish."""
-        asked = end.asked
-        self._publish()
+        asked, state = end.asked, RunState.FAULTED
+        recorder = self.telemetry.begin(controller)
         try:
-            self._loop(controller, end, rollouts, estimator)
+            self._loop(controller, end, rollouts, estimator, recorder)
             if self.loop.reason == INTERRUPTED:
                 if self.stack.wired:
                     note_interruption(asked.by)
                     logging.getLogger(__name__).warning("stopped by %s", asked.by)
                 self._stop_after_error(asked)
+            state = self._resting()
         except WindupError as error:
             self.loop.reason = str(error)
-            self._record_last()
+            self.telemetry.record_last(self.loop)
             self._stop_after_error(asked, error)
             raise
         except (KeyboardInterrupt, SystemExit) as ended:  # raised by a controller of one's own
             asked.by = asked.by or type(ended).__name__
             self.loop.reason = INTERRUPTED
             self._stop_after_error(asked)
+            state = self._resting()
         except BaseException as error:
             self.loop.reason = f"the controller failed: {type(error).__name__}: {error}"
             self._stop_after_error(asked)
@@ -227,8 +229,7 @@ class Session(Armed):
         finally:
             self.slowness.ticks += self.loop.ticks
             self.slowness.missed += self.loop.missed
-            if self.telemetry is not None:
-                self.telemetry.end(self.loop.reason)
+            self.telemetry.end(self.loop.reason, state)
 
     def _loop(
         self,
@@ -236,6 +237,7 @@ class Session(Armed):
         end: Until,
         rollouts: Stopwatch | None,
         estimator: Estimator | None,
+        recorder: Recorder | None,
     ) -> None:
         """Run the loop, with whoever looks on."""
 
@@ -256,28 +258,24 @@ class Session(Armed):
                 estimator=estimator,
                 rollouts=rollouts,
                 report=self.loop,
-                recorder=self.telemetry,
+                recorder=recorder,
             )
 
-    def _record_last(self) -> None:
-        """Publish what was seen in the tick that ended the run, too."""
-        if self.telemetry is not None and (last := self.backend.last) is not None:
-            self.telemetry.record(*last, 0.0, self.loop.ticks + 1, self.loop.missed)
+    def _resting(self) -> RunState:
+        """Return the state of the robot while nothing runs on it."""
+        if self.fallen:
+            return RunState.FALLEN
+        return RunState.HOLDING if self.armed or not self.stack.wired else RunState.LIMP
 
-    def _publish(self) -> None:
-        """Say to everybody that a run begins; a robot runs without them all the same."""
-        try:
-            self.telemetry = self.telemetry or TelemetryWriter(
-                self.description.name,
-                self.backend,
-                self.description.contacts,
-                1.0 / self.period,
-                port=self.stack.port,
-                estimated=isinstance(self.stack.estimator, BaseEstimator),
-            )
-            self.telemetry.begin()
-        except TelemetryError as error:
-            logging.getLogger(__name__).warning("no telemetry: %s", error)
+    def _stop(self, policy: StopPolicy | None, asked: Asked) -> None:
+        """Stop, and publish that; see `Stoppable`."""
+        with self.telemetry.stopping(self._resting):
+            super()._stop(policy, asked)
+
+    def _stop_idle(self, error: WindupError | None) -> None:
+        """Stop, and publish that; see `Stoppable`."""
+        with self.telemetry.stopping(self._resting):
+            super()._stop_idle(error)
 
     def close(self) -> None:
         """Rest and disconnect, as at the end of a `with`; once more is no matter.
@@ -291,5 +289,4 @@ class Session(Armed):
         if not self._closed:
             NOTES.add(self.warnings, self.slowness, self.backend.backend)
         super()._disconnect()
-        if self.telemetry is not None:
-            self.telemetry.close()
+        self.telemetry.close()

@@ -21,6 +21,8 @@ from windup.control.motions.play import PoseHolder
 from windup.hal.command import joint_torque
 from windup.hal.joints import Array, Joint, Joints
 from windup.hal.observation import BaseState, Observation
+from windup.hal.publishing.controller_block import ControllerBlock
+from windup.hal.publishing.run_state import RunState
 
 JOINTS = Joints(
     tuple(
@@ -67,6 +69,23 @@ def test_without_a_fall_its_controller_does_as_it_likes() -> None:
     assert (fall.protected.phase, fall.protected.way) == (Phase.SAFE, None)
     assert block[0] == pytest.approx([0.0, 0.0])
     assert block[3] == pytest.approx(JOINTS.stiffness)
+
+
+def test_the_phases_of_a_fall_are_published_after_the_controllers_own() -> None:
+    fall = Fall()
+    names = fall.protected.published
+    block = ControllerBlock.of(names)
+    for seconds, pitch, rate, state, phase in (
+        (0.1, 0.1, 0.0, RunState.STANDING, ""),
+        (0.05, 1.2, 5.0, RunState.FALLING, "falling"),
+        (0.05, 1.44, 5.0, RunState.FALLING, "impact"),
+        (REST + 3 * DT, 1.5, 0.0, RunState.FALLEN, "lying"),
+    ):
+        fall.hold(seconds, pitch, rate)
+        fall.protected.publish(block)
+        assert block.run_state is state
+        assert not phase or names.phases[block.phase] == phase
+        assert not phase or names.reasons[block.reason] == "a fall cannot be prevented"
 
 
 @pytest.mark.parametrize(("pitch", "pose"), [(1.2, FORWARD), (-1.2, BACK)])

@@ -6,6 +6,8 @@ import pytest
 from tests.small_world import AIR, CONTACTS, JOINTS, L_TOE, N, gait, observation
 from windup.control.motions.play import GraphPlayer, PoseHolder
 from windup.hal.joints import Array
+from windup.hal.publishing.controller_block import ControllerBlock
+from windup.hal.publishing.run_state import RunState
 
 GAIT = """
 title = "Bow"
@@ -57,6 +59,18 @@ def test_a_graph_is_played_to_its_end(tmp_path: Path) -> None:
     assert not player.finished
     assert waists(player, [AIR] * 4) == [0, 0, 0, 0]
     assert player.finished
+
+
+def test_the_state_of_the_graph_is_published(tmp_path: Path) -> None:
+    player = GraphPlayer(gait(tmp_path, GAIT), JOINTS, CONTACTS)
+    player.reset(observation())
+    block = ControllerBlock.of(player.published)
+    waists(player, [AIR, AIR, L_TOE, AIR])
+    player.publish(block)
+    assert player.published.phases == ("wait", "bow", "rest")
+    assert block.phase == 1
+    assert block.phase_time == pytest.approx(2 * DT)
+    assert block.run_state is RunState.STANDING
 
 
 def test_reset_begins_at_the_first_state_again(tmp_path: Path) -> None:

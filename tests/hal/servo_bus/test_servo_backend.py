@@ -78,6 +78,10 @@ def test_a_goal_past_the_encoder_is_clamped_and_counted() -> None:
     real = robot.backend.write(JointCommand.hold(robot.backend.joints, np.full(4, 4.0)))
     assert robot.serial.get(1, 116, 4) == 4095
     assert robot.backend.clamps["goal"] == 1
+    assert robot.backend.clamp_bits is not None
+    assert (robot.backend.clamp_bits == 0b1).all()
+    robot.backend.write(JointCommand.hold(robot.backend.joints, np.zeros(4)))
+    assert robot.backend.clamp_bits is None
     assert real.position[0] == pytest.approx(2047 * COUNT)
 
 

@@ -79,6 +79,8 @@ def test_a_servo_that_was_silent_and_has_restarted_gets_no_goal_and_the_others_d
     assert str(bench.backend.lost_joints["j1"]).startswith("its servo restarted")
     assert bench.gets_goals() == [True, False, True]
     assert bench.backend.clamps["lost"] > 0
+    assert bench.backend.clamp_bits is not None
+    assert bench.backend.clamp_bits.tolist() == [0, 0b1000, 0]
 
 
 @pytest.mark.parametrize("model", [STS, SCS, AX, MX], ids=names[1:])

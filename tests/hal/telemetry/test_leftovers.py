@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 import windup.hal.telemetry.leftovers
-from tests.hal.telemetry.test_ring import CONTACTS, JOINTS, Servos, write
-from windup.hal.guard import GuardedBackend, SafetyLimits
+from tests.hal.telemetry.small_ring import CONTACTS, guarded, write
 from windup.hal.port.lock import AdapterLock
 from windup.hal.telemetry.leftovers import FILES, KEPT, SPARE, process_runs, remove_leftovers
-from windup.hal.telemetry.ring import TelemetryReader, TelemetryWriter
+from windup.hal.telemetry.reader import TelemetryReader
+from windup.hal.telemetry.writer import TelemetryWriter
 
 Make = Callable[..., TelemetryWriter]
 NOW = time.time()
@@ -31,13 +31,12 @@ def make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
     """Make a ring of a process, last written so many seconds ago."""
 
     def ring(name: str, pid: int | None = None, ago: float = 0.0) -> TelemetryWriter:
-        guard = GuardedBackend(Servos(), SafetyLimits.of(JOINTS))
         path = tmp_path / f"{name}@twin.ring"
         with monkeypatch.context() as patch:
             if pid is not None:
-                patch.setattr("windup.hal.telemetry.ring.os.getpid", lambda: pid)
-            writer = TelemetryWriter(name, guard, CONTACTS, 1.0, path=path)
-            patch.setattr("windup.hal.telemetry.ring.wall.time", lambda: NOW - ago)
+                patch.setattr("windup.hal.telemetry.writer.os.getpid", lambda: pid)
+            writer = TelemetryWriter(name, guarded(), CONTACTS, 1.0, path=path)
+            patch.setattr("windup.hal.telemetry.writer.time.time", lambda: NOW - ago)
             write(writer, range(1, 3))
         return writer
 

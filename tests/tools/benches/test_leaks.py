@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 
 from windup.hal.errors import WindupError
-from windup.hal.telemetry.layout import runtime_folder
+from windup.hal.telemetry.runtime_folder import runtime_folder
 from windup.robots import load_robot
 from windup.sim_twin.environment import Environment
 from windup.sim_twin.ground.terrain import Ground

@@ -11,7 +11,8 @@ from rich.console import Console
 from windup.hal.command import JointCommand
 from windup.hal.guard import GuardedBackend, SafetyLimits
 from windup.hal.observation import ImuState, JointState, Observation
-from windup.hal.telemetry.ring import TelemetryReader, TelemetryWriter
+from windup.hal.telemetry.reader import TelemetryReader
+from windup.hal.telemetry.writer import TelemetryWriter
 from windup.robots import load_robot
 from windup.sim_twin.backend import TwinBackend
 from windup.sim_twin.twin import Twin
@@ -69,7 +70,7 @@ class Bench:
             seen = replace(
                 observation, time=(k + lost) * DT, imu=replace(observation.imu, age=imu_age)
             )
-            self.writer.record(seen, hold, 1e-4, k, lost)
+            self.writer.record(seen, hold, hold, 1e-4, 0.0, k, lost)
 
     def diagnose(self, later: float = 0.0) -> Diagnosis:
         with TelemetryReader(self.writer.path) as reader:
@@ -156,7 +157,7 @@ def test_the_imu_is_judged_where_the_base_is_estimated_from_it(folder: Path) -> 
 
 def test_late_plans_are_told_with_what_to_do(bench: Bench) -> None:
     bench.ticks(100)
-    bench.writer.plans = (40, 7)
+    bench.writer.block.plans, bench.writer.block.late_plans = 40, 7
     bench.ticks(1, first=101)
     (complaint,) = bench.diagnose().complaints
     assert str(complaint) == (
@@ -173,6 +174,7 @@ def test_what_is_not_measured_is_no_complaint(bench: Bench) -> None:
 def test_missed_ticks_count_above_one_in_a_hundred(bench: Bench) -> None:
     bench.ticks(99, missed=1)
     assert bench.complaints() == []
+    bench.writer.begin()
     bench.ticks(97, missed=3)
     assert bench.complaints() == ["loop: 3 % of the ticks came late"]
 
@@ -209,6 +211,7 @@ def test_what_the_driver_clamps_is_told_apart_from_what_the_guard_does(bench: Be
 
 def test_only_the_last_run_counts(bench: Bench) -> None:
     bench.ticks(50, temperature=90.0, age=0.2)
+    bench.writer.begin()
     bench.ticks(20)
     found = bench.diagnose()
     assert found.healthy
