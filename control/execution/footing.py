@@ -54,8 +54,9 @@ class Footing:
     down: list[bool]
 
     def __init__(self, state: RobotState, base: str, sites: Sequence[str], stance: Array) -> None:
-        self.state, self._of = state, state.soles.foot
+        self.state, self._rows = state, state.soles.rows
         self.rounded = False
+        self._home_of: Planted | None = None
         self._limbs = [LimbIk(state.model, base, site) for site in sites]
         self._last = [stance.copy() for _ in sites]
         homes = [limb.forward(stance) for limb in self._limbs]
@@ -79,7 +80,7 @@ class Footing:
 
     def ground(self, foot: int) -> Array:
         """Return the points (p, 3) of a sole in the world frame, m."""
-        return self.state.ground[self._of == foot]
+        return self.state.ground[self._rows[foot]]
 
     def middle(self, foot: int) -> Array:
         """Return the middle (2,) of a sole on the ground, m: its site is there."""
@@ -99,7 +100,11 @@ class Footing:
 
     def home(self, planted: Planted) -> Array:
         """Return the base's position (2,) m in the stance, for feet at these places."""
-        return planted.places[:, :2].mean(axis=0) + turn(planted.front)[:2, :2] @ self._offset
+        if planted is not self._home_of:
+            middle = planted.places[:, :2].mean(axis=0)
+            self._home = middle + turn(planted.front)[:2, :2] @ self._offset
+            self._home_of = planted
+        return self._home
 
     def upright(
         self, place: Array, heading: float, pitch: float = 0.0, height: float | None = None

@@ -153,7 +153,7 @@ class ServoExecutor:
     def _balance(self, goals: Array, motion: Motion, now: float) -> None:
         """Set the goals of both legs: the base over the feet, displaced against a fall."""
         feet = self.feet
-        place = self.anchor(motion, now) - self._against(feet.places.mean(axis=0))
+        place = self.anchor(motion, now) - self._against((feet.places[0] + feet.places[1]) / 2.0)
         heading = heading_between(feet.yaw, motion.planted.front, self._back(motion, now))
         base = feet.upright(place, heading, height=self._height)
         for foot in (0, 1):
@@ -184,4 +184,4 @@ class ServoExecutor:
     def _against(self, middle: Array) -> Array:
         """Return the displacement (2,) m to subtract from the base against the capture point."""
         away = self._gains.balance * (capture_point(self.feet.momenta) - middle)
-        return np.clip(away, -MOST_SHIFT, MOST_SHIFT)
+        return np.minimum(np.maximum(away, -MOST_SHIFT), MOST_SHIFT)

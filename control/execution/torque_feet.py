@@ -85,7 +85,7 @@ class TorqueFeet:
 
     def middle(self, foot: int) -> Array:
         """Return the middle (2,) of a sole on the ground, m."""
-        return np.asarray(self.ground(foot)[:, :2].mean(axis=0))
+        return self.dynamics.middle(foot)
 
     def support(self, feet: Sequence[int]) -> SupportRegion:
         """Return the support region of these feet's soles, whether or not they bear load."""

@@ -32,7 +32,7 @@ def unreachable(body: Momenta, soles: Array, reach: float) -> Array | None:
     """
     point = capture_point(body)
     away = point - soles
-    if np.einsum("ij,ij->i", away, away).min() <= reach * reach:
+    if (away * away).sum(axis=1).min() <= reach * reach:
         return None  # within reach of a corner: the hull is not needed
     if SupportRegion.hull(soles).margin(point) >= -reach:
         return None

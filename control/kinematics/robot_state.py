@@ -10,13 +10,13 @@ it was given, so no quantity of the old base remains.
 """
 
 from collections.abc import Sequence
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
 
 from windup.control.kinematics.body_views import BodyViews
+from windup.control.kinematics.computed_once import ComputedOnce, computed_once
 from windup.control.kinematics.limb_ik import Pose
 from windup.control.kinematics.momenta import Momenta
 from windup.control.kinematics.rotation import facing
@@ -119,7 +119,7 @@ class RobotState:
             self._soles = Soles(self.model, self._feet, self._contacts)
         return self._soles
 
-    @cached_property
+    @ComputedOnce
     def position_stage(self) -> BodyViews:
         """Poses of all bodies and centres of mass, in MuJoCo's data."""
         views, base, joints = self._views, self.base, self.observation.joints
@@ -132,70 +132,70 @@ class RobotState:
         mujoco.mj_comPos(self.model, views.data)
         return views
 
-    @cached_property
+    @ComputedOnce
     def velocity_stage(self) -> BodyViews:
-        """The same, with velocities and momenta of all bodies."""
+        """The same, with the velocities of all bodies."""
         views = self.position_stage
         mujoco.mj_comVel(self.model, views.data)
-        mujoco.mj_subtreeVel(self.model, views.data)
         return views
 
-    @cached_property
+    @ComputedOnce
     def joint_position(self) -> Array:
         """(n,) joint positions, rad."""
         return self.position_stage.qpos[7:].copy()
 
-    @cached_property
+    @ComputedOnce
     def velocity(self) -> Array:
         """(v,) linear velocity of the base, its angular velocity in its frame, joint velocities."""
         return self.position_stage.qvel.copy()
 
-    @cached_property
+    @ComputedOnce
     def pose(self) -> Pose:
         """Pose of the base."""
         return Pose(self.position_stage.position.copy(), self.position_stage.axes.copy())
 
-    @cached_property
+    @ComputedOnce
     def yaw(self) -> float:
         """Heading of the base, rad."""
         return facing(self.pose.rotation)
 
-    @cached_property
+    @ComputedOnce
     def up(self) -> Array:
         """(3,) unit vector along the torso."""
         return self.position_stage.up.copy()
 
-    @cached_property
+    @ComputedOnce
     def feet(self) -> list[Pose]:
         """Poses of the k sites."""
         axes = self.feet_axes.reshape(-1, 3, 3)
         return [Pose(*pose) for pose in zip(self.feet_position, axes, strict=True)]
 
-    @cached_property
+    @ComputedOnce
     def feet_position(self) -> Array:
         """(k, 3) positions of the k sites, m."""
         return self.position_stage.site_position[self.sites]
 
-    @cached_property
+    @ComputedOnce
     def feet_axes(self) -> Array:
         """(k, 9) rotation matrices of the k sites, row by row."""
         return self.position_stage.site_axes[self.sites]
 
-    @cached_property
+    @ComputedOnce
     def ground(self) -> Array:
         """(p, 3) the points of the soles that can touch the ground, m; see `soles`."""
         views = self.position_stage
         return self.soles.seen(views.body_position, views.body_axes)
 
-    @cached_property
+    @ComputedOnce
     def com(self) -> Array:
         """(3,) centre of mass, m."""
         return self.position_stage.com.copy()
 
-    @cached_property
+    @ComputedOnce
     def momenta(self) -> Momenta:
         """Mass, centre of mass and momenta of the whole body."""
         views = self.velocity_stage
+        mujoco.mj_subtreeVel(self.model, views.data)
         return Momenta(self.mass, self.com, views.com_velocity.copy(), views.angular.copy())
 
     @property
@@ -203,14 +203,14 @@ class RobotState:
         """(3,) velocity of the centre of mass, m/s."""
         return self.momenta.velocity
 
-    @cached_property
+    @ComputedOnce
     def com_jacobian(self) -> Array:
         """(3, v) Jacobian of the centre of mass."""
         jacobian = np.zeros((3, self.model.nv))
         mujoco.mj_jacSubtreeCom(self.model, self.position_stage.data, jacobian, self.base_body)
         return jacobian
 
-    @cached_property
+    @ComputedOnce
     def outcomes(self) -> Outcomes:
         """The state as a batch of one, as rollouts return theirs."""
         base, observation = self.base, self.observation
@@ -228,11 +228,11 @@ class RobotState:
             fell=np.zeros(1, dtype=bool),
         )
 
-    @cached_property
+    @ComputedOnce
     def _jacobians(self) -> dict[int, Array]:
         return {}
 
-    @cached_property
+    @ComputedOnce
     def _supports(self) -> "dict[tuple[int, ...], SupportRegion]":
         return {}
 
@@ -261,7 +261,5 @@ class RobotState:
         return known
 
 
-PER_OBSERVATION = tuple(
-    name for name, value in vars(RobotState).items() if isinstance(value, cached_property)
-)
+PER_OBSERVATION = computed_once(RobotState)
 """Quantities that are discarded at the next observation."""

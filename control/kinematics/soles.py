@@ -1,7 +1,7 @@
 """Possible contact points of the soles, and their motion relative to the base."""
 
 from collections.abc import Sequence
-from itertools import product
+from itertools import pairwise, product
 
 import mujoco
 import numpy as np
@@ -32,6 +32,7 @@ class Soles:
     Attributes:
         foot: (p,) index of each point's foot.
         sensor: (p,) index of each point's contact sensor, -1 where the foot has none.
+        rows: For each foot the rows of its points.
         members: (feet, p) 1 if a point belongs to a foot, else 0.
         position: (p, 3) contact points in the base frame, m.
         rotation: (feet, 3) angular velocities of the feet relative to the base, base frame, rad/s.
@@ -54,6 +55,8 @@ class Soles:
             foot += [index] * len(found)
         self._local, self._radius = np.array(points)[:, :, None], np.array(radii)[:, None]
         self.foot = np.array(foot, dtype=np.intp)
+        ends = np.cumsum([0, *np.bincount(self.foot)]).tolist()
+        self.rows = [slice(begin, end) for begin, end in pairwise(ends)]
         self._of_point = self._bodies[self.foot]
         self.members = (self.foot == np.arange(len(feet))[:, None]).astype(float)
         self.sensor = self._nearest(contacts)

@@ -7,6 +7,7 @@ back to the stance (Kenwright 2012, section IV).
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import hypot
 
 import numpy as np
 
@@ -218,7 +219,7 @@ class Stepper:
     def _settle(self, now: float) -> None:
         """Start a comfort step if one is needed and the robot has stood still long enough."""
         feet, stepping = self.executor.feet, self.stepping
-        if np.linalg.norm(feet.momenta.velocity[:2]) > STILL:
+        if hypot(*feet.momenta.velocity[:2]) > STILL:
             self._moved = now
         if now - self._moved < stepping.patience:
             return

@@ -31,6 +31,7 @@ class Dynamics:
         self.bias = np.zeros(self.model.nv)
         self._observation: Observation | None = None
         self._grounds: list[Array] = []
+        self._middles: list[Array | None] = []
         data = mujoco.MjData(self.model)
         mujoco.mj_kinematics(self.model, data)
         self.corners = [self._find_corners(data, int(site)) for site in state.sites]
@@ -52,6 +53,7 @@ class Dynamics:
             pose.position + corners @ pose.rotation.T
             for pose, corners in zip(state.feet, self.corners, strict=True)
         ]
+        self._middles = [None for _ in self._grounds]
         self._observation = observation
 
     @property
@@ -82,6 +84,13 @@ class Dynamics:
     def ground(self, end: int) -> Array:
         """Return the corners (p, 3) of an end in the world frame, m."""
         return self._grounds[end]
+
+    def middle(self, end: int) -> Array:
+        """Return the centre (2,) of the corners of an end, on the ground, m."""
+        if (known := self._middles[end]) is None:
+            corners = self._grounds[end][:, :2]
+            known = self._middles[end] = np.add.reduce(corners, axis=0) / len(corners)
+        return known
 
     def jacobian(self, end: int) -> Array:
         """Return the Jacobian (6, v) of an end: linear, then angular, in the world frame."""
