@@ -10,6 +10,7 @@ from typing import Protocol, TypeVar
 from windup.control.execution.motion import Motion, Planted, WalkMotion
 from windup.control.kinematics.limb_ik import Pose
 from windup.control.kinematics.momenta import Momenta
+from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.support import SupportRegion
 from windup.hal.command import JointCommand
 from windup.hal.joints import Array
@@ -76,6 +77,11 @@ class Feet(Protocol):
 
 class Executor(Protocol[M_contra]):
     """Realises a motion with the joints of one robot."""
+
+    @property
+    def state(self) -> RobotState:
+        """The robot's state."""
+        ...
 
     def reset(self, observation: Observation) -> None:
         """Start in the stance; integrators and filters are cleared.

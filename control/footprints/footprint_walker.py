@@ -43,12 +43,14 @@ class FootprintWalker:
         landed: Number of steps whose foot has come down and bears load.
         stood: Number of steps after which the following weight shift has ended.
         motion: What the robot should do.
+        state: The robot's state.
     """
 
     motion: WalkMotion
 
     def __init__(self, executor: WalkExecutor, prints: Sequence[Footprint], how: Directed) -> None:
         self.executor, self.prints, self.how = executor, prints, how
+        self.state = executor.state
         self.finished, self.landed, self.stood = False, 0, 0
 
     @property

@@ -49,6 +49,7 @@ class Stepper:
         steps: Number of steps taken to prevent a fall.
         comforts: Number of comfort steps.
         phase: Present phase.
+        state: The robot's state.
         motion: What the robot should do, but for comfort steps.
         published: Names of what `publish` fills in.
     """
@@ -64,6 +65,7 @@ class Stepper:
         no_step: KeepOutRegions | None = None,
     ) -> None:
         self.executor, self.rule, self.stepping = executor, rule, stepping
+        self.state = executor.state
         self.no_step = no_step or KeepOutRegions()
         self._reach = stepping.reach.reach()
         self.phase: StepperPhase = "stand"

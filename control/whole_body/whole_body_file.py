@@ -55,7 +55,7 @@ class WholeBodyFile(Record, frozen=True, kw_only=True):
         weights: Weights of the objectives.
     """
 
-    torque: Positive = 1e3
+    torque: Positive
     friction: Positive = 0.8
     period: Positive = 0.005
     com: Feedback = Feedback(stiffness=40.0, damping=12.0)

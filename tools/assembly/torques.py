@@ -15,6 +15,8 @@ from windup.robots import RobotDescription
 from windup.tools.assembly.state import state_of
 
 WHOLE_BODY: Final = "whole_body.toml"
+MOST: Final = 1e3
+"""Maximum torque of a joint of a robot without the file, N m; its own limit holds as well."""
 
 
 def find_whole_body(robot: RobotDescription) -> WholeBodyFile:
@@ -24,7 +26,7 @@ def find_whole_body(robot: RobotDescription) -> WholeBodyFile:
         ConfigError: The file says something that cannot be.
     """
     path = robot.folder / WHOLE_BODY
-    return load_toml(path, WholeBodyFile) if path.is_file() else WholeBodyFile()
+    return load_toml(path, WholeBodyFile) if path.is_file() else WholeBodyFile(torque=MOST)
 
 
 def torque_executor(
