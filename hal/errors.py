@@ -26,6 +26,12 @@ class ConfigError(WindupError):
     exit_status = 2
 
 
+class PluginError(WindupError):
+    """An entry point of another distribution cannot be loaded, or is not what its group needs."""
+
+    exit_status = 2
+
+
 class UsageError(WindupError):
     """A command or call has invalid arguments; nothing has moved."""
 

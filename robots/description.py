@@ -11,16 +11,16 @@ from msgspec.structs import replace
 from windup.hal.config import load_toml
 from windup.hal.contacts import ContactSensors
 from windup.hal.errors import UnknownNameError, UsageError
+from windup.hal.families import servo_model
 from windup.hal.guard import HealthLevels, StopPolicy
 from windup.hal.imu.kind import ImuKind
 from windup.hal.joints import Array, Joint, Joints
 from windup.hal.mirror import Mirror
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
 from windup.robots import mjcf, structure
 from windup.robots.checks import Checks, whole_steps
 from windup.robots.completion import complete, complete_for
-from windup.robots.folders import FILE, FOLDER, Loaded, gait_files, robot_names
+from windup.robots.folders import FILE, Loaded, gait_files, named_folder, robot_names
 from windup.robots.imu import imu_of
 from windup.robots.limits import with_limits
 from windup.robots.mirror import mirror_map
@@ -154,12 +154,13 @@ class RobotDescription:
 
 
 def load_robot(name_or_path: str | Path) -> RobotDescription:
-    """Return a robot by the name of a folder in `robots`, or by the path of another folder.
+    """Return a robot by its name, or by the path of a folder.
 
     A robot whose files have not changed since is the same object as before.
 
     Raises:
         UnknownNameError: There is neither such a robot nor such a folder.
+        PluginError: Another distribution adds the robot, and its entry point is broken.
         ConfigError: A file of the robot cannot be read or failed a check.
     """
     folder = folder_of(name_or_path)
@@ -192,13 +193,14 @@ def limited(robot: RobotFile, model: mujoco.MjModel) -> RobotFile:
 
 
 def folder_of(name_or_path: str | Path) -> Path:
-    """Return the folder of a robot by its name in `robots`, or by its path.
+    """Return the folder of a robot by its name, Windup's own first, or by its path.
 
     Raises:
         UnknownNameError: There is neither such a robot nor such a folder.
+        PluginError: Another distribution adds the robot, and its entry point is broken.
     """
-    if str(name_or_path) in robot_names():
-        return FOLDER / name_or_path
+    if (named := named_folder(str(name_or_path))) is not None:
+        return named
     if os.path.isdir(name_or_path):  # False without an error even for an invalid path
         return Path(name_or_path)
     raise UnknownNameError("robot", str(name_or_path), robot_names())

@@ -1,10 +1,12 @@
-"""Folders of robots: those that come with Windup, and a cache of what was made of their files."""
+"""Folders of robots, of Windup and of other distributions, and a cache of what is in them."""
 
 import os
 import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Generic, TypeVar
+
+from windup.hal.plugins.plugins import Plugins
 
 FOLDER = Path(__file__).parent
 FILE = "robot.toml"
@@ -16,13 +18,58 @@ FRESH = 0.1
 """Minimum age of a file, s: a younger one may change again with the same modification time."""
 
 
+def _own_names() -> tuple[str, ...]:
+    """Return the names of the robots that come with Windup, sorted."""
+    return tuple(sorted(path.parent.name for path in FOLDER.glob(f"*/{FILE}")))
+
+
+def _accept(name: str, found: object) -> Path:
+    """Return the folder that an entry point names; see `Plugins`.
+
+    Raises:
+        ValueError: It is neither a package nor a path, or there is no robot.toml.
+    """
+    places = [found] if isinstance(found, Path) else getattr(found, "__path__", ())
+    folders = [Path(place) for place in places]
+    for folder in folders:
+        if (folder / FILE).is_file():
+            return folder
+    if folders:
+        raise ValueError(f"there is no {FILE} in {folders[0]}")
+    kind = type(found).__name__
+    raise ValueError(f"should be a package with a {FILE} or a pathlib.Path, and is of type {kind}")
+
+
+ADDED_ROBOTS: Plugins[Path] = Plugins("windup.robots", _accept, own=_own_names)
+"""The folders of the robots that other distributions add."""
+
+
 def robot_names() -> tuple[str, ...]:
-    """Return the names of the robots that come with Windup.
+    """Return the names of all robots: of Windup, and of those that other distributions add.
 
     >>> {"human", "op3"} <= set(robot_names())
     True
     """
-    return tuple(sorted(path.parent.name for path in FOLDER.glob(f"*/{FILE}")))
+    return tuple(sorted((*_own_names(), *ADDED_ROBOTS.names())))
+
+
+def named_folder(name: str) -> Path | None:
+    """Return the folder of the robot called `name`; None if there is no such robot.
+
+    Raises:
+        PluginError: Another distribution adds it, and its entry point is broken.
+    """
+    if name in _own_names():
+        return FOLDER / name
+    if Path(name).name == name and name in ADDED_ROBOTS.names():
+        return ADDED_ROBOTS.load(name)
+    return None
+
+
+def robot_folders() -> dict[str, Path]:
+    """Return the folders of all robots by name; a broken entry point is reported and left out."""
+    own = {name: FOLDER / name for name in _own_names()}
+    return dict(sorted({**own, **ADDED_ROBOTS.all()}.items()))
 
 
 def gait_files(folder: Path) -> dict[str, Path]:

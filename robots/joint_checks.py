@@ -5,8 +5,7 @@ from math import isnan
 
 import mujoco
 
-from windup.hal.families import family_of
-from windup.hal.servos import servo_names
+from windup.hal.families import FAMILIES, families, family_of, is_servo, servo_names
 from windup.robots import mjcf
 from windup.robots.limits import travel_mistakes
 from windup.robots.mistake import SLACK, Mistake, known, unique
@@ -39,6 +38,7 @@ def joint_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]
     for joint in robot.joint:
         yield from _limit_mistakes(joint, model, joint.name in hinges)
         yield from _servo_mistakes(robot, joint)
+    yield from _protocol_mistakes(robot)
     yield from _id_mistakes(robot)
 
 
@@ -84,11 +84,12 @@ def _servo_mistakes(robot: RobotFile, joint: JointEntry) -> Iterator[Mistake]:
         return
     if joint.servo is None or joint.bus is None or joint.id is None:
         yield key, 'needs servo, bus and id: drive.kind is "servo"'
-    if joint.servo is not None:
+    exists = joint.servo is not None and is_servo(joint.servo)
+    if joint.servo is not None and not exists:
         yield from known(f"{key}: servo", "servo", joint.servo, servo_names())
     if joint.bus is not None:
         yield from known(f"{key}: bus", "bus", joint.bus, [bus.name for bus in robot.bus])
-    if joint.servo in servo_names():
+    if exists:
         yield from _bus_mistakes(robot, joint, key)
         if not _unlimited(joint):
             yield from ((key, mistake) for mistake in travel_mistakes(joint))
@@ -98,12 +99,21 @@ def _bus_mistakes(robot: RobotFile, joint: JointEntry, key: str) -> Iterator[Mis
     """Yield a mistake if a servo's protocol or baud rate does not match its bus."""
     family = family_of(str(joint.servo))
     for bus in [bus for bus in robot.bus if bus.name == joint.bus][:1]:
-        if family.protocol != bus.protocol:
-            speaks = f'a {joint.servo} speaks "{family.protocol}"'
+        if family.protocol_name != bus.protocol:
+            speaks = f'a {joint.servo} speaks "{family.protocol_name}"'
             yield key, f'{speaks}, and bus {bus.name!r} has protocol "{bus.protocol}"'
         elif bus.baud not in family.bauds:
             rates = ", ".join(map(str, sorted(family.bauds)))
             yield f"bus {bus.name!r}: baud", f"a {joint.servo} has no {bus.baud}, but {rates}"
+
+
+def _protocol_mistakes(robot: RobotFile) -> Iterator[Mistake]:
+    """Yield unknown protocols of buses."""
+    own = {family.protocol_name for family in FAMILIES}
+    for bus in robot.bus:
+        if bus.protocol not in own:  # without importing what other distributions add
+            names = {family.protocol_name for family in families()}
+            yield from known(f"bus {bus.name!r}: protocol", "protocol", bus.protocol, names)
 
 
 def _id_mistakes(robot: RobotFile) -> Iterator[Mistake]:

@@ -6,8 +6,7 @@ from math import isnan, pi
 import mujoco
 from msgspec.structs import replace
 
-from windup.hal.families import family_of
-from windup.hal.servos import servo_model
+from windup.hal.families import family_of, servo_model
 from windup.hal.servos.servo_model import ServoMount
 from windup.robots import mjcf
 from windup.robots.records import JointEntry

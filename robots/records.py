@@ -46,10 +46,15 @@ class Drive(Record, frozen=True):
 
 
 class Bus(Record, frozen=True):
-    """A servo bus; its serial port is given when the robot is opened."""
+    """A servo bus; its serial port is given when the robot is opened.
+
+    Attributes:
+        protocol: "dynamixel1", "dynamixel2", "feetech", or that of a family that another
+            distribution adds.
+    """
 
     name: str
-    protocol: Literal["dynamixel1", "dynamixel2", "feetech"]
+    protocol: Annotated[str, Meta(examples=["dynamixel1", "dynamixel2", "feetech"])]
     baud: Annotated[int, Meta(gt=0, le=10_000_000)]
 
 

@@ -58,7 +58,7 @@ class Bus:
     def __init__(self, port: Port, family: Family = DYNAMIXEL_X) -> None:
         self.port, self.family = port, family
         self.exchange = BusTransactions(port)
-        self._link = family.dialect.link(port)
+        self._configurator = family.protocol.configurator(port)
         self._fast: dict[tuple[int, ...], bool] = {}
 
     def move_to(self, port: Port) -> None:
@@ -71,17 +71,17 @@ class Bus:
         port.latency = max(port.latency, before.latency)
         self.port = port
         self.exchange.move_to(port)
-        heartbeat, self._link = self.heartbeat, self.family.dialect.link(port)
+        heartbeat, self._configurator = self.heartbeat, self.family.protocol.configurator(port)
         self.heartbeat = heartbeat
 
     @property
     def heartbeat(self) -> Heartbeat:
         """Heartbeat callback; the SDK wrapper also calls it before each attempt."""
-        return self._link.heartbeat
+        return self._configurator.heartbeat
 
     @heartbeat.setter
     def heartbeat(self, heartbeat: Heartbeat) -> None:
-        self._link.heartbeat = heartbeat
+        self._configurator.heartbeat = heartbeat
 
     def get_to_know_adapter(self, ids: Iterable[int]) -> None:
         """Measure the latency of the adapter, and whether it echoes requests.
@@ -89,7 +89,7 @@ class Bus:
         Args:
             ids: Ids of servos that may be present; the first that answers is probed several times.
         """
-        probes = (self.family.dialect.probe(id) for id in ids)
+        probes = (self.family.protocol.probe(id) for id in ids)
         get_to_know(self.port, probes, self.heartbeat)
 
     def ping(self, id: int) -> int:
@@ -98,7 +98,7 @@ class Bus:
         Raises:
             NoAnswerError: The servo does not answer.
         """
-        return self._link.ping(id)
+        return self._configurator.ping(id)
 
     def scan(self, bauds: Iterable[int] | None = None) -> list[Found]:
         """Return every servo that answers at any of `bauds` (by default all of the family).
@@ -113,7 +113,7 @@ class Bus:
 
     def read(self, id: int, register: Register) -> int:
         """Return the value of one register, counts."""
-        return register.decode(self._link.read(id, register.address, register.size))
+        return register.decode(self._configurator.read(id, register.address, register.size))
 
     def write(self, id: int, register: Register, counts: int) -> None:
         """Write one register and read it back.
@@ -124,7 +124,7 @@ class Bus:
         self.command(id, register, counts, unlock=register.area == "eeprom")
         now = self.read(id, register)
         if now != counts:  # read again: the first answer may have been a late one
-            self._link.settle()
+            self._configurator.settle()
             now = self.read(id, register)
         if now != counts:
             raise HardwareError(
@@ -135,7 +135,7 @@ class Bus:
     def command(self, id: int, register: Register, counts: int, unlock: bool = False) -> None:
         """Write one register without reading back; `unlock` unlocks the EEPROM for the write."""
         with self._unlocked(id, unlock):
-            self._link.write(id, register.address, register.encode(counts))
+            self._configurator.write(id, register.address, register.encode(counts))
 
     def sync_read(
         self, ids: Sequence[int], register: Register, fast: bool = False
@@ -146,7 +146,7 @@ class Bus:
         """
         self.heartbeat()
         spans = [Span(id, register.address, register.size) for id in ids]
-        read = self.family.dialect.read(spans, fast and self.fast(ids))
+        read = self.family.protocol.read(spans, fast and self.fast(ids))
         self.exchange.request(read)
         valid = self.exchange.collect()
         return register.values(read.column(0, register.dtype)).astype(np.int64), valid
@@ -161,7 +161,7 @@ class Bus:
     def statuses(self, spans: Sequence[Span], rest: bool = False) -> dict[int, Status]:
         """Return the status packets of a `bulk_read`; for `rest` see `BusTransactions.request`."""
         self.heartbeat()
-        read = self.family.dialect.read(spans, self.fast([span.id for span in spans]))
+        read = self.family.protocol.read(spans, self.fast([span.id for span in spans]))
         self.exchange.request(read, rest)
         if not (valid := self.exchange.collect()).size:
             return {}
@@ -174,7 +174,7 @@ class Bus:
     def sync_write(self, register: Register, counts: Mapping[int, int]) -> None:
         """Write one register of several servos at once, without answers: read back what matters."""
         data = {id: register.encode(value) for id, value in counts.items()}
-        frames = self.family.dialect.sync_write(data, register.address, register.size)
+        frames = self.family.protocol.sync_write(data, register.address, register.size)
         self.exchange.send(frames)
 
     def wait(self, seconds: float) -> None:
@@ -197,17 +197,17 @@ class Bus:
         the plain read.
         """
         spans = [Span(id, self.family.registers["id"].address, 1) for id in ids]
-        if self._everybody(self.family.dialect.read(spans, fast=True)):
+        if self._everybody(self.family.protocol.read(spans, fast=True)):
             self._fast[tuple(ids)] = True
-        elif self._everybody(self.family.dialect.read(spans)):
+        elif self._everybody(self.family.protocol.read(spans)):
             self._fast[tuple(ids)] = False
         return self.fast(ids)
 
     def reboot(self, id: int) -> None:
         """Reboot a servo (torque off, RAM registers at their defaults) and wait for its answer."""
-        self._link.reboot(id)
+        self._configurator.reboot(id)
         self.wait(REBOOT_TIME)
-        self._link.ping(id)
+        self._configurator.ping(id)
 
     def set_id(self, id: int, new: int) -> None:
         """Change the id of a servo.
@@ -215,15 +215,15 @@ class Bus:
         Raises:
             UsageError: Another servo has the new id, or the id is out of range.
         """
-        last = self.family.dialect.last_id
+        last = self.family.protocol.last_id
         if not 0 <= new <= last:
             raise UsageError(f"id {new} cannot be; ids go from 0 to {last}")
         if self._answers(new):
             raise UsageError(f"id {new} on {self.port.url} is taken; two servos cannot share it")
         register = self.family.registers["id"]
         with self._unlocked(id, after=new):
-            self._link.write(id, register.address, bytes([new]))
-        self._link.ping(new)
+            self._configurator.write(id, register.address, bytes([new]))
+        self._configurator.ping(new)
 
     def set_baud(self, id: int, baud: int) -> None:
         """Change the baud rate of a servo and leave the port at that rate.
@@ -233,13 +233,13 @@ class Bus:
         """
         register, code = self.family.registers["baud_rate"], self.family.baud_code(baud)
         with self._unlocked(id):
-            self._link.write(id, register.address, bytes([code]))
+            self._configurator.write(id, register.address, bytes([code]))
             self.port.baud = baud
-        self._link.ping(id)
+        self._configurator.ping(id)
 
     def factory_reset(self, id: int, keep: int = 0x02) -> None:
         """Reset a servo; `keep`: 0xFF keeps nothing, 0x01 the id, 0x02 id and baud rate."""
-        self._link.factory_reset(id, keep)
+        self._configurator.factory_reset(id, keep)
         self.wait(REBOOT_TIME)
 
     def _scan(self, baud: int) -> list[Found]:
@@ -247,7 +247,7 @@ class Bus:
         self.get_to_know_adapter(FIRST)
         return [
             Found(baud, *answered, self.family.model_name(answered.model_number))
-            for answered in self.family.dialect.who(self.port, self._link)
+            for answered in self.family.protocol.scan(self.port, self._configurator)
         ]
 
     @contextlib.contextmanager
@@ -257,12 +257,12 @@ class Bus:
         if lock is None or not unlock:
             yield
             return
-        self._link.write(id, lock.address, bytes([0]))
+        self._configurator.write(id, lock.address, bytes([0]))
         try:
             yield
             self.wait(EEPROM_TIME)
         finally:
-            self._link.write(id if after is None else after, lock.address, bytes([1]))
+            self._configurator.write(id if after is None else after, lock.address, bytes([1]))
 
     def _everybody(self, read: CyclicRead) -> bool:
         for _ in range(2):
@@ -273,7 +273,7 @@ class Bus:
 
     def _answers(self, id: int) -> bool:
         try:
-            self._link.ping(id, attempts=1)
+            self._configurator.ping(id, attempts=1)
         except NoAnswerError:
             return False
         except HardwareError:

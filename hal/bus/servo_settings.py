@@ -23,7 +23,7 @@ def differences(bus: Bus, mount: ServoMount) -> list[Setting]:
     """Return the required settings of a servo that differ. Nothing is written."""
     table = bus.family.table(mount.model.name)
     found = []
-    for name, value, mask in wanted_of(bus.family, mount):
+    for name, value, mask in required_settings(bus.family, mount):
         if name not in table:
             continue
         present = bus.read(mount.id, table[name])
@@ -33,23 +33,25 @@ def differences(bus: Bus, mount: ServoMount) -> list[Setting]:
     return found
 
 
-def wanted_of(family: Family, mount: ServoMount) -> list[RequiredSetting]:
+def required_settings(family: Family, mount: ServoMount) -> list[RequiredSetting]:
     """Return the required settings of a servo, in the order in which they are written."""
     other = family.extended if mount.extended else None
-    usual = family.wanted(mount.model)
-    return [other if other is not None and want.name == other.name else want for want in usual]
+    return [
+        other if other is not None and setting.name == other.name else setting
+        for setting in family.required(mount.model)
+    ]
 
 
 def limits(bus: Bus, id: int, model: ServoModel) -> list[Setting]:
     """Return the unusual protection registers of servo `id`; `wanted` is the factory default."""
     table = bus.family.table(model.name)
     found = []
-    for usual in bus.family.usual(model):
-        if usual.name not in table:
+    for default in bus.family.factory_defaults(model):
+        if default.name not in table:
             continue
-        present = bus.read(id, table[usual.name])
-        if usual.is_odd(present):
-            found.append(Setting(table[usual.name], present, usual.value))
+        present = bus.read(id, table[default.name])
+        if default.is_unusual(present):
+            found.append(Setting(table[default.name], present, default.value))
     return found
 
 

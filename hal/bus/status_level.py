@@ -18,7 +18,8 @@ def make_answer(bus: Bus, id: int, model: ServoModel) -> str:
         HardwareError: It still answers nothing but pings, or reads back another level.
     """
     register = bus.family.registers.get(REGISTER)
-    wanted = next((want.value for want in bus.family.wanted(model) if want.name == REGISTER), None)
+    settings = bus.family.required(model)
+    wanted = next((setting.value for setting in settings if setting.name == REGISTER), None)
     if register is None or wanted is None:
         return ""
     try:

@@ -1,9 +1,10 @@
 """Dynamixel AX and MX with protocol 1, also mixed on one bus, as in Poppy and Darwin."""
 
-from windup.hal.families.dialect import Dynamixel1
-from windup.hal.families.family import Block, Family, Mark, RequiredSetting
+from windup.hal.families.family import Block, Family, RequiredSetting, RestartMark
 from windup.hal.families.gain import Gain, slope_pair, slope_steps
+from windup.hal.families.servo_protocol import Dynamixel1
 from windup.hal.protocols.protocol1 import LONGEST_DYNAMIXEL
+from windup.hal.servos.mx import MX
 from windup.hal.servos.mx_registers import (
     BAUD_CODES,
     COMMON,
@@ -28,7 +29,7 @@ _P_GAIN = Gain(mx_registers("MX-28")["position_p_gain"], 254)
 _SLOPES = Gain(mx_registers("AX-12A")["compliance_slopes"], 512, slope_steps, slope_pair)
 
 
-def _wanted(model: ServoModel) -> tuple[RequiredSetting, ...]:
+def _required(model: ServoModel) -> tuple[RequiredSetting, ...]:
     """Return the required settings; those that a model does not have are skipped."""
     return (
         RequiredSetting("return_delay", 0),
@@ -56,22 +57,23 @@ def _gain(model: str) -> Gain:
 
 DYNAMIXEL_1 = Family(
     name="Dynamixel AX/MX",
-    protocol="dynamixel1",
-    dialect=Dynamixel1(COMMON["model_number"], COMMON["firmware_version"], LONGEST_DYNAMIXEL),
+    protocol_name="dynamixel1",
+    protocol=Dynamixel1(COMMON["model_number"], COMMON["firmware_version"], LONGEST_DYNAMIXEL),
     registers=COMMON,
     table=mx_registers,
     numbers=NUMBERS,
+    models=MX,
     bauds=BAUD_CODES | FAST_CODES,
     state=Block(36, 6, STATE),
     health=Block(36, 8, STATE),
     check=Block(24, 20, STATE),
-    wanted=_wanted,
+    required=_required,
     gain=_gain,
     alert=sum(1 << bit for bit in HARDWARE_ERRORS),
     errors=HARDWARE_ERRORS,
     shutdown="shutdown",
     torque_bytes=12,
     torque=("torque_enable", "torque_limit"),
-    mark=Mark("torque_limit", FULL, MARKED),
+    restart_mark=RestartMark("torque_limit", FULL, MARKED),
     latching=True,
 )

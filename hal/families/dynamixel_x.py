@@ -1,10 +1,11 @@
 """Dynamixel X: protocol 2, little-endian, two's complement, with a Bus Watchdog."""
 
-from windup.hal.families.dialect import Protocol2
-from windup.hal.families.family import Block, Family, Mark, RequiredSetting
+from windup.hal.families.family import Block, Family, RequiredSetting, RestartMark
 from windup.hal.families.gain import Gain
+from windup.hal.families.servo_protocol import Protocol2
 from windup.hal.registers import Register
 from windup.hal.servos.servo_model import ServoModel
+from windup.hal.servos.x_series import X_SERIES
 from windup.hal.servos.x_series_registers import (
     BAUD_CODES,
     COMMON,
@@ -28,7 +29,7 @@ STATE = (
     Register("present_current", 126, 2, "ram", False, True),
 )
 
-WANTED = (
+REQUIRED = (
     RequiredSetting("return_delay", 0),
     RequiredSetting(
         "drive_mode", 0
@@ -53,8 +54,8 @@ WANTED = (
 _GAIN = Gain(REGISTERS["position_p_gain"], 16383)
 
 
-def _wanted(model: ServoModel) -> tuple[RequiredSetting, ...]:
-    return WANTED
+def _required(model: ServoModel) -> tuple[RequiredSetting, ...]:
+    return REQUIRED
 
 
 def _gain(model: str) -> Gain:
@@ -63,25 +64,26 @@ def _gain(model: str) -> Gain:
 
 DYNAMIXEL_X = Family(
     name="Dynamixel X",
-    protocol="dynamixel2",
-    dialect=Protocol2(),
+    protocol_name="dynamixel2",
+    protocol=Protocol2(),
     registers=REGISTERS,
     table=x_series_registers,
     numbers=NUMBERS,
+    models=X_SERIES,
     bauds=BAUD_CODES,
     state=Block(126, 10, STATE),
     health=None,
     check=Block(64, 83, STATE),
     check_alone=True,
-    wanted=_wanted,
+    required=_required,
     extended=RequiredSetting("operating_mode", EXTENDED_MODE),
     gain=_gain,
     alert=0x80,
     errors=HARDWARE_ERRORS,
     shutdown="shutdown",
     torque_bytes=7,
-    mark=Mark("bus_watchdog", 0),
+    restart_mark=RestartMark("bus_watchdog", 0),
     latching=True,
     errors_in_answers=False,
-    goal_wakes=False,
+    goal_enables_torque=False,
 )

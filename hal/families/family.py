@@ -13,9 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from windup.hal.errors import UsageError
-from windup.hal.families.dialect import ServoProtocol
+from windup.hal.families.factory_default import FactoryDefault, protective_limits
 from windup.hal.families.gain import Gain
-from windup.hal.families.usual import Usual, protective_limits
+from windup.hal.families.servo_protocol import ServoProtocol
 from windup.hal.protocols.protocol2 import Span
 from windup.hal.registers import Register, RegisterTable
 from windup.hal.servos.servo_model import ServoModel
@@ -29,7 +29,7 @@ class RequiredSetting(NamedTuple):
     mask: int | None = None
 
 
-class Mark(NamedTuple):
+class RestartMark(NamedTuple):
     """A RAM register that detects a restart: arming sets another value than a restart leaves.
 
     Attributes:
@@ -98,11 +98,12 @@ class Family:
 
     Attributes:
         name: Name for messages.
-        protocol: Name of its protocol in robot.toml.
-        dialect: Its protocol, as implemented by the maker.
+        protocol_name: Name of its protocol in robot.toml.
+        protocol: Its protocol, as implemented by the maker.
         registers: Registers common to all models, by name; units may differ by model.
         table: Returns all registers of a model, by its name.
-        numbers: Maps model number to model name.
+        numbers: Maps model number to model name, without the winding after a dash.
+        models: Data sheets of the models.
         bauds: Maps baud rate to the value of the baud rate register.
         state: Block read in each cycle.
         current: Block read instead if torque is computed from its current; None if `state`
@@ -112,48 +113,53 @@ class Family:
         check_alone: Whether a read may use a longer span for one servo than for the others.
         torque: Registers of which a value of 0 means that a servo has no torque.
         torque_bytes: Number of bytes that contain them, from the first of them on.
-        mark: Register that detects a restart, or None.
+        restart_mark: Register that detects a restart, or None.
         shutdown: Register whose bits select the errors that end torque, or reduce it.
         weakening: Bits of errors that reduce torque instead of ending it.
         latching: Whether an error that ended torque is reported until power-off.
-        wanted: Returns the required settings of a model, in the order of writing.
+        required: Returns the required settings of a model, in the order of writing.
         extended: Setting required instead for extended (multi-turn) position mode, or None.
-        usual: Returns the factory defaults of the protection settings of a model; other values
-            are the owner's choice, and only reported.
+        factory_defaults: Returns the factory defaults of the protection settings of a model; other
+            values are the owner's choice, and only reported.
         gain: Returns how stiffness is set on a model.
         alert: Bits of a status packet's error byte that report a hardware error.
         errors: Maps error bit to its meaning.
         errors_in_answers: Whether the bits of the error byte are the errors themselves; else the
             register `hardware_error` contains them.
-        goal_wakes: Whether writing a goal may switch torque on.
+        goal_enables_torque: Whether writing a goal may switch torque on.
+        emulation: Where the emulation of its servos is, "module:name" of a
+            `windup.sim_twin.wire.world.emulation.Emulation`, imported when one is emulated; "" for
+            the families of Windup itself, and for one that cannot be emulated.
     """
 
     name: str
-    protocol: str
-    dialect: ServoProtocol
+    protocol_name: str
+    protocol: ServoProtocol
     registers: Mapping[str, Register]
     table: Callable[[str], RegisterTable]
     numbers: Mapping[int, str]
+    models: Sequence[ServoModel]
     bauds: Mapping[int, int]
     state: Block
     health: Block | None
     check: Block
-    wanted: Callable[[ServoModel], Sequence[RequiredSetting]]
+    required: Callable[[ServoModel], Sequence[RequiredSetting]]
     gain: Callable[[str], Gain]
     alert: int
     errors: Mapping[int, str]
     shutdown: str
     torque_bytes: int
     torque: tuple[str, ...] = ("torque_enable",)
-    mark: Mark | None = None
+    restart_mark: RestartMark | None = None
     weakening: int = 0
     latching: bool = False
     current: Block | None = None
     extended: RequiredSetting | None = None
-    usual: Callable[[ServoModel], Sequence[Usual]] = protective_limits
+    factory_defaults: Callable[[ServoModel], Sequence[FactoryDefault]] = protective_limits
     check_alone: bool = False
     errors_in_answers: bool = True
-    goal_wakes: bool = True
+    goal_enables_torque: bool = True
+    emulation: str = ""
 
     def model_name(self, number: int) -> str:
         """Return the name of a model number, or a text such as "model 999" if it is unknown."""

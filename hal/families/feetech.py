@@ -4,10 +4,11 @@ Gains and limits are in the EEPROM area. While the register `lock` is 1, a write
 until power-off, so the loop may change gains without wearing the EEPROM.
 """
 
-from windup.hal.families.dialect import Feetech
-from windup.hal.families.family import Block, Family, Mark, RequiredSetting
+from windup.hal.families.factory_default import FactoryDefault, protective_limits
+from windup.hal.families.family import Block, Family, RequiredSetting, RestartMark
 from windup.hal.families.gain import Gain
-from windup.hal.families.usual import Usual, protective_limits
+from windup.hal.families.servo_protocol import Feetech
+from windup.hal.servos.feetech import SCS_MODELS, STS_MODELS
 from windup.hal.servos.feetech_registers import (
     BAUD_CODES,
     HARDWARE_ERRORS,
@@ -33,9 +34,9 @@ LARGEST_P = 254
 _ALERT = sum(1 << bit for bit in HARDWARE_ERRORS)
 
 
-def _sts_wanted(model: ServoModel) -> tuple[RequiredSetting, ...]:
+def _sts_required(model: ServoModel) -> tuple[RequiredSetting, ...]:
     return (
-        *_wanted(model),
+        *_required(model),
         RequiredSetting("phase", STEP_SPEED, STEP_SPEED | MULTI_TURN),  # 1 step/s, single turn
         RequiredSetting("operating_mode", 0),
         RequiredSetting("angular_resolution", 1),  # otherwise a count is several steps
@@ -46,7 +47,7 @@ def _sts_wanted(model: ServoModel) -> tuple[RequiredSetting, ...]:
     )
 
 
-def _wanted(model: ServoModel) -> tuple[RequiredSetting, ...]:
+def _required(model: ServoModel) -> tuple[RequiredSetting, ...]:
     return (
         RequiredSetting("return_delay", 0),
         RequiredSetting("status_return_level", 1),
@@ -62,18 +63,18 @@ def _wanted(model: ServoModel) -> tuple[RequiredSetting, ...]:
     )
 
 
-USUAL = (
-    Usual("protection_current", 500),
-    Usual("overload_torque", 80),
-    Usual("protective_torque", 20),
-    Usual("protection_time", 200),
-    Usual("overcurrent_time", 200),
+PROTECTION_DEFAULTS = (
+    FactoryDefault("protection_current", 500),
+    FactoryDefault("overload_torque", 80),
+    FactoryDefault("protective_torque", 20),
+    FactoryDefault("protection_time", 200),
+    FactoryDefault("overcurrent_time", 200),
 )
 """Factory defaults of the protection registers (memory table, 28 and 34 to 38)."""
 
 
-def _usual(model: ServoModel) -> tuple[Usual, ...]:
-    return *protective_limits(model), *USUAL
+def _factory_defaults(model: ServoModel) -> tuple[FactoryDefault, ...]:
+    return *protective_limits(model), *PROTECTION_DEFAULTS
 
 
 _STS_GAIN = Gain(STS["position_p_gain"], LARGEST_P)
@@ -94,41 +95,43 @@ _SCS_STATE = (SCS["present_position"], SCS["present_velocity"], SCS["present_loa
 
 FEETECH_STS = Family(
     name="Feetech STS",
-    protocol="feetech",
-    dialect=Feetech(STS["model_number"], STS["firmware_version"], always_sync=True),
+    protocol_name="feetech",
+    protocol=Feetech(STS["model_number"], STS["firmware_version"], always_sync=True),
     registers=STS,
     table=feetech_registers,
     numbers=STS_NUMBERS,
+    models=STS_MODELS,
     bauds=BAUD_CODES,
     state=Block(56, 6, _STS_STATE),
     current=Block(56, 15, _STS_CURRENT),
     health=Block(56, 8, _STS_STATE),
     check=Block(40, 24, _STS_STATE),
-    wanted=_sts_wanted,
-    usual=_usual,
+    required=_sts_required,
+    factory_defaults=_factory_defaults,
     gain=_sts_gain,
     alert=_ALERT,
     errors=HARDWARE_ERRORS,
     shutdown="unloading_condition",
     torque_bytes=10,
     torque=("torque_enable", "torque_limit"),
-    mark=Mark("torque_limit", FULL, MARKED),
+    restart_mark=RestartMark("torque_limit", FULL, MARKED),
     weakening=OVERLOAD,
 )
 
 FEETECH_SCS = Family(
     name="Feetech SCS",
-    protocol="feetech",
-    dialect=Feetech(SCS["model_number"], SCS["firmware_version"], always_sync=False),
+    protocol_name="feetech",
+    protocol=Feetech(SCS["model_number"], SCS["firmware_version"], always_sync=False),
     registers=SCS,
     table=feetech_registers,
     numbers=SCS_NUMBERS,
+    models=SCS_MODELS,
     bauds=BAUD_CODES,
     state=Block(56, 6, _SCS_STATE),
     health=Block(56, 8, _SCS_STATE),
     check=Block(40, 24, _SCS_STATE),
-    wanted=_wanted,
-    usual=_usual,
+    required=_required,
+    factory_defaults=_factory_defaults,
     gain=_scs_gain,
     alert=_ALERT,
     errors=HARDWARE_ERRORS,

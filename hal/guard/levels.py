@@ -82,7 +82,7 @@ class HealthLevels:
 def defaults(servo: ServoModel, supply: float) -> dict[Kind, tuple[float, float]]:
     """Return the default warning and stop levels of each kind for a servo.
 
-    >>> from windup.hal.servos import servo_model
+    >>> from windup.hal.families import servo_model
     >>> defaults(servo_model("XM430-W350"), 12.0)[Kind.TEMPERATURE]
     (65.0, 72.0)
     """

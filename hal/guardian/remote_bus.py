@@ -6,14 +6,13 @@ import numpy as np
 
 from windup.hal.bus.bus import Bus
 from windup.hal.errors import HardwareError
-from windup.hal.families import family_of
+from windup.hal.families import family_of, servo_model
 from windup.hal.guardian.order import Charge
 from windup.hal.in_words import in_words
 from windup.hal.joints import Array, Mask
 from windup.hal.port.open_port import open_port
 from windup.hal.servo_bus.bus_readout import BusReadout
 from windup.hal.servo_bus.servo_torque import ServoTorque
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
 
 UNLIMITED = (np.inf, -np.inf)

@@ -58,8 +58,7 @@ class BusConnection:
         self.heard, self.calm = -np.inf, False
         self.barred = self._unsure = self._dropped = False
         self._look_again = 0.0
-        # Goals to such servos may switch torque on.
-        self._goal_wakes = self.line.bus.family.goal_wakes
+        self._goal_enables_torque = self.line.bus.family.goal_enables_torque
 
     @property
     def bus(self) -> Bus:
@@ -110,7 +109,8 @@ class BusConnection:
 
         Returns the name of the clamp that withheld some, or None.
         """
-        if self.barred or self.lost is not None or (self._goal_wakes and not self.torque.powered):
+        unarmed = self._goal_enables_torque and not self.torque.powered
+        if self.barred or self.lost is not None or unarmed:
             return "unarmed"
         withheld = self.check.withheld
         if withheld is None:

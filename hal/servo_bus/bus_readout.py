@@ -70,7 +70,7 @@ class BusReadout:
         family = bus.family
         self.goals = self.goals_of(self.ids)
         self.gains = [
-            (gain, at, family.dialect.write([self.ids[row] for row in at], gain.register))
+            (gain, at, family.protocol.write([self.ids[row] for row in at], gain.register))
             for gain, at in gain_groups(mounts)
         ]
         self.reads = LineReads(bus, self.ids, [mount.model for mount in mounts], board)
@@ -85,7 +85,7 @@ class BusReadout:
     def goals_of(self, ids: Sequence[int]) -> CyclicWrite:
         """Return a sync write of goal positions, counts, to some of the servos."""
         family = self.bus.family
-        return family.dialect.write(ids, family.registers["goal_position"])
+        return family.protocol.write(ids, family.registers["goal_position"])
 
     def request(self) -> None:
         """Request the state of all servos of the bus, and of the board."""

@@ -50,7 +50,8 @@ class Longer(NamedTuple):
 
         torque: tuple[tuple[Column, int], ...] = ()
         if begin <= family.torque_span(0).address:
-            marks = {family.mark.name: family.mark.restarted} if family.mark is not None else {}
+            mark = family.restart_mark
+            marks = {} if mark is None else {mark.name: mark.restarted}
             torque = tuple((column(name), marks.get(name, -1)) for name in family.torque)
         return cls(rows, column("present_voltage"), column("present_temperature"), torque)
 
@@ -155,7 +156,7 @@ class LineReads:
 
     def _read(self, spans: list[Span], fast: bool = False) -> CyclicRead:
         board = [self._board.span] if self._board is not None else []
-        return self._bus.family.dialect.read([*spans, *board], fast)
+        return self._bus.family.protocol.read([*spans, *board], fast)
 
 
 def _state_of(spans: Sequence[Span], state: Block) -> npt.NDArray[Any]:

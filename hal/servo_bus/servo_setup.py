@@ -54,7 +54,7 @@ def lines_of(
         here = [mounts[row] for row in rows]
         family = family_of(here[0].model.name)
         bounds = units.last[rows], units.speed[rows], units.speed_unit[rows]
-        check = Plausibility(*bounds, weak=family.dialect.weak, first=units.first[rows])
+        check = Plausibility(*bounds, weak=family.protocol.weak, first=units.first[rows])
         ours = board if board is not None and board.bus == name else None
         names = [joints.names[row] for row in rows]
         return lambda port: BusReadout(Bus(port, family), here, rows, ours, check, names)

@@ -71,14 +71,14 @@ class ServoTorque:
     def _prepare(self, gains: Array) -> None:
         """Write watchdog, restart mark, gains and goals, before torque enable."""
         here = self._here()
-        mark = self.line.bus.family.mark
+        mark = self.line.bus.family.restart_mark
         if self._watch is not None:
             self._values.set(self._watch, np.zeros_like(here))
         if mark is not None and mark.armed is not None:
             self._values.set(self._registers[mark.name], np.full_like(here, mark.armed))
         for gain, rows, _ in self.line.gains:
             self._values.set(gain.register, gain.counts(gains[rows]), rows)
-        if not self.line.bus.family.goal_wakes:
+        if not self.line.bus.family.goal_enables_torque:
             self._values.set(self._registers["goal_position"], here)
         if self._watch is not None and self.watchdog > 0.0:
             self._values.set(self._watch, np.full_like(here, self._ticks(self._watch)))
@@ -174,7 +174,7 @@ class ServoTorque:
         register = self._registers["present_position"]
         first, last = self._first[rows], self._last[rows]
         here = self._values.read(register, rows)
-        if not self.line.bus.family.dialect.weak:
+        if not self.line.bus.family.protocol.weak:
             return np.clip(here, first, last)
         for _ in range(ATTEMPTS):
             before, here = here, self._values.read(register, rows)

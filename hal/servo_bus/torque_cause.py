@@ -70,7 +70,7 @@ def examine(line: BusReadout, suspects: Sequence[Suspect], watched: bool) -> dic
     bus, family = line.bus, line.bus.family
     back = _read_back(bus, [suspect.id for suspect in suspects])
     slack = [id for id, seen in back.items() if _is_slack(family, seen)]
-    if slack and family.dialect.weak:  # one corrupt frame in 256 passes the checksum
+    if slack and family.protocol.weak:  # one corrupt frame in 256 passes the checksum
         again = _read_back(bus, slack)
         back = {id: seen for id, seen in back.items() if id not in slack} | again
     unclear = [suspect for suspect in suspects if _is_unclear(family, back.get(suspect.id))]
@@ -113,7 +113,7 @@ def _read_back(bus: Bus, ids: Sequence[int]) -> dict[int, Readback]:
 
 def _is_slack(family: Family, seen: Readback) -> bool:
     """Return whether a servo has no torque, or has restarted and may move to an old goal."""
-    mark = family.mark
+    mark = family.restart_mark
     again = mark is not None and seen.values.get(mark.name) == mark.restarted
     return again or not seen.drives
 
@@ -129,7 +129,7 @@ def _evidence(
     """Map id to the evidence from its registers, for the servos that could be read."""
     if not suspects:
         return {}
-    family, mark = bus.family, bus.family.mark
+    family, mark = bus.family, bus.family.restart_mark
     ids = [suspect.id for suspect in suspects]
     errors = {id: back[id].bits for id in ids}
     if not family.errors_in_answers:

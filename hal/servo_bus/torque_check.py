@@ -1,7 +1,7 @@
 """Detects servos of a bus that have lost their torque, and withholds their goals.
 
-A goal switches the torque of most servos on (`Family.goal_wakes`): after a brown-out, a restart or
-a shutdown the next goal would drive the joint from wherever it hangs.
+A goal switches the torque of most servos on (`Family.goal_enables_torque`): after a brown-out, a
+restart or a shutdown the next goal would drive the joint from wherever it hangs.
 """
 
 import numpy as np
@@ -115,7 +115,7 @@ class TorqueCheck:
     def _settle(self) -> None:
         self.suspects &= ~self._lost
         self._silent &= self.suspects
-        wakes = self.line.bus.family.goal_wakes
-        withheld = self.suspects | self._lost if wakes else self._lost.copy()
+        enables = self.line.bus.family.goal_enables_torque
+        withheld = self.suspects | self._lost if enables else self._lost.copy()
         self.withheld = withheld if withheld.any() else None
         self.calm = not (self.suspects.any() or self._lost.any() or self._missed.any())

@@ -122,7 +122,7 @@ def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting],
     try:
         number = bus.ping(mount.id)
     except NoAnswerError:
-        other = bus.family.dialect.estranged(bus.port, mount.id)
+        other = bus.family.protocol.other_protocol(bus.port, mount.id)
         if other is None or other not in bus.family.numbers:
             raise
         raise HardwareError(f"{bus.family.model_name(other)} {PROTOCOL_1}") from None

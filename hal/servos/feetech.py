@@ -31,7 +31,7 @@ LIMITS_7V4, LIMITS_12V = OwnLimits(70.0, 4.0, 8.0), OwnLimits(70.0, 4.0, 14.0)
 """Registers 13 to 15 of Feetech's memory tables; the maximum voltage depends on the winding."""
 
 # name, model number, rows, duty per rad and P, default P, armature kg m2, friction N m
-FEETECH = (
+STS_MODELS = (
     ServoModel(
         "STS3215-7.4V", 777, STS3215_7V4, GAIN, 32, 0.0284, 0.0524,
         pwm_limit=0.97, goal_speed=GOAL_SPEED, limits=LIMITS_7V4,
@@ -41,11 +41,13 @@ FEETECH = (
         goal_speed=GOAL_SPEED, limits=LIMITS_12V,
     ),
     ServoModel(
-        "SCS0009", 1284, SCS0009_6V, GAIN, 15, 0.0034, 0.0062, SCS_COUNTS_PER_REV, 0.97, 1024,
-        limits=LIMITS_7V4,
-    ),
-    ServoModel(
         "STS3250", 2825, STS3250_12V, GAIN, 32, 0.0284, 0.0524,
         pwm_limit=0.97, goal_speed=GOAL_SPEED, limits=LIMITS_12V,
+    ),
+)  # fmt: skip
+SCS_MODELS = (
+    ServoModel(
+        "SCS0009", 1284, SCS0009_6V, GAIN, 15, 0.0034, 0.0062, SCS_COUNTS_PER_REV, 0.97, 1024,
+        limits=LIMITS_7V4,
     ),
 )  # fmt: skip

@@ -118,7 +118,7 @@ class ServoModel:
 
         Values are interpolated between the rows, and proportional to voltage outside them.
 
-        >>> from windup.hal.servos import servo_model
+        >>> from windup.hal.families import servo_model
         >>> round(servo_model("XM430-W350").motor(12.0).R, 3)
         7.291
         """

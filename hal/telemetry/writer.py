@@ -137,6 +137,7 @@ class TelemetryWriter:
         NUMBER.pack_into(self._map, AT_RUNS, run.run)
         REASON.pack_into(self._map, AT_REASON, b"")
         CODE.pack_into(self._map, AT_PHASE, RUNS)
+        self.mark(f"run {run.run} begins: {run.controller or 'no controller'}")
 
     def record(
         self,
@@ -224,6 +225,7 @@ class TelemetryWriter:
         text = reason.encode()[:127].decode(errors="ignore").encode()
         REASON.pack_into(self._map, AT_REASON, text)
         CODE.pack_into(self._map, AT_PHASE, OVER)
+        self.mark(f"run {self._run} ends: {reason}")
         self.change_state(state)
 
     def change_state(self, state: RunState) -> None:

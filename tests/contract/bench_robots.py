@@ -7,10 +7,10 @@ from typing import Final
 
 import numpy as np
 
+from windup.hal.families import servo_model
 from windup.hal.joints import Joint, Joints
 from windup.hal.servo_bus.coupling import Coupling, Couplings
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
 from windup.sim_twin.wire import put_world
 from windup.sim_twin.wire.bus.bus import Bus
@@ -18,7 +18,8 @@ from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
 from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
-from windup.sim_twin.wire.world.families import PROTOCOLS, make_language, make_servo
+from windup.sim_twin.wire.world.families import make_protocol, make_servo
+from windup.sim_twin.wire.world.own_emulations import PROTOCOLS
 
 BAUD = 1_000_000
 REACH = 1.0  # rad, of every joint, both ways
@@ -108,9 +109,9 @@ def _world(places: Sequence[Place], supply: float) -> BusWorld:
         shafts.append(InertiaShaft(sheet.motor(supply), sheet.armature, sheet.friction_loss))
         servo = make_servo(place.model, shafts[-1], place.id, BAUD, supply, 0)
         hung.setdefault(place.bus, []).append(servo)
-    languages = {place.bus: PROTOCOLS[place.model] for place in places}
+    protocols = {place.bus: PROTOCOLS[place.model] for place in places}
     buses = {
-        name: Bus(name, devices, make_language(languages[name]), schedule, BAUD)
+        name: Bus(name, devices, make_protocol(protocols[name]), schedule, BAUD)
         for name, devices in hung.items()
     }
     return BusWorld(Bench(shafts), schedule, buses, supply)

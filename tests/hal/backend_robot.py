@@ -3,10 +3,10 @@
 from math import pi
 
 from tests.hal.fake_bus import FakeSerial, fake_port
+from windup.hal.families import servo_model
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.joints import Joint, Joints
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
 
 XM430 = servo_model("XM430-W350")

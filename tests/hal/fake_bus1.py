@@ -1,10 +1,9 @@
 """Scripted servos of protocol 1 on the fake wire: STS, SCS, AX, MX; plain bytes, few rules."""
 
 from tests.hal.fake_bus import FakeSerial, VirtualClock
-from windup.hal.families import family_of
+from windup.hal.families import family_of, servo_model
 from windup.hal.port.port import Port
 from windup.hal.protocols import protocol1
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoModel
 
 STS = servo_model("STS3215-7.4V")

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from windup.hal.command import JointCommand
+from windup.hal.families import servo_model
 from windup.hal.guard import HealthLevels, HealthWatch
 from windup.hal.joints import Joint, Joints
 from windup.hal.observation import JointState, Observation
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
 
 NAMES = ("hip", "knee", "ankle")

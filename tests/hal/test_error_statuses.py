@@ -11,6 +11,7 @@ from windup.hal.errors import UnknownNameError, WindupError, suggest
         (errors.UnsafeCommandError, 1),
         (errors.DivergedError, 1),
         (errors.ConfigError, 2),
+        (errors.PluginError, 2),
         (errors.UsageError, 2),
         (errors.StateMissingError, 2),
         (errors.UnknownNameError, 2),

@@ -7,9 +7,8 @@ from hypothesis import strategies as st
 from scservo_sdk import SCS_TOHOST, SCS_TOSCS
 
 from windup.hal.errors import UnknownNameError
-from windup.hal.families import FAMILIES, Family, family_of
+from windup.hal.families import FAMILIES, Family, family_of, servo_model, servo_names
 from windup.hal.registers import Register
-from windup.hal.servos import servo_model, servo_names
 from windup.hal.servos.feetech_registers import BAUD_CODES, SCS, STS, feetech_registers
 from windup.hal.servos.mx_registers import mx_registers
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from windup.hal.errors import UnknownNameError
-from windup.hal.servos import servo_model, servo_names
+from windup.hal.families import servo_model, servo_names
 from windup.hal.servos.servo_model import RPM
 
 VOLTS = (9.6, 11.1, 12.0, 13.0, 16.8)

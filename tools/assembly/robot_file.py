@@ -4,7 +4,8 @@ from typing import TypeVar
 
 from windup.hal.config import load_toml
 from windup.hal.errors import UsageError
-from windup.robots import RobotDescription, load_robot, robot_names
+from windup.robots import RobotDescription
+from windup.robots.folders import robot_folders
 
 T = TypeVar("T")
 
@@ -18,6 +19,6 @@ def load_beside(robot: RobotDescription, name: str, record: type[T]) -> T:
     """
     path = robot.folder / name
     if not path.is_file():
-        able = [other for other in robot_names() if (load_robot(other).folder / name).is_file()]
+        able = [other for other, folder in robot_folders().items() if (folder / name).is_file()]
         raise UsageError(f"{robot.name} has no {name}; robots that have: {', '.join(able)}")
     return load_toml(path, record)

@@ -21,6 +21,7 @@ from dynamixel_sdk import GroupSyncRead, GroupSyncWrite, PortHandler, Protocol2P
 
 from windup.hal.bus.transactions import BusTransactions
 from windup.hal.command import JointCommand
+from windup.hal.families import servo_model
 from windup.hal.joints import Joint, Joints
 from windup.hal.port.open_port import open_port
 from windup.hal.port.port import Port
@@ -29,7 +30,6 @@ from windup.hal.protocols.batched import BlockRead, BlockWrite
 from windup.hal.protocols.crc16 import crc16
 from windup.hal.protocols.protocol2 import Instruction, Span
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
 from windup.tools.benches import bus1 as bench_bus1
 from windup.tools.benches.bus1 import Vendor

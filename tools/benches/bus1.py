@@ -16,14 +16,13 @@ from scservo_sdk.protocol_packet_handler import protocol_packet_handler
 
 from windup.hal.bus.transactions import BusTransactions
 from windup.hal.command import JointCommand
-from windup.hal.families import DYNAMIXEL_1, FEETECH_STS, Family
+from windup.hal.families import DYNAMIXEL_1, FEETECH_STS, Family, servo_model
 from windup.hal.joints import Joint, Joints
 from windup.hal.port.open_port import open_port
 from windup.hal.port.port import Port
 from windup.hal.protocols import protocol1
 from windup.hal.protocols.protocol1 import Instruction
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
 
 Vendor = Literal["feetech", "dynamixel1"]
@@ -81,8 +80,8 @@ def pty_subjects(
 def wire_bytes(vendor: Vendor, servos: int = 20) -> int:
     """Return the number of bytes in one cycle: request, answers and goals."""
     family, ids = MAKERS[vendor].family, list(range(1, servos + 1))
-    read = family.dialect.read([family.state.span(id) for id in ids], fast=True)
-    goals = family.dialect.write(ids, family.registers["goal_position"])
+    read = family.protocol.read([family.state.span(id) for id in ids], fast=True)
+    goals = family.protocol.write(ids, family.registers["goal_position"])
     return len(read.request) + read.length + sum(map(len, goals.frames()))
 
 
@@ -103,8 +102,8 @@ def answer(request: bytes) -> bytes:
 def codec_cycle(port: Port, ids: list[int], family: Family) -> Cycle:
     """Return our cycle without the backend: exchange, codec, integers in arrays."""
     exchange, block = BusTransactions(port), family.state
-    read = family.dialect.read([block.span(id) for id in ids], fast=True)
-    write = family.dialect.write(ids, family.registers["goal_position"])
+    read = family.protocol.read([block.span(id) for id in ids], fast=True)
+    write = family.protocol.write(ids, family.registers["goal_position"])
     goal = np.full(len(ids), 2048)
 
     def cycle() -> None:

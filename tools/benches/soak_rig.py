@@ -7,12 +7,12 @@ from typing import Final, Self
 import numpy as np
 
 import windup.sim_twin.wire as wire
+from windup.hal.families import servo_model
 from windup.hal.joints import Array, Joint, Joints, Mask
 from windup.hal.observation import Observation
 from windup.hal.port.open_port import open_port
 from windup.hal.port.port import LATENCY, Port
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
 from windup.sim_twin.wire.faults.faults import Faults
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft

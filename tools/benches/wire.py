@@ -103,8 +103,8 @@ def _frames(ids: list[int], vendor: Vendor | None) -> tuple[CyclicRead, CyclicWr
     if vendor is None:
         return BlockRead([Span(id, STATE, SIZE) for id in ids]), BlockWrite(ids, GOAL, 4)
     family = MAKERS[vendor].family
-    read = family.dialect.read([family.state.span(id) for id in ids], fast=True)
-    return read, family.dialect.write(ids, family.registers["goal_position"])
+    read = family.protocol.read([family.state.span(id) for id in ids], fast=True)
+    return read, family.protocol.write(ids, family.registers["goal_position"])
 
 
 def one_missing(cycles: int = 300, baud: int = 1_000_000) -> tuple[bool, float]:

@@ -2,10 +2,9 @@
 
 from typing import NamedTuple
 
-from windup.hal.families import Family
+from windup.hal.families import Family, families
 from windup.hal.port.port import BITS, Port
-from windup.hal.protocols import protocol1, protocol2
-from windup.hal.protocols.protocol2 import Status
+from windup.hal.protocols import protocol2
 
 TIME = 5e-3
 """Longest time for a servo to answer, including its return delay, s."""
@@ -13,8 +12,8 @@ LISTEN = 0.05
 """Time for which the bus is listened to before the first ping, s."""
 ROOM = 64
 """Largest number of bytes read for an answer, with a margin."""
-PING_PARAMS = 3
-"""Parameters in an answer to a protocol 2 ping: model number and firmware version."""
+LONGEST = protocol2.OVERHEAD + 3
+"""Length of the longest answer to a ping, of protocol 2: model number and firmware version."""
 
 
 class Strange(NamedTuple):
@@ -40,40 +39,31 @@ def strange_answers(port: Port, family: Family) -> list[Strange]:
     if unasked := port.read(ROOM, port.clock.now() + LISTEN):
         return [Strange(None, unasked)]
     found = []
-    for id in range(family.dialect.last_id + 1):
-        request = _request(family, id)
+    for id in range(family.protocol.last_id + 1):
+        request = family.protocol.ping(id)
         data = _exchange(port, request)
         if data.startswith(request):
             return [Strange(None, data)]
         if data and not _is_answer(family, id, data):
-            whole = any(frame.id == id for frame in _frames(family, data))
+            whole = any(frame.id == id for frame in family.protocol.salvage(data))
             found.append(Strange(id, data, whole))
     return found
 
 
 def is_echo(data: bytes) -> bool:
     """Return whether `data` is the echo of the first ping of `strange_answers`."""
-    return data.startswith((protocol1.ping(0), protocol2.ping(0)))
-
-
-def _request(family: Family, id: int) -> bytes:
-    return protocol1.ping(id) if family.dialect.weak else protocol2.ping(id)
+    return data.startswith(tuple(family.protocol.ping(0) for family in families()))
 
 
 def _exchange(port: Port, request: bytes) -> bytes:
     """Ping one id and return all bytes received."""
     port.flush_input()
     port.write(request)
-    wire = (len(request) + protocol2.OVERHEAD + PING_PARAMS) * BITS / port.baud
+    wire = (len(request) + LONGEST) * BITS / port.baud
     return port.read(ROOM, port.clock.now() + wire + 2.0 * port.latency + TIME)
 
 
 def _is_answer(family: Family, id: int, data: bytes) -> bool:
-    wanted = 0 if family.dialect.weak else PING_PARAMS
-    frames = _frames(family, data)
-    return any(frame.id == id and len(frame.params) == wanted for frame in frames)
-
-
-def _frames(family: Family, data: bytes) -> list[Status]:
-    salvage = protocol1.salvage if family.dialect.weak else protocol2.salvage
-    return list(salvage(data))
+    frames = family.protocol.salvage(data)
+    return any(frame.id == id and len(frame.params) == family.protocol.ping_params
+               for frame in frames)  # fmt: skip

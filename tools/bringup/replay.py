@@ -9,11 +9,9 @@ from windup.hal.guard import HealthLevels, HealthWatch
 from windup.hal.guard.finding import Finding
 from windup.hal.guard.imu_watch import ImuWatch
 from windup.hal.joints import Joints
-from windup.hal.observation import ImuState, JointState, Observation
 from windup.hal.telemetry.header import Header
+from windup.hal.telemetry.observed import observation_of
 from windup.hal.telemetry.reader import Ticks
-
-JOINTS = ("position", "velocity", "torque", "voltage", "temperature", "age", "health_age")
 
 
 def findings(
@@ -24,7 +22,7 @@ def findings(
     stops: dict[str, Finding] = {}
     watched = bool(np.isfinite(levels.torque).any())
     for tick in ticks:
-        observation = observed(tick)
+        observation = observation_of(tick)
         if watched:
             found = health.update(observation, JointCommand(tick["applied"]))
             if found is not None:
@@ -33,17 +31,3 @@ def findings(
             imu.update(observation)
     for warning in (*health.warnings, *imu.warnings):
         yield stops.get(warning.saying.name, warning)
-
-
-def observed(tick: np.void) -> Observation:
-    """Return the observation of a tick, without the base state."""
-    joints = JointState(*(tick[name] for name in JOINTS))
-    imu = None
-    if np.isfinite(tick["imu_age"]):
-        imu = ImuState(
-            None,
-            tick["imu_angular_velocity"],
-            tick["imu_acceleration"],
-            float(tick["imu_age"]),
-        )
-    return Observation(float(tick["time"]), joints, imu, tick["contacts"], None)

@@ -8,7 +8,7 @@ import tyro
 from rich.progress import BarColumn, Progress, TextColumn
 
 from windup.hal.errors import UsageError
-from windup.hal.families import FAMILIES
+from windup.hal.families import families
 from windup.hal.port.open_port import open_port
 from windup.hal.ranges import Range
 from windup.robots import load_robot
@@ -42,7 +42,7 @@ class Scan(Command):
         super().check()
         if self._url.startswith(f"{SCHEME}://"):
             parse_address(self._url)
-        known = sorted({baud for family in FAMILIES for baud in family.bauds})
+        known = sorted({baud for family in families() for baud in family.bauds})
         if self.baud is not None and self.baud not in known:
             raise UsageError(f"--baud {self.baud}: give one of {', '.join(map(str, known))}")
 

@@ -6,16 +6,13 @@ from typing import Any, Final
 
 from windup.hal.bus.bus import FIRST, Bus, Found
 from windup.hal.errors import CorruptAnswerError, HardwareError
-from windup.hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FAMILIES, Family
+from windup.hal.families import DYNAMIXEL_1, DYNAMIXEL_X, Family, families
 from windup.hal.imu.opencr import MODEL_NUMBER as OPENCR
 from windup.hal.imu.opencr import VOLTAGE
 from windup.hal.port.port import Port
 from windup.hal.registers import Register
 from windup.tools.bringup.raw_answers import Strange, is_echo, strange_answers
 
-ANSWER_BYTES: Final = {True: 27, False: 14}
-"""Bytes that a scan reads from one servo. True: protocol 1, in which it is pinged, read, pinged and
-read. False: protocol 2, in which one ping suffices."""
 SLOW: Final = 57_600
 """Assumed baud rate behind a bridge that hides its own: answers may take as long as at this one."""
 REGISTERS: Final = ("present_voltage", "present_temperature", "hardware_error")
@@ -70,7 +67,7 @@ class Survey:
                 begin(f"{family.name}, {rate} baud" if self.port.has_baud else family.name)
                 for servo in self._ask(family, rate):
                     shown = rate if self.port.has_baud else None
-                    if servo.model_number in (*family.numbers, OPENCR) or not family.dialect.weak:
+                    if servo.model_number in (*family.numbers, OPENCR) or not family.protocol.weak:
                         self._add(Bus(self.port, family), servo, shown)
                     else:
                         others.setdefault((shown, servo.id), {})[family.name] = servo.model_number
@@ -78,7 +75,7 @@ class Survey:
                     break  # with an echo no answer can be interpreted
         finally:
             self.port.baud = before
-        # Three families use protocol 1: a servo that answers one of them answers all.
+        # Several families use protocol 1: a servo that answers one of them answers all.
         known = {(row["baud"], row["id"]) for row in self.servos}
         for (shown, id), numbers in others.items():
             model = DYNAMIXEL_X.numbers.get(numbers.get(DYNAMIXEL_1.name, 0))
@@ -93,7 +90,7 @@ class Survey:
         bus.get_to_know_adapter(FIRST)
         before = self.port.received
         found = bus.scan([rate])
-        more = self.port.received - before - ANSWER_BYTES[family.dialect.weak] * len(found)
+        more = self.port.received - before - family.protocol.scan_bytes * len(found)
         if more > 0:
             self.port.baud = rate
             self.strange += [(rate, family, one) for one in strange_answers(self.port, family)]
@@ -114,7 +111,7 @@ def places(port: Port, baud: int | None = None) -> Iterator[tuple[Family, int]]:
     Behind a bridge with a fixed baud rate that is one per family. Protocol 1 is also scanned for at
     the baud rates of the X series, which may be set to it.
     """
-    for family in FAMILIES:
+    for family in families():
         if not port.has_baud:
             yield family, SLOW
             continue

@@ -1,5 +1,6 @@
-"""`windup robots`: the robots that come with Windup, and their gaits."""
+"""`windup robots`: the robots of Windup and of other distributions, and their gaits."""
 
+import logging
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -7,7 +8,8 @@ from typing import Annotated, Any
 import tyro
 from rich.table import Table
 
-from windup.robots.folders import FOLDER, robot_names
+from windup.hal.errors import ConfigError
+from windup.robots.folders import FOLDER, robot_folders
 from windup.robots.summary import summarise
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
@@ -24,15 +26,28 @@ class Robots(Command):
 
     def run(self) -> int:
         """List the robots; return the exit status."""
-        folders = [FOLDER / name for name in robot_names()]
-        if self.robot is not None:
+        if self.robot is None:
+            rows = _rows()
+        else:
             from windup.robots import load_robot  # imports MuJoCo, which the list does not need
 
-            folders = [load_robot(self.robot).folder]
-        rows = [summarise(folder)._asdict() for folder in folders]
+            rows = [summarise(load_robot(self.robot).folder)._asdict()]
         console.print(_table(rows))
         write_json(self.json, "robots", {"robots": rows})
         return 0
+
+
+def _rows() -> list[dict[str, Any]]:
+    """Return the row of each robot; one of another distribution that is broken is reported."""
+    rows = []
+    for name, folder in robot_folders().items():
+        try:
+            rows.append(summarise(folder)._asdict())
+        except ConfigError as error:
+            if folder == FOLDER / name:
+                raise
+            logging.getLogger(__name__).warning("%s", error)
+    return rows
 
 
 def _table(rows: list[dict[str, Any]]) -> Table:

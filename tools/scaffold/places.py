@@ -20,12 +20,12 @@ def robot_place(name: str) -> Path:
     """Return the folder of a new robot.
 
     Raises:
-        UsageError: The name is invalid, or that of a robot of the package.
+        UsageError: The name is invalid, or that of another robot.
     """
     folder = Path(name)
     _check_word("robot", folder.name)
     if folder.name in robot_names():
-        raise UsageError(f"{folder.name} is a robot of Windup: give yours another name")
+        raise UsageError(f"there is a robot {folder.name} already: give yours another name")
     return folder
 
 

@@ -56,7 +56,7 @@ class Mute:
         """Return `frame` with its checksum."""
         return frame[:-1] + bytes((sum(frame[2:-1]) & 0xFF,))
 
-    def meet(self, devices: Sequence[Device]) -> None:
+    def set_devices(self, devices: Sequence[Device]) -> None:
         """Do nothing: there are no addressable devices."""
 
     def feed(self, chunk: bytes) -> list[Heard]:

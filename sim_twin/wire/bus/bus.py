@@ -25,7 +25,7 @@ BAUD_TOLERANCE = 0.03
 PIECE = 4096  # largest number of host bytes that are parsed at once
 
 
-class Language(Protocol):
+class WireProtocol(Protocol):
     """A protocol: how bytes become frames, and what devices do with a frame.
 
     Attributes:
@@ -44,7 +44,7 @@ class Language(Protocol):
         """Return `frame` with the correct checksum."""
         ...
 
-    def meet(self, devices: Sequence[Device], /) -> None:
+    def set_devices(self, devices: Sequence[Device], /) -> None:
         """Register the devices; called whenever registers below 64 may have changed."""
         ...
 
@@ -89,6 +89,7 @@ class Bus:
     Attributes:
         name: Name of the bus.
         devices: The devices on it. Call `refresh` after changing ids from outside.
+        protocol: The protocol of its devices.
         baud: Baud rate of the host.
         schedule: The schedule of the world.
         timing: Latencies.
@@ -109,12 +110,12 @@ class Bus:
         self,
         name: str,
         devices: list[Device],
-        language: Language,
+        protocol: WireProtocol,
         schedule: Schedule,
         baud: int = 1_000_000,
         timing: Timing | None = None,
     ) -> None:
-        self.name, self.devices, self.language, self.schedule = name, devices, language, schedule
+        self.name, self.devices, self.protocol, self.schedule = name, devices, protocol, schedule
         self.timing = timing or Timing()
         self.faults: Disturbance | None = None
         self.heard = self.began = 0.0
@@ -147,11 +148,11 @@ class Bus:
     def baud(self, baud: int) -> None:
         if baud != self._baud:
             self._baud = baud
-            self.language.reset()
+            self.protocol.reset()
 
     def refresh(self) -> None:
         """Update the tables of ids and protocols from the devices."""
-        self.language.meet(self.devices)
+        self.protocol.set_devices(self.devices)
         self._by_id.clear()
         for device in self.devices:
             self._by_id.setdefault(device.identifier, []).append(device)
@@ -164,7 +165,7 @@ class Bus:
         """Send bytes from the host, now or after those that are still in transit."""
         start = max(self.schedule.now, self._sent)
         if start - self._sent > FORGET:
-            self.language.reset()
+            self.protocol.reset()
         burst = Burst(start, BITS / self._baud, bytearray(data))
         self._sent, self.began = burst.end, start
         self.counts["collisions"] += self._air.add(burst, self.schedule.now, self._noise)
@@ -174,9 +175,9 @@ class Bus:
         if wrong is not None and wrong.asked(self) and self.plugged:
             self.inbox.append(Burst(burst.start, burst.byte, bytearray(burst.data)))
         for at in range(0, len(burst.data), PIECE):
-            for item in self.language.feed(bytes(burst.data[at : at + PIECE])):
+            for item in self.protocol.feed(bytes(burst.data[at : at + PIECE])):
                 if item.noise:
-                    self.language.execute(item, self)
+                    self.protocol.execute(item, self)
                     self.counts["dropped"] += 1
                     continue
                 end = start + (at + item.end) * burst.byte
@@ -214,7 +215,7 @@ class Bus:
             self.plugged = there
             self.plugs += 1
             self.inbox.clear()
-            self.language.reset()
+            self.protocol.reset()
 
     def unplug(self, seconds: float) -> None:
         """Pull the adapter out, and plug it in after some seconds (infinity: never)."""
@@ -286,7 +287,7 @@ class Bus:
 
     def _hear(self, item: Heard, burst: Burst, end: float) -> None:
         """Execute a frame of the host, unless a collision has corrupted it since."""
-        if end > burst.ruined or not self.language.execute(item, self):
+        if end > burst.ruined or not self.protocol.execute(item, self):
             self.counts["dropped"] += 1
             return
         self.counts["frames"] += 1

@@ -9,7 +9,7 @@ MOST = 3  # largest number of bytes that are added or removed
 
 
 class Layout(Protocol):
-    """Positions of the parts of a frame; see `windup.sim_twin.wire.bus.bus.Language`."""
+    """Positions of the parts of a frame; see `windup.sim_twin.wire.bus.bus.WireProtocol`."""
 
     id_at: int
     length_at: int

@@ -43,7 +43,7 @@ class Fate:
         elif kind == "stale":
             self.got = self.before
         else:
-            self.got = spoil(kind, self.got, bus.language, dice)
+            self.got = spoil(kind, self.got, bus.protocol, dice)
 
 
 class Sender:

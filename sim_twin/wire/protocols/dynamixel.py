@@ -27,7 +27,7 @@ class Dynamixel:
         self._mixed = False
         self._speak(self._new)
 
-    def meet(self, devices: Sequence[Device]) -> None:
+    def set_devices(self, devices: Sequence[Device]) -> None:
         """Check which protocols the devices use now."""
         self._mixed = any(device.protocol == OLD for device in devices)
 

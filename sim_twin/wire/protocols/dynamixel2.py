@@ -62,7 +62,7 @@ class Dynamixel2:
             BULK_WRITE: _bulk_write,
         }
 
-    def meet(self, devices: Sequence[Device]) -> None:
+    def set_devices(self, devices: Sequence[Device]) -> None:
         """Do nothing: all devices use protocol 2."""
 
     def feed(self, chunk: bytes) -> list[Heard]:

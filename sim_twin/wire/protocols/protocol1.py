@@ -1,4 +1,4 @@
-"""The instructions of protocol 1, in the dialects of Dynamixel AX and MX and of Feetech."""
+"""The instructions of protocol 1, in the variants of Dynamixel AX and MX and of Feetech."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -56,7 +56,7 @@ class Protocol1:
     """Protocol 1 on a bus with several devices.
 
     Attributes:
-        dialect: The maker's variant.
+        variant: The maker's variant.
         errors: Number of dropped items for each reason.
     """
 
@@ -64,17 +64,17 @@ class Protocol1:
     data_at, tail = 5, 1
     seal = staticmethod(seal)
 
-    def __init__(self, dialect: Variant) -> None:
-        self.dialect = dialect
+    def __init__(self, variant: Variant) -> None:
+        self.variant = variant
         self.errors: dict[str, int] = {}
-        self._parser = Parser1(dialect.longest)
+        self._parser = Parser1(variant.longest)
         self._many: dict[int, Callable[[bytes, Bus], None]] = {
             SYNC_READ: lambda parameters, bus: _take(_sync(parameters), bus),
             BULK_READ: lambda parameters, bus: _take(_bulk(parameters), bus),
             SYNC_WRITE: _sync_write,
         }
 
-    def meet(self, devices: Sequence[Device]) -> None:
+    def set_devices(self, devices: Sequence[Device]) -> None:
         """Do nothing: all devices use protocol 1."""
 
     def feed(self, chunk: bytes) -> list[Heard]:
@@ -90,7 +90,7 @@ class Protocol1:
         if not isinstance(frame, Frame1):
             self._drop(frame, bus)
             return False
-        if frame.instruction in self.dialect.many:
+        if frame.instruction in self.variant.many:
             if frame.identifier == BROADCAST:
                 self._many[frame.instruction](frame.parameters, bus)
         elif frame.identifier != BROADCAST:
@@ -107,7 +107,7 @@ class Protocol1:
         """Count the reason; a Dynamixel whose id is in the frame answers a checksum error."""
         reason = getattr(item, "reason", "unknown")
         self.errors[reason] = self.errors.get(reason, 0) + 1
-        if self.dialect.complains and isinstance(item, Frame1Error) and reason == "checksum":
+        if self.variant.complains and isinstance(item, Frame1Error) and reason == "checksum":
             for device in bus.listeners(item.identifier):
                 if device.return_level >= WRITES:
                     _later(device, bus, encode(item.identifier, CHECKSUM_ERROR))
@@ -149,11 +149,11 @@ class Protocol1:
             return device.read(0, 1, now)[0], b""
         if instruction == RESET:
             return self._reset(device, bus), b""
-        if instruction == REBOOT and self.dialect is FEETECH:
+        if instruction == REBOOT and self.variant is FEETECH:
             device.reboot(now)
             bus.refresh()
             return 0, b""
-        if not self.dialect.complains:
+        if not self.variant.complains:
             return None
         return device.read(0, 1, now)[0] | INSTRUCTION_ERROR, b""
 
@@ -164,7 +164,7 @@ class Protocol1:
 
     def _ping_all(self, bus: Bus) -> None:
         """Let all devices answer a broadcast ping: each in the slot of its id, or all at once."""
-        slot = PING_SLOT + STATUS_BYTES * BITS / bus.baud if self.dialect.slots else 0.0
+        slot = PING_SLOT + STATUS_BYTES * BITS / bus.baud if self.variant.slots else 0.0
         now = bus.schedule.now
         for device in bus.everybody():
             status = encode(device.identifier, device.read(0, 1, now)[0])

@@ -44,7 +44,7 @@ class Tape:
         """Return `frame` unchanged."""
         return frame
 
-    def meet(self, devices: Sequence[Device]) -> None:
+    def set_devices(self, devices: Sequence[Device]) -> None:
         """Do nothing: there are no devices."""
 
     def feed(self, chunk: bytes) -> list[Heard]:
@@ -103,5 +103,5 @@ def check_played(world: BusWorld) -> None:
         TraceError: The host stopped before a trace ends.
     """
     for bus in world.buses.values():
-        if isinstance(bus.language, Tape):
-            bus.language.finish()
+        if isinstance(bus.protocol, Tape):
+            bus.protocol.finish()

@@ -1,12 +1,12 @@
 """Builds a world of servos on a bench, each with its own inertia; does not need MuJoCo."""
 
-from windup.hal.servos import servo_model
+from windup.hal.families import family_of, servo_model
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.imu.imu import RestingImu
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
 from windup.sim_twin.wire.world.address import BENCH, Address, parse_servos
 from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
-from windup.sim_twin.wire.world.families import PROTOCOLS, full_name, make_language, make_servo
+from windup.sim_twin.wire.world.families import full_name, make_protocol, make_servo
 from windup.sim_twin.wire.world.grips import bench_grips
 from windup.sim_twin.wire.world.workshop import NOMINAL, Workshop
 
@@ -23,7 +23,7 @@ def bench_world(address: Address) -> BusWorld:
     """
     baud, shop = address.baud or BAUD, Workshop(address)
     servos = [(full_name(name), identifier) for name, identifier in parse_servos(address.servos)]
-    protocol = PROTOCOLS[servos[0][0]]
+    protocol = family_of(servos[0][0]).protocol_name
     shafts: list[InertiaShaft] = []
     devices: list[Device] = []
     for name, identifier in servos:
@@ -33,7 +33,7 @@ def bench_world(address: Address) -> BusWorld:
         devices.append(
             make_servo(name, shafts[-1], identifier, baud, supply, address.return_delay, protocol)
         )
-    shop.bus(BENCH, devices, make_language(protocol), baud)
+    shop.bus(BENCH, devices, make_protocol(protocol), baud)
     if address.imu == "rvc":
         shop.imu(RestingImu())
     world = shop.world(Bench(shafts), address.supply or NOMINAL)

@@ -1,24 +1,16 @@
-"""The protocols of the servo models, and the construction of servos and protocols."""
+"""Finds the emulation of a servo model or a protocol: Windup's own, or of another distribution."""
 
-from typing import Final
+from collections.abc import Iterable
+from pkgutil import resolve_name
 
-from windup.hal.errors import UnknownNameError, UsageError
-from windup.hal.servos import servo_model
-from windup.sim_twin.wire.bus.bus import Language
+from windup.hal.errors import PluginError, UnknownNameError, UsageError
+from windup.hal.families import FAMILIES, Family, families, family_of, servo_model
+from windup.hal.families.catalogue import ADDED_FAMILIES
+from windup.sim_twin.wire.bus.bus import WireProtocol
 from windup.sim_twin.wire.device import Device
-from windup.sim_twin.wire.protocols.dynamixel import Dynamixel
-from windup.sim_twin.wire.protocols.protocol1 import DYNAMIXEL1, FEETECH, Protocol1
-from windup.sim_twin.wire.servos import dynamixel1_tables, feetech_tables, x_series
-from windup.sim_twin.wire.servos.dynamixel1_servo import Dynamixel1Servo
-from windup.sim_twin.wire.servos.feetech_servo import FeetechServo
-from windup.sim_twin.wire.servos.servo import Servo
 from windup.sim_twin.wire.shafts.shaft import Shaft
-
-PROTOCOLS: Final = {
-    **dict.fromkeys(x_series.MODELS, "dynamixel2"),
-    **dict.fromkeys(dynamixel1_tables.MODELS, "dynamixel1"),
-    **dict.fromkeys(feetech_tables.MODELS, "feetech"),
-}
+from windup.sim_twin.wire.world.emulation import Emulation
+from windup.sim_twin.wire.world.own_emulations import EMULATIONS, PROTOCOLS
 
 
 def full_name(name: str) -> str:
@@ -30,17 +22,27 @@ def full_name(name: str) -> str:
     Raises:
         UnknownNameError: There is no such model.
     """
-    for known in PROTOCOLS:
-        if known == name or known.split("-")[0] == name:
-            return known
-    raise UnknownNameError("servo model", name, PROTOCOLS)
+    if (own := _full_name(name, PROTOCOLS)) is not None:
+        return own
+    added = [model.name for family in ADDED_FAMILIES.all().values() for model in family.models]
+    if (known := _full_name(name, added)) is not None:
+        return known
+    raise UnknownNameError("servo model", name, (*PROTOCOLS, *added))
 
 
-def make_language(protocol: str) -> Language:
-    """Return a new protocol instance."""
-    if protocol == "dynamixel2":
-        return Dynamixel()
-    return Protocol1(FEETECH if protocol == "feetech" else DYNAMIXEL1)
+def make_protocol(name: str) -> WireProtocol:
+    """Return a new instance of a protocol.
+
+    Raises:
+        UnknownNameError: There is no such protocol.
+        PluginError: The family that has it cannot be emulated.
+    """
+    if name in EMULATIONS:
+        return EMULATIONS[name].protocol()
+    known = {family.protocol_name: family for family in families()}
+    if name not in known:
+        raise UnknownNameError("protocol", name, known)
+    return _emulation_of(known[name]).protocol()
 
 
 def make_servo(
@@ -65,21 +67,44 @@ def make_servo(
 
     Raises:
         UsageError: It does not support the protocol or the baud rate.
+        PluginError: Its family cannot be emulated.
     """
     name = full_name(name)
-    spoken = PROTOCOLS[name]
-    if protocol not in (None, spoken):
+    family = family_of(name)
+    if protocol not in (None, family.protocol_name):
+        spoken = family.protocol_name
         raise UsageError(f"servo {name} {identifier} speaks {spoken}, its bus {protocol}")
-    sheet = servo_model(name)
-    registers = {} if return_delay < 0 else {"return_delay_time": return_delay}
+    emulation = _emulation_of(family)
+    if baud not in (emulation.bauds or family.bauds):
+        raise UsageError(f"servo {name} {identifier} has no baud rate of {baud}")
+    return emulation.servo(servo_model(name), shaft, identifier, baud, supply, return_delay)
+
+
+def _full_name(name: str, known: Iterable[str]) -> str | None:
+    """Return the first of the names in `known` that is `name`, or begins with it and a dash."""
+    return next((full for full in known if name in (full, full.split("-")[0])), None)
+
+
+def _emulation_of(family: Family) -> Emulation:
+    """Return how a family is emulated.
+
+    Raises:
+        PluginError: It has no emulation, or that cannot be imported.
+    """
+    if family in FAMILIES:
+        return EMULATIONS[family.protocol_name]
+    where = f"{ADDED_FAMILIES.origin(family)}: family {family.name!r}"
+    if not family.emulation:
+        raise PluginError(f"{where} has no emulation: its servos are driven on a real port only")
     try:
-        if spoken == "dynamixel2":
-            table = x_series.MODELS[name]
-            return Servo(table, sheet, shaft, identifier, baud, supply, **registers)
-        if spoken == "feetech":
-            sts = feetech_tables.MODELS[name]
-            return FeetechServo(sts, sheet, shaft, identifier, baud, supply, **registers)
-        mx = dynamixel1_tables.MODELS[name]
-        return Dynamixel1Servo(mx, sheet, shaft, identifier, baud, supply, **registers)
-    except (KeyError, ValueError):
-        raise UsageError(f"servo {name} {identifier} has no baud rate of {baud}") from None
+        found = resolve_name(family.emulation)
+    except (Exception, SystemExit) as error:  # importing it runs code that is not ours
+        why = " ".join(f"{type(error).__name__}: {error}".split())
+        raise PluginError(f"{where}: emulation {family.emulation}: {why}") from None
+    if not isinstance(found, Emulation):
+        kind = type(found).__name__
+        raise PluginError(
+            f"{where}: emulation {family.emulation} should be a "
+            f"windup.sim_twin.wire.world.emulation.Emulation, and is of type {kind}"
+        )
+    return found

@@ -17,7 +17,7 @@ from windup.sim_twin.wire.shafts.twin_shaft import TwinImu, TwinPhysics, TwinSha
 from windup.sim_twin.wire.world.address import Address
 from windup.sim_twin.wire.world.bench_world import loose_shaft
 from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
-from windup.sim_twin.wire.world.families import make_language, make_servo
+from windup.sim_twin.wire.world.families import make_protocol, make_servo
 from windup.sim_twin.wire.world.robot_grips import robot_grips
 from windup.sim_twin.wire.world.workshop import Workshop
 
@@ -83,7 +83,7 @@ def _add_buses(
         servos, on, baud = hung[first.name], address.power == "on", address.baud or first.baud
         servos.append(OpenCr(felt, [*servos], baud, supply, powered=on, mounting=kind.mounting))
     for bus in robot.buses:
-        shop.bus(bus.name, hung[bus.name], make_language(bus.protocol), address.baud or bus.baud)
+        shop.bus(bus.name, hung[bus.name], make_protocol(bus.protocol), address.baud or bus.baud)
     if board:
         shop.buses[first.name].imu = felt
     if address.imu == "rvc":

@@ -5,7 +5,7 @@ from windup.hal.imu.kind import ImuKind
 from windup.hal.imu.mounting import STRAIGHT
 from windup.sim_twin.wire.boards.rvc import BAUD as RVC_BAUD
 from windup.sim_twin.wire.boards.rvc import Mute, start_rvc
-from windup.sim_twin.wire.bus.bus import Bus, Language
+from windup.sim_twin.wire.bus.bus import Bus, WireProtocol
 from windup.sim_twin.wire.bus.timing import Timing
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.faults.faults import Faults
@@ -33,13 +33,13 @@ class Workshop:
         self.faults = Faults.parse(address.faults, address.seed)
         self.buses: dict[str, Bus] = {}
 
-    def bus(self, name: str, devices: list[Device], language: Language, baud: int) -> Bus:
+    def bus(self, name: str, devices: list[Device], protocol: WireProtocol, baud: int) -> Bus:
         """Add a bus."""
         address = self.address
         timing = Timing(
             address.latency * 1e-3, address.turnaround * 1e-6, address.missing == "wait"
         )
-        bus = Bus(name, devices, language, self.schedule, baud, timing)
+        bus = Bus(name, devices, protocol, self.schedule, baud, timing)
         self.buses[name] = bus
         return bus
 

@@ -149,7 +149,7 @@ def test_a_cycle_of_20_sts_takes_its_time_on_the_wire_and_a_missing_one_4_ms() -
     serial.latency = port.latency = 1e-3
     bus = Bus(port, FEETECH_STS)
     bus.exchange.turnaround = TURNAROUND
-    read = FEETECH_STS.dialect.read([FEETECH_STS.state.span(id) for id in ids])
+    read = FEETECH_STS.protocol.read([FEETECH_STS.state.span(id) for id in ids])
     wire = (len(read.request) + read.length) * 10.0 / 1e6
     for dead in (None, 7, 20):
         serial.silent = set() if dead is None else {dead}

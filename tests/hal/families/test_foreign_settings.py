@@ -8,12 +8,11 @@ from tests.hal.backend_robot import Robot
 from tests.hal.mixed_robot import Wires, mount, robot
 from windup.hal.bus.bus import Bus
 from windup.hal.errors import HardwareError
-from windup.hal.families import family_of
-from windup.hal.families.feetech import USUAL
-from windup.hal.families.usual import protective_limits
+from windup.hal.families import family_of, servo_model
+from windup.hal.families.factory_default import protective_limits
+from windup.hal.families.feetech import PROTECTION_DEFAULTS
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.servo_bus.servo_setup import power_up
-from windup.hal.servos import servo_model
 from windup.tools.testing.servo_bus import ServoBus
 
 KNEE = {"op3": 13, "duck": 23}
@@ -159,8 +158,8 @@ def test_limits_of_its_owner_are_left_and_shown(caplog: pytest.LogCaptureFixture
     wires = Wires()
     wires.add("body", {1: sts, 2: sts})
     for id in (1, 2):
-        for usual in (*protective_limits(sts), *USUAL):
-            wires["body"].set(id, usual.name, usual.value)
+        for default in (*protective_limits(sts), *PROTECTION_DEFAULTS):
+            wires["body"].set(id, default.name, default.value)
     wires["body"].set(2, "overload_torque", 25)
     backend = robot(wires, [mount(sts, "body", 1), mount(sts, "body", 2)])
     backend.connect()
@@ -194,10 +193,10 @@ def test_a_temperature_limit_other_than_the_makers_is_shown(
     )
 
 
-def test_a_range_of_supply_is_odd_only_where_it_is_narrow() -> None:
+def test_a_range_of_supply_is_unusual_only_where_it_is_narrow() -> None:
     _, low, high = protective_limits(servo_model("XM430-W350"))
-    assert (low.is_odd(110), low.is_odd(60)) == (True, False)
-    assert (high.is_odd(130), high.is_odd(161)) == (True, False)
+    assert (low.is_unusual(110), low.is_unusual(60)) == (True, False)
+    assert (high.is_unusual(130), high.is_unusual(161)) == (True, False)
 
 
 @pytest.mark.parametrize("robot", KNEE)

@@ -3,9 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from windup.hal.families import servo_model, servo_names
 from windup.hal.guard import HealthLevels, Kind
 from windup.hal.guard.levels import defaults
-from windup.hal.servos import servo_model, servo_names
 from windup.hal.servos.servo_model import ServoMount
 from windup.robots import load_robot, robot_names
 

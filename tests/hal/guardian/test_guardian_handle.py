@@ -10,11 +10,11 @@ from tests.hal.fake_bus1 import STS
 from tests.hal.guardian.two_servos import TORQUE, charge, emulated, patiently, show, switch_on
 from tests.hal.mixed_robot import Wires, mount, robot
 from windup.hal.errors import GuardianError, HardwareError, PortError, UsageError
+from windup.hal.families import servo_model
 from windup.hal.guard.levels import HealthLevels, Kind
 from windup.hal.guardian.charges import charge_of
 from windup.hal.guardian.handle import Guardian, guardian_for
 from windup.hal.port.open_port import open_port
-from windup.hal.servos import servo_model
 from windup.tools.robot.robot import Robot
 
 

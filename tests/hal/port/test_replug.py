@@ -9,10 +9,10 @@ from tests.hal.fake_bus1 import STS
 from tests.hal.mixed_robot import Wires, mount, robot, ticks
 from windup.hal.command import JointCommand
 from windup.hal.errors import HardwareError
+from windup.hal.families import servo_model
 from windup.hal.port.open_port import open_port, stable_url
 from windup.hal.port.replug import Replug
 from windup.hal.servo_bus.servo_backend import ServoBackend
-from windup.hal.servos import servo_model
 
 XM = servo_model("XM430-W350")
 

@@ -9,9 +9,9 @@ from tests.hal.fake_bus1 import AX, MX, SCS, STS
 from tests.hal.mixed_robot import Wires, mount, robot, ticks
 from windup.hal.command import JointCommand
 from windup.hal.errors import ConfigError, HardwareError
+from windup.hal.families import servo_model
 from windup.hal.protocols.protocol1 import Instruction
 from windup.hal.servo_bus.coupling import Coupling
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoModel
 
 XM = servo_model("XM430-W350")

@@ -60,9 +60,9 @@ def test_dynamixels_sdk_reads_and_writes_the_frames_that_we_build() -> None:
 def test_bytes_survive_both_links(data: bytes) -> None:
     for family, model in ((FEETECH_STS, STS), (DYNAMIXEL_1, MX)):
         _, port = fake_port1({1: model})
-        link = family.dialect.link(port)
-        link.write(1, 80, data)
-        assert link.read(1, 80, len(data)) == data
+        configurator = family.protocol.configurator(port)
+        configurator.write(1, 80, data)
+        assert configurator.read(1, 80, len(data)) == data
 
 
 def test_the_process_global_byte_order_touches_nobody() -> None:
@@ -71,8 +71,8 @@ def test_the_process_global_byte_order_touches_nobody() -> None:
     for end in (0, 1):
         scservo_sdk.SCS_SETEND(end)
         try:
-            assert FEETECH_STS.dialect.link(port).ping(1) == 777
-            assert FEETECH_SCS.dialect.link(other).ping(1) == 1284
+            assert FEETECH_STS.protocol.configurator(port).ping(1) == 777
+            assert FEETECH_SCS.protocol.configurator(other).ping(1) == 1284
         finally:
             scservo_sdk.SCS_SETEND(0)
 
@@ -82,33 +82,33 @@ def test_silence_takes_virtual_time_only_and_noise_is_named(
     family: Family, model: ServoModel
 ) -> None:
     serial, port = fake_port1({1: model})
-    link = family.dialect.link(port)
+    configurator = family.protocol.configurator(port)
     serial.silent.add(1)
     before = serial.clock.now()
     with pytest.raises(NoAnswerError, match=r"no answer from id 1 on fake://bus at 1000000 baud"):
-        link.ping(1)
+        configurator.ping(1)
     assert 0.0 < serial.clock.now() - before < 0.1
     serial.silent.clear()
     serial.spoil = lambda id, frame: bytes([*frame[:-1], frame[-1] ^ 4])
     with pytest.raises(CorruptAnswerError, match="two servos with this id"):
-        link.ping(1)
+        configurator.ping(1)
 
 
 def test_a_short_answer_is_no_answer() -> None:
     serial, port = fake_port1({1: STS})
     serial.spoil = lambda id, frame: protocol1.status(id, b"\x07")
     with pytest.raises(CorruptAnswerError, match="only broken answers"):
-        FEETECH_STS.dialect.link(port).read(1, 56, 2)
+        FEETECH_STS.protocol.configurator(port).read(1, 56, 2)
 
 
 def test_a_dynamixel_refuses_and_an_overload_is_no_refusal() -> None:
     serial, port = fake_port1({1: MX})
     serial.error[1] = 0x08
-    link = DYNAMIXEL_1.dialect.link(port)
+    configurator = DYNAMIXEL_1.protocol.configurator(port)
     with pytest.raises(RefusedError, match="id 1 on fake://bus says the value is out of range"):
-        link.write(1, 30, b"\xff\xff")
+        configurator.write(1, 30, b"\xff\xff")
     serial.error[1] = 0x20
-    assert link.ping(1) == 29
+    assert configurator.ping(1) == 29
 
 
 def test_a_late_reply_is_not_taken_for_the_next_answer() -> None:
@@ -116,24 +116,24 @@ def test_a_late_reply_is_not_taken_for_the_next_answer() -> None:
     serial.set(1, "present_position", 77)
     late = protocol1.status(1, b"\x09\x09")
     serial.arrivals = [(serial.clock.time, byte) for byte in late]
-    assert FEETECH_STS.dialect.link(port).read(1, 56, 2) == bytes([77, 0])
+    assert FEETECH_STS.protocol.configurator(port).read(1, 56, 2) == bytes([77, 0])
 
 
 def test_an_exception_leaves_the_port_usable() -> None:
     serial, port = fake_port1({1: STS})
-    link = FEETECH_STS.dialect.link(port)
+    configurator = FEETECH_STS.protocol.configurator(port)
 
     def unplugged(size: int = 1) -> bytes:
         raise OSError("device reports readiness to read but returned no data")
 
     read, serial.read = serial.read, unplugged  # type: ignore[method-assign]
     with pytest.raises(PortError, match="went away"):
-        link.ping(1)
+        configurator.ping(1)
     serial.read = read  # type: ignore[method-assign]
-    assert link.ping(1) == 777
+    assert configurator.ping(1) == 777
 
 
 def test_protocol_1_has_no_reboot() -> None:
     _, port = fake_port1({1: MX})
     with pytest.raises(UsageError, match="switch its power off and on"):
-        DYNAMIXEL_1.dialect.link(port).reboot(1)
+        DYNAMIXEL_1.protocol.configurator(port).reboot(1)

@@ -6,9 +6,9 @@ import pytest
 from tests.hal.backend_robot import COUNT, XM430, Robot, joints_of
 from tests.hal.fake_bus import VirtualClock, fake_port
 from windup.hal.command import JointCommand
+from windup.hal.families import servo_model
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoMount
 
 

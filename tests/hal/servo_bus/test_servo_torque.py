@@ -7,10 +7,9 @@ from tests.hal.fake_bus1 import AX, MX, SCS, STS
 from tests.hal.mixed_robot import Wires, mount, robot, ticks
 from windup.hal.command import JointCommand
 from windup.hal.errors import HardwareError
-from windup.hal.families import family_of
+from windup.hal.families import family_of, servo_model
 from windup.hal.servo_bus.servo_backend import ServoBackend
 from windup.hal.servo_bus.servo_torque import INRUSH, OFF_TIME
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoModel
 
 XM = servo_model("XM430-W350")
@@ -56,7 +55,7 @@ def test_torque_comes_on_one_servo_after_the_other_where_each_is(model: ServoMod
     assert written(wires, model, "torque_enable") == [1, 2, 3, 4]
     goals = written(wires, model, "goal_position")
     assert goals[-4:] == [1, 2, 3, 4]
-    if family_of(model.name).goal_wakes:
+    if family_of(model.name).goal_enables_torque:
         assert len(goals) == 4  # none before its turn
     assert backend.clock.now() - began > 4 * INRUSH
 

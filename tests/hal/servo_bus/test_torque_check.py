@@ -7,9 +7,8 @@ from tests.hal.fake_bus1 import AX, MX, SCS, STS
 from tests.hal.mixed_robot import Wires, mount, robot, ticks
 from windup.hal.command import JointCommand
 from windup.hal.errors import HardwareError
-from windup.hal.families import family_of
+from windup.hal.families import family_of, servo_model
 from windup.hal.servo_bus.torque_check import MISSES
-from windup.hal.servos import servo_model
 from windup.hal.servos.servo_model import ServoModel
 
 XM = servo_model("XM430-W350")
@@ -48,7 +47,7 @@ class Bench:
 
     def restart(self, id: int) -> None:
         self.put(id, "torque_enable", 0)
-        mark = family_of(self.model.name).mark
+        mark = family_of(self.model.name).restart_mark
         if mark is not None:
             self.put(id, mark.name, mark.restarted)
 

@@ -1,5 +1,6 @@
 """The runs in a ring: names of what their controllers publish, states, and marks."""
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -108,6 +109,23 @@ def test_the_state_is_known_between_two_ticks(writer: TelemetryWriter) -> None:
         writer.close()
         writer.change_state(RunState.HOLDING)
         assert (reader.state.words, reader.closed) == ("disconnected", True)
+
+
+def test_the_begin_and_the_end_of_a_run_are_marked(writer: TelemetryWriter) -> None:
+    writer.begin(Balance())
+    write(writer, range(1, 3))
+    writer.end("fell")
+    with TelemetryReader(writer.path) as reader:
+        marks = [(mark.sequence, mark.text) for mark in reader.marks()]
+    assert marks == [(0, "run 1 begins: Balance"), (2, "run 1 ends: fell")]
+
+
+def test_ticks_take_no_more_memory_than_there_is(writer: TelemetryWriter) -> None:
+    writer.begin(Balance())
+    write(writer, range(1, 50))
+    before = sys.getallocatedblocks()
+    write(writer, range(50, 1050))
+    assert sys.getallocatedblocks() - before < 50
 
 
 def test_marks_say_when_something_happened(writer: TelemetryWriter) -> None:

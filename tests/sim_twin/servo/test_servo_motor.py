@@ -2,7 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from windup.hal.servos import servo_model, servo_names
+from windup.hal.families import servo_model, servo_names
 from windup.tools.benches import servo as bench_servo
 
 SHEET = bench_servo.measure_servos("op3")

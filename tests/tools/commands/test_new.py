@@ -102,7 +102,7 @@ def test_no_gait_or_controller_is_overwritten(here: Path, kind: str, name: str) 
 
 
 NAMES = {
-    "a robot of ours": ("robot", "op3", "op3 is a robot of Windup: give yours another name"),
+    "a robot of ours": ("robot", "op3", "there is a robot op3 already: give yours another name"),
     "no word": ("robot", "my robot", "'my robot' is no name for a robot: letters, digits"),
     "no module": ("controller", "my-one", "'my-one' is no name for a file of Python"),
     "a keyword": ("controller", "lambda", "'lambda' is no name for a file of Python"),

@@ -1,6 +1,6 @@
 import pytest
 
-from windup.hal.servos import servo_model, servo_names
+from windup.hal.families import servo_model, servo_names
 from windup.hal.servos.servo_model import OwnLimits
 from windup.sim_twin.wire.servos import dynamixel1_tables, feetech_tables, x_series
 

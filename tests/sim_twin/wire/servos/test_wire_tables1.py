@@ -5,10 +5,10 @@ from typing import Any
 import pytest
 import rustypot
 
-from windup.hal.servos import servo_model
+from windup.hal.families import servo_model
 from windup.sim_twin.wire.servos import dynamixel1_tables, feetech_tables
 from windup.sim_twin.wire.servos.byte_table import TWOS, ByteTable, Field
-from windup.sim_twin.wire.world.families import PROTOCOLS
+from windup.sim_twin.wire.world.own_emulations import PROTOCOLS
 
 TABLES: dict[str, tuple[ByteTable, Any]] = {
     "AX-12A": (dynamixel1_tables.MODELS["AX-12A"].table(), rustypot.AxPyController),

@@ -1,4 +1,4 @@
-"""Dialects: the requests and reads of each protocol as implemented by each maker."""
+"""The requests and reads of each protocol, as implemented by each maker."""
 
 import contextlib
 from abc import ABC, abstractmethod
@@ -12,7 +12,7 @@ from windup.hal.protocols import protocol1, protocol2
 from windup.hal.protocols.batched import BlockRead, BlockWrite
 from windup.hal.protocols.batched1 import ChainRead, GoalWrite, bulk_read, sync_read
 from windup.hal.protocols.cyclic import CyclicRead, CyclicWrite
-from windup.hal.protocols.protocol2 import Span
+from windup.hal.protocols.protocol2 import Span, Status
 from windup.hal.registers import Register
 
 if TYPE_CHECKING:
@@ -42,13 +42,17 @@ class ServoProtocol(ABC):
     Attributes:
         last_id: The largest id that a servo can have.
         weak: Whether the checksum is so short (8 bits) that corrupt frames often pass it.
+        ping_params: Number of parameters in the answer to a ping.
+        scan_bytes: Number of bytes that `scan` reads from one servo.
     """
 
     last_id: int
     weak: bool
+    ping_params: int
+    scan_bytes: int
 
     @abstractmethod
-    def link(self, port: Port) -> "ServoConfigurator":
+    def configurator(self, port: Port) -> "ServoConfigurator":
         """Return a configurator, for access to one servo at a time."""
 
     @abstractmethod
@@ -64,14 +68,22 @@ class ServoProtocol(ABC):
         """Return the frames that write `size` bytes at `address` of each id in `data`."""
 
     @abstractmethod
+    def ping(self, id: int) -> bytes:
+        """Return the frame that pings one servo."""
+
+    @abstractmethod
+    def salvage(self, data: bytes) -> list[Status]:
+        """Return the valid status packets in received bytes."""
+
+    @abstractmethod
     def probe(self, id: int) -> Probe:
         """Return a request to one servo whose answer cannot be mistaken for its echo."""
 
     @abstractmethod
-    def who(self, port: Port, link: "ServoConfigurator") -> list[Answered]:
+    def scan(self, port: Port, configurator: "ServoConfigurator") -> list[Answered]:
         """Return the servos that answer at the port's present baud rate."""
 
-    def estranged(self, port: Port, id: int) -> int | None:
+    def other_protocol(self, port: Port, id: int) -> int | None:
         """Return the model number of a silent servo that answers in another protocol, or None."""
         return None
 
@@ -80,8 +92,9 @@ class Protocol2(ServoProtocol):
     """Dynamixel protocol 2. Its fast read is the fast sync read."""
 
     last_id, weak = protocol2.LAST_ID, False
+    ping_params, scan_bytes = 3, 14  # one ping suffices
 
-    def link(self, port: Port) -> "ServoConfigurator":
+    def configurator(self, port: Port) -> "ServoConfigurator":
         """Return a configurator, for access to one servo at a time."""
         from windup.hal.families.configurator import DynamixelConfigurator  # and the SDK
 
@@ -99,12 +112,20 @@ class Protocol2(ServoProtocol):
         """Return the frame that writes `size` bytes at `address` of each id in `data`."""
         return [protocol2.sync_write(data, address, size)]
 
+    def ping(self, id: int) -> bytes:
+        """Return the frame that pings one servo."""
+        return protocol2.ping(id)
+
+    def salvage(self, data: bytes) -> list[Status]:
+        """Return the valid status packets in received bytes."""
+        return list(protocol2.salvage(data))
+
     def probe(self, id: int) -> Probe:
         """Return a ping: its answer differs from its echo by the instruction byte."""
         answer = protocol2.status(id, bytes(3))
         return Probe(protocol2.ping(id), len(answer), answer[:8])
 
-    def who(self, port: Port, link: "ServoConfigurator") -> list[Answered]:
+    def scan(self, port: Port, configurator: "ServoConfigurator") -> list[Answered]:
         """Send a broadcast ping, and return all servos with a valid reply."""
         port.flush_input()
         port.write(protocol2.ping())
@@ -118,7 +139,7 @@ class Protocol2(ServoProtocol):
             if len(params) == 3
         ]
 
-    def estranged(self, port: Port, id: int) -> int | None:
+    def other_protocol(self, port: Port, id: int) -> int | None:
         """Return the model number of a servo that answers in protocol 1 instead, or None."""
         from windup.hal.families.configurator1 import Dynamixel1Configurator
 
@@ -137,6 +158,7 @@ class Protocol1(ServoProtocol):
     """
 
     last_id, weak = protocol1.LAST_ID, True
+    ping_params, scan_bytes = 0, 27  # a servo is pinged, read, pinged and read
 
     def __init__(self, model_number: Register, firmware: Register, longest: int) -> None:
         self.model_number, self.firmware, self.longest = model_number, firmware, longest
@@ -155,13 +177,21 @@ class Protocol1(ServoProtocol):
         """Return the frames that write `size` bytes at `address` of each id in `data`."""
         return protocol1.split_sync_write(data, address, size, self.longest)
 
+    def ping(self, id: int) -> bytes:
+        """Return the frame that pings one servo."""
+        return protocol1.ping(id)
+
+    def salvage(self, data: bytes) -> list[Status]:
+        """Return the valid status packets in received bytes."""
+        return list(protocol1.salvage(data))
+
     def probe(self, id: int) -> Probe:
         """Return a read of one byte: its answer differs in length from its echo, a ping's not."""
         answer = protocol1.status(id, bytes(1))
         request = protocol1.read(id, self.model_number.address, 1)
         return Probe(request, len(answer), answer[:4])
 
-    def who(self, port: Port, link: "ServoConfigurator") -> list[Answered]:
+    def scan(self, port: Port, configurator: "ServoConfigurator") -> list[Answered]:
         """Ping each id in turn, as answers to a broadcast ping would collide; return who answered.
 
         An answer that comes while a later id is pinged shows that the adapter's latency is longer
@@ -175,12 +205,12 @@ class Protocol1(ServoProtocol):
             late = [port.clock.now() - asked[other] for other in pongs & asked.keys() - {id}]
             if port.latency < max(late, default=0.0) < LATEST:
                 port.latency = MARGIN * max(late)
-                return self.who(port, link)
+                return self.scan(port, configurator)
             # Noise, or two servos with this id, may look like an answer, but give no model number.
             if id in pongs:
                 with contextlib.suppress(HardwareError):
-                    version = link.read(id, firmware.address, firmware.size)
-                    found.append(Answered(id, link.ping(id), firmware.decode(version)))
+                    version = configurator.read(id, firmware.address, firmware.size)
+                    found.append(Answered(id, configurator.ping(id), firmware.decode(version)))
         return found
 
     @abstractmethod
@@ -195,7 +225,7 @@ class Protocol1(ServoProtocol):
 class Dynamixel1(Protocol1):
     """Dynamixel AX and MX. The common read is the bulk read, which an AX does not support."""
 
-    def link(self, port: Port) -> "ServoConfigurator":
+    def configurator(self, port: Port) -> "ServoConfigurator":
         """Return a configurator, for access to one servo at a time."""
         from windup.hal.families.configurator1 import Dynamixel1Configurator  # and the SDK
 
@@ -221,7 +251,7 @@ class Feetech(Protocol1):
         super().__init__(model_number, firmware, protocol1.LONGEST_FEETECH)
         self.always_sync = always_sync
 
-    def link(self, port: Port) -> "ServoConfigurator":
+    def configurator(self, port: Port) -> "ServoConfigurator":
         """Return a configurator, for access to one servo at a time."""
         from windup.hal.families.configurator1 import FeetechConfigurator  # and the SDK
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from windup.hal.servos.servo_model import ServoModel
 
 
-class Usual(NamedTuple):
+class FactoryDefault(NamedTuple):
     """Factory default of a protection register.
 
     Attributes:
@@ -24,12 +24,12 @@ class Usual(NamedTuple):
     lower: bool = True
     higher: bool = False
 
-    def is_odd(self, present: int) -> bool:
+    def is_unusual(self, present: int) -> bool:
         """Return whether a value differs from the default in a way that is reported."""
         return (self.lower and present < self.value) or (self.higher and present > self.value)
 
 
-def protective_limits(model: ServoModel) -> tuple[Usual, ...]:
+def protective_limits(model: ServoModel) -> tuple[FactoryDefault, ...]:
     """Return the factory default limits of a model; empty if they are not published.
 
     With a lower temperature limit the servo shuts down early, with a higher one too late. With a
@@ -39,7 +39,7 @@ def protective_limits(model: ServoModel) -> tuple[Usual, ...]:
         return ()
     heat, low, high = model.limits
     return (
-        Usual("temperature_limit", round(heat), higher=True),
-        Usual("min_voltage_limit", round(10.0 * low), lower=False, higher=True),
-        Usual("max_voltage_limit", round(10.0 * high)),
+        FactoryDefault("temperature_limit", round(heat), higher=True),
+        FactoryDefault("min_voltage_limit", round(10.0 * low), lower=False, higher=True),
+        FactoryDefault("max_voltage_limit", round(10.0 * high)),
     )

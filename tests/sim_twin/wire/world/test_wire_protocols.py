@@ -1,4 +1,4 @@
-"""Several languages in one world, and what may hang where."""
+"""Several protocols in one world, and what may hang where."""
 
 import pytest
 import serial
@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.sim_twin.wire.wire_host1 import PING, open_host1, statuses
-from windup.hal.servos import servo_model
+from windup.hal.families import servo_model
 from windup.sim_twin.wire import drop_world, put_world
 from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.device import Device
@@ -17,7 +17,8 @@ from windup.sim_twin.wire.shafts.shaft import InertiaShaft
 from windup.sim_twin.wire.world.address import parse_address
 from windup.sim_twin.wire.world.build import build_world
 from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
-from windup.sim_twin.wire.world.families import PROTOCOLS, make_language, make_servo
+from windup.sim_twin.wire.world.families import make_protocol, make_servo
+from windup.sim_twin.wire.world.own_emulations import PROTOCOLS
 
 MIX = {"legs": "STS3215-12V", "arms": "AX-12A", "head": "XL430-W250", "face": "SCS0009"}
 
@@ -30,7 +31,7 @@ def mixed() -> BusWorld:
         shafts.append(InertiaShaft(sheet.motor(supply), sheet.armature))
         servo = make_servo(name, shafts[-1], 1, 1_000_000, supply, 0)
         devices: list[Device] = [servo]
-        buses[bus] = Bus(bus, devices, make_language(PROTOCOLS[name]), schedule)
+        buses[bus] = Bus(bus, devices, make_protocol(PROTOCOLS[name]), schedule)
     return BusWorld(Bench(shafts), schedule, buses)
 
 
@@ -48,7 +49,7 @@ def test_four_families_on_four_buses_of_one_world() -> None:
         drop_world("mix")
 
 
-def test_buses_of_different_languages_do_not_wait_for_each_other() -> None:
+def test_buses_of_different_protocols_do_not_wait_for_each_other() -> None:
     put_world("mix", mixed())
     try:
         with (

@@ -1,0 +1,1 @@
+"""What other distributions add to Windup through entry points."""
