@@ -133,6 +133,10 @@ class StepExecutor(Executor[Motion], Protocol):
         """(2,) measured position of the weight, m."""
         ...
 
+    def ease(self, part: float) -> float:
+        """Return the fraction of a shift of the weight done at a fraction of the time."""
+        ...
+
     def take(self, observation: Observation) -> None:
         """Start from any state; the robot comes to its stance gradually."""
         ...

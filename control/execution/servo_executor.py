@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from windup.control.execution.footing import Footing
-from windup.control.execution.motion import Motion, Planted, Swing
+from windup.control.execution.motion import Motion, Planted, Swing, cosine_progress
 from windup.control.execution.swing import gaussian_progress
 from windup.control.kinematics.momenta import capture_point
 from windup.control.kinematics.robot_state import RobotState
@@ -105,6 +105,10 @@ class ServoExecutor:
     def weight(self) -> Array:
         """(2,) measured position of the base, m."""
         return self.feet.base.position[:2].copy()
+
+    def ease(self, part: float) -> float:
+        """Return the fraction of a shift done at the fraction `part` of the time: a cosine."""
+        return cosine_progress(part)
 
     def over(self, foot: int) -> Array:
         """Return the position (2,) of the base with the CoM over a foot, m."""

@@ -8,6 +8,7 @@ computes torques from these at every tick.
 import numpy as np
 
 from windup.control.execution.motion import Motion, Planted, Swing
+from windup.control.execution.swing import smooth_progress
 from windup.control.execution.torque_feet import TorqueFeet
 from windup.control.kinematics.places import ground_places
 from windup.control.kinematics.robot_state import RobotState
@@ -137,6 +138,10 @@ class TorqueExecutor:
     def middle(self, foot: int) -> Array:
         """Return the middle (2,) of a sole on the ground, m."""
         return self.feet.middle(foot)
+
+    def ease(self, part: float) -> float:
+        """Return the fraction of a shift done at the fraction `part` of the time: minimum jerk."""
+        return smooth_progress(part)
 
     def over(self, foot: int) -> Array:
         """Return the middle (2,) of a sole, m."""

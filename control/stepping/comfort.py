@@ -5,7 +5,7 @@ from typing import Literal
 import numpy as np
 
 from windup.control.execution.executor import StepExecutor
-from windup.control.execution.motion import Motion, Shift, Swing, cosine_progress, shift_time
+from windup.control.execution.motion import Motion, Shift, Swing, shift_time
 from windup.control.kinematics.momenta import capture_point
 from windup.control.kinematics.rotation import turn, way_round
 from windup.control.stepping.stepping_file import ComfortTable, Stepping
@@ -94,7 +94,9 @@ class ComfortStep:
         motion, how, before = self.motion, self._how, self._yaws[0]
         start = self._executor.lift_off(self.foot, motion.planted)
         yaws = float(motion.planted.yaws[self.foot]), self._yaws[1]
-        motion.shift = Shift(self._place, self._over, now, how.swing, cosine_progress, smooth=True)
+        motion.shift = Shift(
+            self._place, self._over, now, how.swing, self._executor.ease, smooth=True
+        )
         motion.swing = Swing(
             self.foot, now, how.swing, start, self.target, yaws, self._lift, self._place
         )
@@ -120,7 +122,7 @@ class ComfortStep:
         """Return the path of the weight from its present place to `goal` (2,)."""
         far = float(np.linalg.norm(goal - self._place))
         seconds = shift_time(far, self._how.shift, self._how.pace)
-        return Shift(self._place, goal, now, seconds, cosine_progress, smooth=True)
+        return Shift(self._place, goal, now, seconds, self._executor.ease, smooth=True)
 
     def _home(self, foot: int, yaws: Array) -> Array:
         """Return the nominal place (2,) m of a foot, relative to where the other one stands."""

@@ -90,7 +90,7 @@ class Stepper:
         """Start standing on the feet as measured."""
         self.phase, self._flight = "stand", None
         self.steps = self.comforts = 0
-        self._moved = now
+        self._moved, self._returning = now, False
         feet = self.executor.feet
         feet.rounded = self.stepping.support == "capsule"
         self.no_step.begin(feet.feet, [feet.ground(foot) for foot in (0, 1)])
@@ -138,6 +138,9 @@ class Stepper:
         elif self.phase == "comfort":
             self._go_on(self._comfort, now)
         else:
+            if self._returning and now - self.motion.landed >= self.stepping.settle:
+                self._returning = False
+                self.motion.shift = self._return(self.motion.planted, now)
             self._settle(now)
 
     def _falls(self, rule: StepRule) -> bool:
@@ -158,6 +161,7 @@ class Stepper:
             self.phase, self._moved = "land", now
             self.motion.swing, self.motion.landed = None, now
             self._plant(1 - swing.foot)
+            self._returning = True
             self.motion.shift = self._return(self.motion.planted, now)
         else:
             self.motion.shift = self._arc(swing)
