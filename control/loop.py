@@ -10,11 +10,27 @@ import numpy as np
 from windup.hal.backend import Clock
 from windup.hal.command import JointCommand
 from windup.hal.controller import Controller, Stopwatch
-from windup.hal.guard import GuardedBackend
 from windup.hal.observation import Observation
 
 # Called once a tick; a reason ends the run.
 Until = Callable[[Observation], str | None]
+
+
+class ReadsAndWrites(Protocol):
+    """What the loop uses of a backend; a `GuardedBackend` has it."""
+
+    @property
+    def clock(self) -> Clock:
+        """The clock that the schedule keeps."""
+        ...
+
+    def read(self) -> Observation:
+        """Return the present state."""
+        ...
+
+    def write(self, command: JointCommand) -> JointCommand:
+        """Send a command and return the command that was really applied."""
+        ...
 
 
 class Estimator(Protocol):
@@ -118,8 +134,106 @@ class Schedule:
         self._clock.wait_until(self._started + self._tick * self._period)
 
 
+class TickLoop:
+    """The fixed-rate loop, one phase after the other: `observe`, `command`, `finish`, and again.
+
+    The schedule is absolute; ticks that come too late are skipped and counted.
+
+    Args:
+        backend: The guarded backend, connected and configured.
+        controller: The controller.
+        period: Period of the loop, s.
+        until: Called with each observation; a reason ends the run.
+        estimator: Fills in the base state.
+        rollouts: Time to leave out of the ticks.
+        report: Filled in as the run goes, so that an interrupted run has measured something.
+        recorder: Takes down every tick.
+
+    Attributes:
+        observation: Observation of the present tick; None before the first.
+        applied: Command of the present tick that the joints really got; None until `command`.
+        recorder: Takes down every tick.
+    """
+
+    def __init__(
+        self,
+        backend: ReadsAndWrites,
+        controller: Controller,
+        *,
+        period: float,
+        until: Until,
+        estimator: Estimator | None = None,
+        rollouts: Stopwatch | None = None,
+        report: LoopReport | None = None,
+        recorder: Recorder | None = None,
+    ) -> None:
+        self.report = report or LoopReport()
+        self.observation: Observation | None = None
+        self.applied: JointCommand | None = None
+        # Bound methods, looked up once: they are called on every tick.
+        self._read, self._write, self._step = backend.read, backend.write, controller.step
+        self._reset: Callable[[Observation], None] | None = controller.reset
+        self._period, self._until, self._estimator = period, until, estimator
+        self._rollouts, self.recorder = rollouts or Stopwatch(), recorder
+        self._schedule, self._late = Schedule(backend.clock, period), 0.0
+        self._wall_started = wall.perf_counter()
+
+    def observe(self) -> Observation | None:
+        """Begin a tick: return its observation, or None if there is a reason to end the run.
+
+        Raises:
+            WindupError: Whatever the backend, the estimator or the controller raise.
+        """
+        self._began, self._played = wall.perf_counter(), self._rollouts.seconds
+        observation = self._read()
+        if self._estimator is not None:
+            observation = self._estimator.update(observation, self._period)
+        self.observation, self.applied = observation, None
+        if (reason := self._until(observation)) is not None:
+            self.report.reason = reason
+            return None
+        if self._reset is not None:
+            self._reset(observation)
+            self._reset = None
+        return observation
+
+    def command(self) -> JointCommand:
+        """Ask the controller for the command of this tick, send it, and return what was applied.
+
+        Raises:
+            WindupError: Whatever the controller, the guard or the backend raise.
+        """
+        assert self.observation is not None, "a tick begins with an observation"
+        self._asked = self._step(self.observation, self._period)
+        self.applied = self._write(self._asked)
+        return self.applied
+
+    def finish(self) -> None:
+        """End a tick, with its command if there was none, and wait for the next one.
+
+        Raises:
+            WindupError: As of `command`.
+        """
+        applied = self.command() if self.applied is None else self.applied
+        report, schedule = self.report, self._schedule
+        spent = wall.perf_counter() - self._began - (self._rollouts.seconds - self._played)
+        report.tick.append(spent)
+        report.ticks += 1
+        if self.recorder is not None:
+            assert self.observation is not None, "a tick begins with an observation"
+            self.recorder.record(
+                self.observation, self._asked, applied, spent, self._late, report.ticks,
+                report.missed,
+            )  # fmt: skip
+        report.missed += schedule.advance()
+        schedule.wait()
+        report.sim_time = schedule.elapsed
+        self._late = report.sim_time - schedule.due
+        report.wall_time = wall.perf_counter() - self._wall_started
+
+
 def run_loop(
-    backend: GuardedBackend,
+    backend: ReadsAndWrites,
     controller: Controller,
     *,
     period: float,
@@ -130,8 +244,6 @@ def run_loop(
     recorder: Recorder | None = None,
 ) -> LoopReport:
     """Run `controller` on `backend` every `period` s until there is a reason to stop.
-
-    The schedule is absolute; ticks that come too late are skipped and counted.
 
     Args:
         backend: The guarded backend, connected and configured.
@@ -146,30 +258,16 @@ def run_loop(
     Raises:
         WindupError: Whatever the backend, the guard or the controller raise.
     """
-    report = report or LoopReport()
-    rollouts = rollouts or Stopwatch()
-    schedule, wall_started = Schedule(backend.clock, period), wall.perf_counter()
-    first, late = True, 0.0
-    while True:
-        began, playing = wall.perf_counter(), rollouts.seconds
-        observation = backend.read()
-        if estimator is not None:
-            observation = estimator.update(observation, period)
-        if (reason := until(observation)) is not None:
-            report.reason = reason
-            return report
-        if first:
-            controller.reset(observation)
-            first = False
-        asked = controller.step(observation, period)
-        applied = backend.write(asked)
-        spent = wall.perf_counter() - began - (rollouts.seconds - playing)
-        report.tick.append(spent)
-        report.ticks += 1
-        if recorder is not None:
-            recorder.record(observation, asked, applied, spent, late, report.ticks, report.missed)
-        report.missed += schedule.advance()
-        schedule.wait()
-        report.sim_time = schedule.elapsed
-        late = report.sim_time - schedule.due
-        report.wall_time = wall.perf_counter() - wall_started
+    loop = TickLoop(
+        backend,
+        controller,
+        period=period,
+        until=until,
+        estimator=estimator,
+        rollouts=rollouts,
+        report=report,
+        recorder=recorder,
+    )
+    while loop.observe() is not None:
+        loop.finish()
+    return loop.report

@@ -1,7 +1,7 @@
-"""Log a walk into arrays, save them, and draw a picture.
+"""Record a walk, save its arrays, load them again, and draw pictures.
 
-Run it with `python examples/log_and_plot.py`; it writes walk.npz and walk_log.png into the present
-folder. The picture needs the extra `plot`: `pip install -e '.[plot]'`.
+Run it with `python examples/log_and_plot.py`; it writes walk.npz, walk.png and feet.png into the
+present folder. Pictures need the extra `plot`: `pip install -e '.[plot]'`.
 """
 
 from pathlib import Path
@@ -9,50 +9,42 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from windup import Observation, Robot
+from windup import Robot, RunData, load_robot, load_run
 
 
-class Log:
-    """Keeps what is measured at every tick."""
-
-    def __init__(self) -> None:
-        self.rows: dict[str, list[np.ndarray]] = {"time": [], "position": [], "contacts": []}
-
-    def __call__(self, observation: Observation) -> None:
-        """Add an observation: s, rad, N."""
-        self.rows["time"].append(np.array(observation.time))
-        self.rows["position"].append(observation.joints.position.copy())
-        self.rows["contacts"].append(observation.contacts.copy())
-
-    def arrays(self) -> dict[str, np.ndarray]:
-        """Return time (t,), position (t, n) and contacts (t, k)."""
-        return {name: np.array(rows) for name, rows in self.rows.items()}
+def record(folder: Path) -> Path:
+    """Walk twelve steps; return the file of the walk."""
+    with Robot.open("op3", record=True) as robot:
+        report = robot.walk(speed=0.15, steps=12)
+    print(report)
+    report.plot(folder / "walk.png")
+    report.save(folder / "walk.npz")
+    return folder / "walk.npz"
 
 
-def main(folder: Path = Path()) -> dict[str, np.ndarray]:
-    """Walk twelve steps, write the log and the picture into `folder`, and return the arrays."""
-    log = Log()
-    with Robot.open("op3") as robot:
-        robot.watch.append(log)
-        print(robot.walk(speed=0.15, steps=12))
-        names = robot.description.joints.names
-        feet = robot.description.contacts
-    arrays = log.arrays()
-    np.savez(folder / "walk.npz", **arrays)
+def draw_feet(run: RunData, path: Path) -> None:
+    """Draw the knees, in degrees, and the force on each foot, in N."""
     figure, (angles, forces) = plt.subplots(2, sharex=True, layout="constrained")
+    time = run.arrays["time"]
     for name in ("l_knee", "r_knee"):
-        knee = np.degrees(arrays["position"][:, names.index(name)])
-        angles.plot(arrays["time"], knee, label=name)
+        knee = run.arrays["position"][:, run.joints.index(name)]
+        angles.plot(time, np.degrees(knee), label=name)
     angles.set_ylabel("degrees")
-    for foot, sensors in feet.feet.items():
-        columns = [feet.names.index(sensor) for sensor in sensors]
-        forces.plot(arrays["time"], arrays["contacts"][:, columns].sum(axis=1), label=foot)
-    forces.set(xlabel="s", ylabel="N")
+    for foot, sensors in load_robot(run.robot).contacts.feet.items():
+        columns = [run.contacts.index(sensor) for sensor in sensors]
+        forces.plot(time, run.arrays["contacts"][:, columns].sum(axis=1), label=foot)
+    forces.set(xlabel=f"time [{run.units['time']}]", ylabel=run.units["contacts"])
     for axes in (angles, forces):
         axes.legend()
-    figure.savefig(folder / "walk_log.png")
+    figure.savefig(path)
     plt.close(figure)
-    return arrays
+
+
+def main(folder: Path = Path()) -> RunData:
+    """Write the file and the pictures into `folder`; return the run as it was loaded."""
+    run = load_run(record(folder))
+    draw_feet(run, folder / "feet.png")
+    return run
 
 
 if __name__ == "__main__":

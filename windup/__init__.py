@@ -25,6 +25,9 @@ if TYPE_CHECKING:
     )
     from windup.robots import RobotDescription, load_robot, robot_names
     from windup.tools.assembly.walk_options import WalkOptions
+    from windup.tools.reports.play_report import PlayReport
+    from windup.tools.reports.run_data import RunData, load_run
+    from windup.tools.reports.run_report import RunReport
     from windup.tools.robot.robot import Robot
     from windup.tools.robot.walk_report import WalkReport
 
@@ -37,12 +40,16 @@ PLACES = {
     "Joints": "windup.hal",
     "LoopReport": "windup.control.loop",
     "Observation": "windup.hal",
+    "PlayReport": "windup.tools.reports.play_report",
     "Robot": "windup.tools.robot.robot",
     "RobotDescription": "windup.robots",
+    "RunData": "windup.tools.reports.run_data",
+    "RunReport": "windup.tools.reports.run_report",
     "WalkOptions": "windup.tools.assembly.walk_options",
     "WalkReport": "windup.tools.robot.walk_report",
     "WindupError": "windup.hal",
     "load_robot": "windup.robots",
+    "load_run": "windup.tools.reports.run_data",
     "robot_names": "windup.robots",
 }
 """Public name to the module that has it."""
@@ -56,12 +63,16 @@ __all__ = [
     "Joints",
     "LoopReport",
     "Observation",
+    "PlayReport",
     "Robot",
     "RobotDescription",
+    "RunData",
+    "RunReport",
     "WalkOptions",
     "WalkReport",
     "WindupError",
     "load_robot",
+    "load_run",
     "robot_names",
 ]
 

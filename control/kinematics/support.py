@@ -6,7 +6,7 @@ from math import pi, sqrt
 
 import numpy as np
 import shapely
-from shapely import MultiPoint
+from shapely import LineString, MultiPoint, Point
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import nearest_points
 
@@ -53,7 +53,7 @@ class SupportRegion:
         """Return the distance of `point` (2,) inside the edge, m; < 0 outside, -inf if empty."""
         if self.shape.is_empty:
             return -np.inf
-        place = shapely.points(point[:2])
+        place = _point(point)
         away = self.shape.distance(place)
         return -away if away > 0.0 else self._boundary.distance(place)
 
@@ -64,7 +64,7 @@ class SupportRegion:
 
 def nearest_point(shape: BaseGeometry, point: Array) -> Array:
     """Return the point (2,) of `shape` nearest to `point` (2,); inside, that is `point` itself."""
-    near, _ = nearest_points(shape, shapely.points(point[:2]))
+    near, _ = nearest_points(shape, _point(point))
     return np.array([near.x, near.y])
 
 
@@ -72,4 +72,13 @@ def convex_hull(points: Array) -> BaseGeometry:
     """Return the convex hull of points (p, 2): that of a line through them, made faster."""
     if len(points) < 2:
         return MultiPoint(points).convex_hull
-    return shapely.linestrings(points).convex_hull
+    line = shapely.linestrings(points)
+    assert isinstance(line, LineString)
+    return line.convex_hull
+
+
+def _point(point: Array) -> Point:
+    """Return a point (2,) or (3,) as Shapely has it; its constructor takes twice as long."""
+    place = shapely.points(point[:2])
+    assert isinstance(place, Point)
+    return place

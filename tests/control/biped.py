@@ -54,7 +54,7 @@ def soles() -> Soles:
     return Soles(model(), ["left", "right"], CONTACTS)
 
 
-def state() -> RobotState:
+def robot_state() -> RobotState:
     feet = ["left", "right"]
     return RobotState(
         model(), "base", "base", ["left_toe", "right_toe"], feet=feet, contacts=CONTACTS

@@ -38,11 +38,20 @@ def test_push_and_step_stays_up_with_steps_alone() -> None:
     assert results["predictive"]["steps"] > 0
 
 
-def test_log_and_plot_writes_a_log_and_a_picture(tmp_path: Path) -> None:
-    arrays = load("log_and_plot")["main"](tmp_path)
+def test_log_and_plot_writes_a_log_and_pictures(tmp_path: Path) -> None:
+    run = load("log_and_plot")["main"](tmp_path)
     kept = np.load(tmp_path / "walk.npz")
-    assert np.array_equal(kept["position"], arrays["position"]) and len(kept["time"]) > 100
-    assert (tmp_path / "walk_log.png").stat().st_size > 10_000
+    assert np.array_equal(kept["position"], run.arrays["position"]) and len(kept["time"]) > 100
+    for name in ("walk.png", "feet.png"):
+        assert (tmp_path / name).stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("port", [None, "twin://op3"])
+def test_shoulders_swings_them_on_the_twin_and_through_servos(port: str | None) -> None:
+    report = load("shoulders")["main"](port)
+    assert (report.reason, report.fallen) == ("done", False)
+    shoulder = report.arrays["position"][:, report.data.joints.index("l_sho_pitch")]
+    assert np.ptp(shoulder) == pytest.approx(0.8, abs=0.1)
 
 
 def test_own_robot_stands_and_walks() -> None:

@@ -66,7 +66,7 @@ class Emulate(Command):
         """Say that the robot's MJCF is doubtful; see `Command.warn`."""
         if (robot := self._address().robot) != BENCH:
             from windup.robots import load_robot
-            from windup.tools.robot.doubt_once import doubt_once
+            from windup.robots.inspection.doubt_once import doubt_once
 
             doubt_once(load_robot(robot))
 

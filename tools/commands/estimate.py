@@ -19,12 +19,12 @@ from windup.robots import load_robot
 from windup.sim_twin.backend import TwinBackend
 from windup.sim_twin.imu_errors import ImuErrors, imu_on_twin
 from windup.sim_twin.sensors import Sensors
+from windup.sim_twin.twin_state_source import TwinStateSource
 from windup.tools.assembly.build import build_estimator, build_walk
 from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.options.faults import with_faults
 from windup.tools.robot.port_urls import TWIN, check_port
 from windup.tools.robot.robot import Robot
-from windup.tools.robot.twin_state_source import TwinStateSource
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.quantities import Count, Delay, Impulse, Rate, Seed, Some

@@ -6,12 +6,12 @@ from typing import Annotated, Any
 
 import tyro
 
-from windup.control.motions.staged import StagedPlayer
 from windup.robots import load_robot
 from windup.tools.assembly.gaits import find_gait
 from windup.tools.measures.load_gauge import format_load
 from windup.tools.options.common import Common
 from windup.tools.options.twin_options import TwinOptions
+from windup.tools.reports.play_report import PlayReport
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.quantities import Duration
 
@@ -68,9 +68,10 @@ class Play(TwinOptions, Common):
         ) as robot:
             with suppress(KeyboardInterrupt):  # the robot has stopped
                 robot.play(self.graph, self.seconds, disturb=self.disturb())
-            report, player, load = robot.loop, robot.player, robot.load
-            assert player is not None
-            fell = robot.fallen and not (isinstance(player, StagedPlayer) and player.ends_down)
+            report = robot.loop
+            played = report if isinstance(report, PlayReport) else None  # perhaps not so far
+            load = None if played is None else played.load
+            fell = robot.fallen and not (played is not None and played.ends_down)
             return {
                 "robot": robot.description.name,
                 "graph": self.graph,
@@ -78,7 +79,7 @@ class Play(TwinOptions, Common):
                 "done": report.reason == "done" and not fell,
                 "fell": fell,
                 "reason": report.reason,
-                "retries": player.retries,
+                "retries": 0 if played is None else played.retries,
                 "peak_load": None if load is None else load.peak,
                 "peak_joint": "" if load is None else load.joint,
                 "high_load_s": 0.0 if load is None else load.high_time,

@@ -96,9 +96,9 @@ def rise(robot: Robot, tries: int, report: dict[str, Any]) -> None:
         if side is None:
             break
         report["sides"].append(side)
-        report["reason"] = robot.play(f"get_up_{side}").reason
-        if robot.load is not None:
-            report["peak_load"] = max(report["peak_load"], robot.load.peak)
+        played = robot.play(f"get_up_{side}")
+        report["reason"] = played.reason
+        report["peak_load"] = max(report["peak_load"], played.load.peak)
         if report["reason"] == "done":
             break
     else:

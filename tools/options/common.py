@@ -8,9 +8,9 @@ import tyro
 
 from windup.hal.errors import UsageError
 from windup.robots import load_robot
+from windup.robots.inspection.doubt_once import doubt_once
 from windup.sim_twin.wire.world.address import SCHEME
 from windup.tools.options.faults import with_faults
-from windup.tools.robot.doubt_once import doubt_once
 from windup.tools.robot.port_urls import check_port
 from windup.tools.robot.robot import Robot
 from windup.tools.robot.stack import State

@@ -35,7 +35,7 @@ class Armed(Stoppable):
             KeyboardInterrupt: A signal came meanwhile; all torque is off again.
         """
         forget_interruption()
-        with counted_signals(self.stack.wired) as asked, self._held_afterwards():
+        with counted_signals(self.stack.wired) as asked, self.held_afterwards():
             self._arm_once(asked)
         self._raise_if(asked)
 
@@ -51,7 +51,7 @@ class Armed(Stoppable):
             KeyboardInterrupt: As of `arm`.
         """
         forget_interruption()
-        with counted_signals(self.stack.wired) as asked, self._held_afterwards():
+        with counted_signals(self.stack.wired) as asked, self.held_afterwards():
             if self.stack.wired:
                 self._arm(self.backend.rearm, asked)
         self._raise_if(asked)
@@ -64,7 +64,7 @@ class Armed(Stoppable):
         Raises:
             PostureError: It is in no posture for it; torque is off.
         """
-        self._check_going_on(asked)
+        self.check_going_on(asked)
         start = self.start
         if start is not None and (start.unseen or not self.armed):
             try:
@@ -77,7 +77,7 @@ class Armed(Stoppable):
         if start is not None:
             start.unseen = False
 
-    def _check_going_on(self, asked: Asked) -> None:
+    def check_going_on(self, asked: Asked) -> None:
         """Refuse to go on after an interruption, which stops the robot.
 
         Raises:

@@ -1,13 +1,16 @@
-"""Decides at every tick whether a run is over, and why."""
+"""A run: what it consists of, and at every tick whether it is over, and why."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf
 from typing import TYPE_CHECKING
 
-from windup.control.loop import LoopReport, Until
+from windup.control.loop import Estimator, LoopReport, Until
 from windup.control.motions.first_motion import Approach
+from windup.hal.controller import Controller
+from windup.hal.errors import WindupError
 from windup.hal.observation import Observation
+from windup.tools.reports.run_report import RunReport
 from windup.tools.robot.stopping import INTERRUPTED, LAY
 from windup.tools.stopping.interrupts import Asked
 
@@ -15,6 +18,8 @@ if TYPE_CHECKING:  # not needed by robots that do not fall
     from windup.control.falling.protection import Protected
 
 EPSILON = 1e-9  # s
+LEFT = "the loop was left"
+"""The reason of a run over ticks that ended by `break`, `return`, or an exception in the body."""
 
 
 @dataclass(kw_only=True)
@@ -50,10 +55,7 @@ class RunEnd:
 
     def __call__(self, observation: Observation) -> str | None:
         """Return why the run is over, or None."""
-        for wish in self.wishes:
-            if by := wish():
-                self.asked.add(by)
-        if self.asked():
+        if self.interrupted():
             return INTERRUPTED
         if self.protected is not None and self.protected.active:
             return self._landed() if self.protected.finished else None
@@ -66,6 +68,13 @@ class RunEnd:
             return reason
         return "done" if observation.time >= self._end else None
 
+    def interrupted(self) -> bool:
+        """Return whether there has been a stop request."""
+        for wish in self.wishes:
+            if by := wish():
+                self.asked.add(by)
+        return self.asked()
+
     def _begin_at(self, time: float) -> None:
         """Let the duration of the run count from `time`, the end of the first motion so far, s."""
         self.loop.first_motion = time - self.opened
@@ -74,3 +83,45 @@ class RunEnd:
     def _landed(self) -> str:
         """Return why a run ends whose fall is over."""
         return "fell" if self.fallen() else "fall protection triggered, but the robot did not fall"
+
+
+@dataclass
+class PreparedRun:
+    """What a run consists of.
+
+    Attributes:
+        controller: The controller, with what comes before it and what protects it.
+        end: Decides at every tick whether the run is over.
+        report: Filled in as the run goes.
+        estimator: Fills in the base state.
+        may_move: Commands are sent; without, the joints are only read.
+        stop: Stops the robot because of an error.
+        left: The `for` loop over the ticks of this run was left.
+        failed: An error in its body has stopped the robot.
+    """
+
+    controller: Controller
+    end: RunEnd
+    report: RunReport
+    estimator: Estimator | None
+    may_move: bool
+    stop: Callable[[WindupError], None]
+    left: bool = False
+    failed: bool = False
+
+    @property
+    def falling(self) -> bool:
+        """True while the fall protection has the robot: nobody else is asked."""
+        protected = self.end.protected
+        return protected is not None and protected.active
+
+    def fail(self, error: WindupError) -> None:
+        """Stop the robot because of an error that the body of a `for` loop is told."""
+        self.failed = True
+        self.stop(error)
+
+    def leave(self) -> None:
+        """Note that the `for` loop was left, perhaps with a request to stop still unanswered."""
+        self.left = True
+        if not self.failed:
+            self.report.reason = INTERRUPTED if self.end.interrupted() else LEFT

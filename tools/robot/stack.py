@@ -18,12 +18,19 @@ from windup.sim_twin.environment import Environment
 from windup.sim_twin.imu_errors import ImuErrors, imu_on_twin
 from windup.sim_twin.sensors import Sensors
 from windup.sim_twin.twin import Twin
+from windup.sim_twin.twin_state_source import TwinStateSource
 from windup.tools.assembly.build import build_estimator
 from windup.tools.assembly.shape import can_estimate
-from windup.tools.robot.emulated import forget_world, in_a_world, twin_behind
-from windup.tools.robot.noisy_start import begin_noisily
-from windup.tools.robot.port_urls import IMU, TWIN, has_own_connection, port_urls
-from windup.tools.robot.twin_state_source import TwinStateSource
+from windup.tools.robot.port_urls import (
+    IMU,
+    TWIN,
+    begin_noisily,
+    forget_world,
+    has_own_connection,
+    in_a_world,
+    port_urls,
+    twin_behind,
+)
 
 State = Literal["true", "estimated"]
 

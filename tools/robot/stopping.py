@@ -8,9 +8,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from weakref import WeakSet
 
-from windup.control.loop import LoopReport
 from windup.hal.errors import UnhealthyError, UsageError, WindupError
 from windup.hal.guard import StopPolicy
+from windup.tools.reports.run_report import RunReport
 from windup.tools.robot.on_stack import OnStack
 from windup.tools.robot.start import Start
 from windup.tools.stopping.custody import Custody
@@ -41,14 +41,14 @@ class Stoppable(OnStack):
         start: What comes before the first command; None without servos.
     """
 
-    loop: LoopReport = field(default_factory=LoopReport, init=False)
+    loop: RunReport = field(default_factory=RunReport, init=False)
     armed: bool = field(default=False, init=False)
 
     def __post_init__(self) -> None:
         self.start = Start(self.description, self.stack) if self.stack.wired else None
         motion = None if self.start is None else self.start.motion
         self.custody = Custody(self.description, self.backend, self._stop_idle, motion)
-        self._running = Running()
+        self.running = Running()
         self._failed: WindupError | None = None
         self._closed = ""
         if self.stack.wired:
@@ -58,7 +58,7 @@ class Stoppable(OnStack):
     def hear(self, by: str) -> None:
         """Stop where a signal tells the main thread, which is not in a run, to end."""
         note_interruption(by)
-        self._running.end(by)
+        self.running.end(by)
         self.custody.interrupt(by)
 
     def stop(self, *, limp: bool = False) -> None:
@@ -73,8 +73,8 @@ class Stoppable(OnStack):
             KeyboardInterrupt: A signal came meanwhile; the robot has stopped.
         """
         with counted_signals(self.stack.wired) as asked:
-            if not self._running.end_and_wait("robot.stop()"):
-                with self._held_afterwards():
+            if not self.running.end_and_wait("robot.stop()"):
+                with self.held_afterwards():
                     self._stop("limp" if limp else None, asked)
         self._raise_if(asked)
 
@@ -88,18 +88,26 @@ class Stoppable(OnStack):
             note_interruption(asked.by)
             raise RunInterruptedError(self.loop, asked.by)
 
+    def check_open(self) -> None:
+        """Raise unless the robot is open.
+
+        Raises:
+            UsageError: It is closed, or belongs to the process that this one was forked from.
+        """
+        if self._closed:
+            raise UsageError(
+                f"this {self.description.name} {self._closed}: open it with Robot.open"
+            )
+
     @contextmanager
-    def _held_afterwards(self) -> Iterator[None]:
+    def held_afterwards(self) -> Iterator[None]:
         """Take the robot from whoever holds it, and have it held again while it is armed.
 
         Raises:
             UsageError: It is closed.
             WindupError: It could not be held; nobody knows whether its torque is off.
         """
-        if self._closed:
-            raise UsageError(
-                f"this {self.description.name} {self._closed}: open it with Robot.open"
-            )
+        self.check_open()
         self.custody.busy()
         if self._failed is not None:
             raise self._failed

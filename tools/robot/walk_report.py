@@ -7,7 +7,6 @@ import numpy as np
 
 from windup.control.limit_cycle.balancer import Balancer
 from windup.control.limit_cycle.planner import StepPlanner
-from windup.control.loop import LoopReport
 from windup.control.steering.navigation import PathFollower, PointFollower
 from windup.hal.controller import Stopwatch
 from windup.hal.joints import Array
@@ -16,6 +15,8 @@ from windup.sim_twin.ground.clearance import FootClearance
 from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.measures.gauges import Gauges
 from windup.tools.measures.walk_text import format_walk
+from windup.tools.reports.run_data import Results, RunData
+from windup.tools.reports.run_report import RunReport
 from windup.tools.robot.session import Session
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ SETTLED = 10  # steps left out of the mean speed
 
 
 @dataclass
-class WalkReport:
+class WalkReport(Results):
     """A walk, finished or broken off.
 
     Attributes:
@@ -50,7 +51,7 @@ class WalkReport:
     gauges: Gauges
     feet: FootClearance | None = None
     supervisor: "Supervisor | None" = None
-    loop: LoopReport = field(default_factory=LoopReport)
+    loop: RunReport = field(default_factory=RunReport)
 
     def __post_init__(self) -> None:
         self.begin()
@@ -77,6 +78,20 @@ class WalkReport:
     def fell(self) -> bool:
         """True when the robot has fallen."""
         return self.loop.reason == "fell"
+
+    @property
+    def fallen(self) -> bool:
+        """True when the robot lay at the end, also after a stand that followed the walk."""
+        return self.loop.fallen
+
+    @property
+    def data(self) -> RunData:
+        """The arrays of the walk with the names of their columns.
+
+        Raises:
+            UsageError: The walk was not recorded.
+        """
+        return self.loop.data
 
     @property
     def done(self) -> bool:

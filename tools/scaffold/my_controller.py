@@ -38,7 +38,7 @@ def main() -> None:
     with Robot.open(ROBOT) as robot:
         robot.stand(1.0)
         report = robot.run(MyController(robot.description), seconds=2 * PERIOD)
-        print(f"{report.reason} after {report.ticks} ticks; fallen: {robot.fallen}")
+        print(f"{report.reason} after {report.ticks} ticks; fallen: {report.fallen}")
 
 
 if __name__ == "__main__":

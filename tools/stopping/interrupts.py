@@ -50,10 +50,13 @@ class Asked:
     Attributes:
         count: Number of signals, and of buttons and keys, which count as one, so far.
         by: Name of the first of them.
+        raises: From the third signal on, signals raise: code of the user's own runs, which may
+            never end.
     """
 
     count: int = 0
     by: str = ""
+    raises: bool = False
 
     def __call__(self) -> bool:
         """Return whether the program is to end."""
@@ -65,8 +68,14 @@ class Asked:
         return self.count >= IMPATIENT
 
     def remember(self, number: int, frame: Any) -> None:
-        """Count a signal; this is the signal handler."""
+        """Count a signal; this is the signal handler.
+
+        Raises:
+            KeyboardInterrupt: It is the third one, and `raises` is set.
+        """
         self.add(WORDS[signal.Signals(number)])
+        if self.raises and self.impatient:
+            raise KeyboardInterrupt
 
     def add(self, by: str) -> None:
         """Count a request, given its name."""

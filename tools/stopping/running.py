@@ -45,6 +45,11 @@ class Running:
         self._idle.set()
         self._lock.release()
 
+    @property
+    def active(self) -> bool:
+        """True while a run is in progress, in whichever thread."""
+        return self._thread is not None
+
     def end(self, by: str) -> threading.Thread | None:
         """Request the end of the run at its next tick; return its thread, or None without a run."""
         thread = self._thread

@@ -6,7 +6,7 @@ from math import atan2, cos, pi, radians, sin
 import numpy as np
 import pytest
 
-from tests.control.biped import observed, state
+from tests.control.biped import observed, robot_state
 from windup.control.falling.fall import FallPredictor, unreachable
 from windup.control.kinematics.momenta import Momenta
 from windup.hal.errors import StateMissingError
@@ -40,7 +40,7 @@ def test_reach_counts_from_the_hull_and_not_from_its_corners() -> None:
 
 
 def predictor() -> FallPredictor:
-    return FallPredictor(state(), REACH)
+    return FallPredictor(robot_state(), REACH)
 
 
 def tipping(time: float, toward: float, tilt: float, yaw: float = 0.0) -> Observation:

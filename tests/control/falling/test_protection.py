@@ -6,7 +6,7 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
-from tests.control.biped import DT, observed, state
+from tests.control.biped import DT, observed, robot_state
 from windup.control.falling.fall import FallPredictor
 from windup.control.falling.protection import (
     EFFORT,
@@ -45,7 +45,7 @@ def leaning(time: float, pitch: float, rate: float = 0.0) -> Observation:
 
 def protected() -> Protected:
     controller = PoseHolder(JOINTS, np.zeros(2), ramp=0.0)
-    return Protected(controller, FallPredictor(state(), 0.05), WAYS, JOINTS)
+    return Protected(controller, FallPredictor(robot_state(), 0.05), WAYS, JOINTS)
 
 
 class Fall:

@@ -97,7 +97,7 @@ def test_nan_in_mid_walk_is_status_1(shell: Windup, monkeypatch: pytest.MonkeyPa
         walker.step = broken  # type: ignore[method-assign]
         return walker
 
-    monkeypatch.setattr("windup.tools.robot.robot.build_walk", build)
+    monkeypatch.setattr("windup.tools.robot.motions.build_walk", build)
     ran = shell("walk", "op3", "--steps", 5, "--json", "-")
     assert ran.status == 1
     message = "the controller asked joint 'head_pan' for position nan; refused"

@@ -30,7 +30,7 @@ LINES = {
     "swept": ("sweep walk op3 --hlep --out a.csv", "unknown option --hlep (did you mean --help?)"),
     "bench": (
         "bench",
-        "bench: give one of tick, twin, balance, servo, bus, safety, guardian, loop, faults, "
+        "bench: give one of tick, twin, balance, servo, bus, safety, guardian, loop, slow, faults, "
         "unplug, leaks, starts, fuzz, startup (what to measure); see `windup bench --help`",
     ),
     "new": ("new", "new: give one of robot, gait, controller (what to write); see `windup new"),

@@ -7,7 +7,7 @@ import pytest
 from tests.shapes import ARM, write_shape
 from tests.tools.conftest import Windup
 from windup import Robot
-from windup.tools.robot import doubt_once
+from windup.robots.inspection import doubt_once
 from windup.tools.testing.servo_bus import ServoBus
 
 

@@ -90,7 +90,7 @@ def test_ctrl_c_between_an_armed_robot_and_its_first_tick_stops_it(
     robot = bus.robot()
     robot.stand(0.2)
     assert robot.armed
-    monkeypatch.setattr(robot, "_estimator", lambda needs_imu: ctrl_c())
+    monkeypatch.setattr(robot.session, "guarded_estimator", lambda needs_imu: ctrl_c())
     with pytest.raises(RunInterruptedError):
         robot.stand(1.0)
     assert not robot.armed and not driving(bus)

@@ -19,7 +19,7 @@ from windup.tools.benches.safety.standard_error import unread
 from windup.tools.benches.safety.trial import PATIENCE, NotMeasuredError, Trial
 
 PRELOAD = [
-    "windup.tools.robot.robot",
+    "windup.tools.robot.motions",
     "windup.tools.benches.safety.program",
     "windup.tools.benches.safety.emulated",
 ]

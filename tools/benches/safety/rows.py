@@ -125,4 +125,19 @@ SCRIPTS = (
     Row("nobody reads its output", own_fault, FAILED, fault="nobody reads its output"),
 )  # fmt: skip
 
-ROWS = (*SIGNALS, *CONTROLLERS, *KILLS, *HARDWARE, *SCRIPTS)
+LOOPS = (
+    Row(
+        "SIGINT in a loop over ticks", press(SIGINT), ASKED, fault="loops over ticks",
+        activities=("standing",),
+    ),
+    Row(
+        "loop over ticks blocks 0.3 s", own_fault, KILLED, HANG, fault="its loop blocks 0.3 s",
+        activities=("standing",),
+    ),
+    Row(
+        "loop over ticks raises", own_fault, FAILED, fault="its loop raises",
+        activities=("standing",),
+    ),
+)  # fmt: skip
+
+ROWS = (*SIGNALS, *CONTROLLERS, *LOOPS, *KILLS, *HARDWARE, *SCRIPTS)

@@ -81,12 +81,36 @@ def _nobody_reads(robot: Robot, activity: Activity, begin: Begin) -> None:
     move(robot, activity, begin)
 
 
+def _loop_over_ticks(fault: Callable[[], None] | None = None) -> Body:
+    """Return a program whose controller is the body of a `for` loop, and fails there."""
+
+    def loop(robot: Robot, activity: Activity, begin: Begin) -> None:
+        robot.stand(WARM_UP)
+        for _ in robot.ticks():
+            begin.now(activity)
+            if fault is not None and begin.due():
+                fault()
+
+    return loop
+
+
+def _block() -> None:
+    time.sleep(0.3)
+
+
+def _raise() -> None:
+    raise ValueError("a bug in the body of the loop")
+
+
 SCRIPTS: dict[str, Body] = {
     "goes on after Ctrl-C": _goes_on,
     "runs in a thread": _in_a_thread,
     "exits between two calls": _leaves,
     "os._exit": _leaves_at_once,
     "nobody reads its output": _nobody_reads,
+    "loops over ticks": _loop_over_ticks(),
+    "its loop blocks 0.3 s": _loop_over_ticks(_block),
+    "its loop raises": _loop_over_ticks(_raise),
 }
 LEFT_OPEN = ("exits between two calls", "os._exit")
 """Scripts that never close their robot."""

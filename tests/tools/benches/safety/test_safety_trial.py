@@ -22,6 +22,9 @@ from windup.tools.benches.safety.verdict import judge
         ("SIGKILL adapter", "op3"),
         ("goes on after Ctrl-C", "duck"),
         ("exits between two calls", "op3"),
+        ("SIGINT in a loop over ticks", "op3"),
+        ("loop over ticks blocks 0.3 s", "duck"),
+        ("loop over ticks raises", "duck"),
     ],
 )
 def test_somebody_switches_the_robot_off(name: str, robot: str) -> None:

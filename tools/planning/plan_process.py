@@ -20,11 +20,11 @@ from windup.hal.joints import Array
 from windup.robots import RobotDescription
 from windup.sim_twin.rollouts import RolloutPredictor
 from windup.tools.assembly.walk_options import WalkOptions
-from windup.tools.robot.plan_worker import LARGEST, Answer, Question, Task
+from windup.tools.planning.plan_worker import LARGEST, Answer, Question, Task
 
 PATIENCE = 60.0
 """For the process to be built, on a machine that is busy, s."""
-PROGRAM = "from windup.tools.robot.plan_worker import main; main()"
+PROGRAM = "from windup.tools.planning.plan_worker import main; main()"
 GOODBYE = 2.0
 """For the process to end by itself, s."""
 

@@ -19,8 +19,8 @@ from windup.sim_twin.rollouts import RolloutPredictor
 from windup.sim_twin.twin import Twin
 from windup.tools.assembly.build import build_walk
 from windup.tools.assembly.walk_options import WalkOptions
-from windup.tools.robot.plan_process import ProcessPlanner, plan_aside
-from windup.tools.robot.plan_worker import Question, Task, _newest
+from windup.tools.planning.plan_process import ProcessPlanner, plan_aside
+from windup.tools.planning.plan_worker import Question, Task, _newest
 
 OP3 = load_robot("op3")
 DT = 0.004

@@ -1,0 +1,1 @@
+"""Planning of steps in a process beside the loop."""

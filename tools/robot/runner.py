@@ -1,0 +1,261 @@
+"""Runs controllers on a robot, and stops it whatever happens."""
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass, field
+
+from windup.control.loop import Recorder, TickLoop, Until
+from windup.hal.clock import punctual
+from windup.hal.command import JointCommand
+from windup.hal.controller import Controller, Stopwatch
+from windup.hal.errors import ControllerError, WindupError
+from windup.hal.publishing.run_state import RunState
+from windup.hal.ranges import numbers_checked
+from windup.sim_twin.backend import TwinClock
+from windup.tools.assembly.protect import Protection
+from windup.tools.reports.recording import Recording
+from windup.tools.reports.run_report import RunReport
+from windup.tools.robot.given import Body, GivenCommand, ReadOnly
+from windup.tools.robot.run_end import PreparedRun, RunEnd
+from windup.tools.robot.stopping import INTERRUPTED
+from windup.tools.robot.watched import Watched
+from windup.tools.stopping.interrupts import (
+    Asked,
+    RunInterruptedError,
+    counted_signals,
+    note_interruption,
+)
+from windup.tools.stopping.stop_request import stop_requests
+
+
+@dataclass(eq=False)
+class Runner(Watched):
+    """A robot that controllers run on.
+
+    Attributes:
+        paced: Its time is real time.
+        protect: A fall that cannot be prevented is softened, where the robot's file says how.
+        record: Each run keeps the arrays of its report.
+        body: The body of a `for` loop over ticks, while it has the robot.
+        runs: Number of runs so far.
+        unheard: What ended a loop over ticks in the tick in which it was left, where no exception
+            could say so; the next call raises it.
+    """
+
+    paced: bool = False
+    protect: bool = True
+    record: bool = False
+    body: Body | None = field(default=None, init=False)
+    runs: int = field(default=0, init=False)
+    unheard: str = field(default="", init=False)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._protection = Protection(self.description)
+
+    @numbers_checked
+    def run(
+        self,
+        controller: Controller,
+        seconds: float | None = None,
+        *,
+        until: Until | None = None,
+        rollouts: Stopwatch | None = None,
+        down: bool = False,
+        needs_imu: bool = False,
+        report: RunReport | None = None,
+    ) -> RunReport:
+        """Run a controller until the time is over, `until` gives a reason, or the robot falls.
+
+        Where the robot falls `protect`ed, until it lies still.
+
+        Args:
+            controller: The controller.
+            seconds: How long, s of the backend's clock; for ever if None. On servos that were just
+                armed, from the end of the first motion on.
+            until: Called with each observation; a reason ends the run.
+            rollouts: Time to leave out of the ticks.
+            down: The robot may lie: a fall does not end the run.
+            needs_imu: The controller balances with the IMU, or decides by it: one that fails stops
+                the robot. Without, that is a warning.
+            report: Filled in as the run goes; a new one by default.
+
+        Raises:
+            PostureError: It was to be armed, and a joint is outside of its limits, or it needs its
+                feet (not `down`) and sits or lies.
+            FirstMotionError: A joint did not follow in the first motion; the robot is limp.
+            WindupError: From the guard, the backend or the controller; the stop policy has run.
+        """
+        report = RunReport() if report is None else report
+        with (
+            self.prepared(
+                report, controller, seconds, until=until, down=down, needs_imu=needs_imu
+            ) as run,
+            self.looping(run, rollouts) as loop,
+        ):
+            while loop is not None and loop.observe() is not None:
+                loop.finish()
+        return report
+
+    @contextmanager
+    def prepared(
+        self,
+        report: RunReport,
+        controller: Controller,
+        seconds: float | None,
+        *,
+        until: Until | None = None,
+        down: bool,
+        needs_imu: bool,
+        may_move: bool = True,
+    ) -> Iterator[PreparedRun]:
+        """Take the robot, arm it if it `may_move`, and have it held afterwards; see `run`.
+
+        Raises:
+            RunInterruptedError: Somebody has ended the run; the robot has stopped.
+        """
+        self.check_heard()
+        approach = None if self.start is None else self.start.before(controller, down)
+        protected = None
+        if self.protect and self._protection.possible and not down:
+            protected = self._protection.around(approach or controller, controller)
+        wishes = stop_requests(self.backend.backend, keys=self.stack.real)
+        with (
+            counted_signals(self.stack.wired) as asked,
+            self.running,
+            self.held_afterwards(),
+            wishes as wanted,
+        ):
+            estimator = self.guarded_estimator(needs_imu)
+            if may_move:
+                self._get_ready(down, asked)
+            self.loop = report
+            self.runs += 1
+            end = RunEnd(
+                asked=asked, wishes=[wanted, lambda: self.running.asked],
+                fallen=lambda: self.fallen, loop=report, opened=self.backend.clock.now(),
+                seconds=seconds, until=until, down=down, approach=approach, protected=protected,
+            )  # fmt: skip
+            run = PreparedRun(
+                protected or approach or controller, end, report, estimator, may_move,
+                lambda error: self.fail(error, asked),
+            )  # fmt: skip
+            yield run
+        if report.reason == INTERRUPTED and run.left:
+            self.unheard = asked.by
+        elif report.reason == INTERRUPTED:
+            raise RunInterruptedError(report, asked.by)
+
+    def check_heard(self) -> None:
+        """Raise what nobody has heard of yet.
+
+        Raises:
+            RunInterruptedError: A loop over ticks was left, and stopped, in the same tick.
+        """
+        by, self.unheard = self.unheard, ""
+        if by:
+            raise RunInterruptedError(self.loop, by)
+
+    def given_command(self) -> GivenCommand:
+        """Return a controller that holds the last goal of the joints, until it is given another."""
+        last, joints = self.backend.last, self.description.joints
+        held = None if last is None else JointCommand.hold(joints, last[1].position)
+        return GivenCommand(joints, held)
+
+    @contextmanager
+    def looping(
+        self, run: PreparedRun, rollouts: Stopwatch | None = None
+    ) -> Iterator[TickLoop | None]:
+        """Yield the loop of a run; stop the robot if it ends by an error or a wish.
+
+        Yields None where the run was to end before its first tick: the robot has stopped.
+
+        Args:
+            run: The run.
+            rollouts: Time to leave out of the ticks.
+        """
+        asked, state = run.end.asked, RunState.FAULTED
+        if asked():
+            self._stop_before(asked)
+            yield None
+            return
+        recorder = self.telemetry.begin(run.controller)
+        try:
+            with punctual() if self.paced else nullcontext():
+                yield self._loop(run, rollouts, recorder)
+            self.stop_if_asked(asked)
+            state = RunState.FAULTED if run.failed else self.resting()
+        except WindupError as error:
+            self.fail(error, asked)
+            raise
+        except (KeyboardInterrupt, SystemExit) as ended:  # raised by a controller of one's own
+            asked.by = asked.by or type(ended).__name__
+            self.loop.reason = INTERRUPTED
+            self._stop_after_error(asked)
+            state = self.resting()
+        except BaseException as error:
+            self.loop.reason = f"the controller failed: {type(error).__name__}: {error}"
+            self._stop_after_error(asked)
+            if not isinstance(error, Exception):  # a task that is cancelled, a test that fails
+                raise
+            raise ControllerError(self.loop.reason) from error
+        finally:
+            self.conclude(run.report, state)
+
+    def _loop(
+        self, run: PreparedRun, rollouts: Stopwatch | None, recorder: Recorder | None
+    ) -> TickLoop:
+        """Return the loop of a run, with whoever looks on and records."""
+        if isinstance(self.backend.clock, TwinClock):
+            self.backend.clock.align()
+        if self.record:
+            robot = self.description
+            recorder = run.report.recording = Recording(
+                robot.name, robot.joints.names, robot.contacts.names, recorder
+            )
+        return TickLoop(
+            self.backend if run.may_move else ReadOnly(self.backend),
+            run.controller,
+            period=self.period,
+            until=self.looked_at(run.end),
+            estimator=run.estimator,
+            rollouts=rollouts,
+            report=run.report,
+            recorder=recorder,
+        )
+
+    def loop_by_hand(self, controller: Controller, report: RunReport) -> TickLoop:
+        """Return a loop without an end, whose ticks are called one by one outside of a run."""
+        if isinstance(self.backend.clock, TwinClock):
+            self.backend.clock.align()
+        return TickLoop(
+            self.backend,
+            controller if self.start is None else self.start.before(controller, down=True),
+            period=self.period,
+            until=self.looked_at(lambda _: None),
+            estimator=self.guarded_estimator(needs_imu=False),
+            report=report,
+        )
+
+    def open_body(self, body: Body, asked: Asked) -> None:
+        """Let the body of a `for` loop have the robot; its code may hang, and is interrupted."""
+        self.body, asked.raises = body, True
+
+    def close_body(self, asked: Asked) -> None:
+        """Take the robot back from the body of a `for` loop."""
+        self.body, asked.raises = None, False
+
+    def stop_if_asked(self, asked: Asked) -> None:
+        """Stop the robot if that is what ended the run."""
+        if self.loop.reason == INTERRUPTED:
+            if self.stack.wired:
+                note_interruption(asked.by)
+                logging.getLogger(__name__).warning("stopped by %s", asked.by)
+            self._stop_after_error(asked)
+
+    def fail(self, error: WindupError, asked: Asked) -> None:
+        """Stop the robot because of an error, and publish what was seen in its tick, too."""
+        self.loop.reason = str(error)
+        self.telemetry.record_last(self.loop)
+        self._stop_after_error(asked, error)
