@@ -1,3 +1,1 @@
 """Controllers, which map observations to joint commands."""
-
-import windup.hal.late_glfw  # noqa: F401 - before the first file that imports MuJoCo

@@ -6,7 +6,6 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-import windup.hal.late_glfw  # noqa: F401 - before the first file that imports MuJoCo
 from windup.robots.folders import robot_names
 from windup.robots.records import Bus, Drive, Fall, Foot, Imu
 

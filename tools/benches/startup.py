@@ -37,7 +37,7 @@ WAYS: Final[dict[str, Way]] = {
     "windup --help": Way(("-c", CLI.format("--help")), 2.5),
     "windup robots": Way(("-c", CLI.format("robots")), 4.0),
     "import windup.hal": Way(("-c", "import windup.hal"), 1.5),
-    "from windup import Robot": Way(("-c", "from windup import Robot"), 4.0),
+    "from windup import Robot": Way(("-c", "from windup import Robot"), 2.0),
     WITHOUT: Way((*PYTEST, "-p", f"no:{PLUGIN}"), 1.0, WITHOUT),
     "pytest with the plugin": Way(PYTEST, 1.05, WITHOUT),
 }

@@ -1,15 +1,17 @@
 """Runs controllers on a robot, and stops it whatever happens."""
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
+from weakref import ref
 
 from windup.control.loop import Recorder, TickLoop, Until
 from windup.hal.clock import punctual
 from windup.hal.command import JointCommand
 from windup.hal.controller import Controller, Stopwatch
 from windup.hal.errors import ControllerError, WindupError
+from windup.hal.observation import Observation
 from windup.hal.publishing.run_state import RunState
 from windup.hal.ranges import numbers_checked
 from windup.sim_twin.backend import TwinClock
@@ -38,6 +40,7 @@ class Runner(Watched):
         protect: A fall that cannot be prevented is softened, where the robot's file says how.
         record: Each run keeps the arrays of its report.
         body: The body of a `for` loop over ticks, while it has the robot.
+        left_open: The last loop over ticks, as long as somebody has its iterator.
         runs: Number of runs so far.
         unheard: What ended a loop over ticks in the tick in which it was left, where no exception
             could say so; the next call raises it.
@@ -47,6 +50,7 @@ class Runner(Watched):
     protect: bool = True
     record: bool = False
     body: Body | None = field(default=None, init=False)
+    left_open: "ref[Generator[Observation, None, None]] | None" = field(default=None, init=False)
     runs: int = field(default=0, init=False)
     unheard: str = field(default="", init=False)
 
@@ -237,6 +241,12 @@ class Runner(Watched):
             estimator=self.guarded_estimator(needs_imu=False),
             report=report,
         )
+
+    def leave_ticks(self) -> None:
+        """Leave a loop over ticks whose body has the robot: it is to be closed."""
+        run = None if self.left_open is None else self.left_open()
+        if run is not None and self.body is not None:
+            run.close()
 
     def open_body(self, body: Body, asked: Asked) -> None:
         """Let the body of a `for` loop have the robot; its code may hang, and is interrupted."""

@@ -96,6 +96,7 @@ class Session(Runner):
     ) -> None:
         if self._closed:
             return
+        self.leave_ticks()
         with counted_signals(self.stack.wired) as asked:
             try:
                 self._let_go(error)

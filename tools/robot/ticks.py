@@ -1,6 +1,7 @@
 """A run whose controller is the body of a `for` loop."""
 
-from collections.abc import Iterator
+import weakref
+from collections.abc import Generator, Iterator
 
 from windup.control.motions.play import PoseHolder
 from windup.hal.observation import Observation
@@ -36,9 +37,11 @@ class Ticks:
     def __iter__(self) -> Iterator[Observation]:
         # The iterator belongs to the `for` loop alone, so that leaving the loop ends the run.
         self.report = RunReport()
-        return self._run(self.report)
+        run = self._run(self.report)
+        self._runner.left_open = weakref.ref(run)
+        return run
 
-    def _run(self, report: RunReport) -> Iterator[Observation]:
+    def _run(self, report: RunReport) -> Generator[Observation, None, None]:
         """Yield the observation of each tick; its command has been sent before the next one."""
         runner = self._runner
         if self._may_move and not self._move_first(report):

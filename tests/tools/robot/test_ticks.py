@@ -96,6 +96,22 @@ def test_an_exception_in_the_body_stops_the_robot_at_the_end_of_the_with() -> No
     assert duck.loop.reason == LEFT and not duck.armed
 
 
+def test_a_robot_that_is_closed_in_the_body_rests_and_the_loop_ends(duck: Robot) -> None:
+    passes = 0
+    for _ in duck.ticks():
+        passes += 1
+        duck.close()
+    assert passes == 1 and not duck.armed
+
+
+def test_a_loop_whose_iterator_is_kept_ends_with_the_robot() -> None:
+    with on_servos("duck") as duck:
+        kept = iter(duck.ticks())
+        next(kept)
+    assert duck.loop.reason == "done", "it has crouched at last"
+    assert not duck.armed and next(kept, None) is None
+
+
 def test_what_the_guard_refuses_stops_the_robot_at_once(duck: Robot) -> None:
     wrong = np.full(len(duck.joints), np.nan)
     with pytest.raises(UnsafeCommandError, match="for position nan; refused"):
