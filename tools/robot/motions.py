@@ -117,7 +117,7 @@ class Motions:
         # A plan takes its time on a robot; an emulated one waits for it as long.
         wait = robot.model_latency if session.stack.wired else 0.0
         walker = build_walk(robot, options, self.predictor, latency=wait)
-        supervisor = supervisor_for(robot, walker, options.catch)
+        supervisor = supervisor_for(robot, walker, options.catch, session.stack.delay)
         end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
         report = WalkReport(
             session, walker, options, steps, self.predictor.stopwatch, self.seed,
@@ -126,7 +126,8 @@ class Motions:
         with ExitStack() as stack:
             try:
                 if session.paced and walker.planner is not None:
-                    aside = plan_aside(robot, options, self.predictor, session.period)
+                    period = (supervisor and supervisor.period) or session.period
+                    aside = plan_aside(robot, options, self.predictor, period)
                     walker.planner = self._when_ready(stack.enter_context(aside))
                 self._walk(report, end, disturb, stand)
             except RunInterruptedError as stopped:
