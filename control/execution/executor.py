@@ -58,6 +58,10 @@ class Feet(Protocol):
         """For each foot, whether it is on the ground, by its height."""
         ...
 
+    def reach_yaw(self, stance: int) -> float:
+        """Return the heading, rad, of the other foot's reach beside the stance foot."""
+        ...
+
     def ground(self, foot: int) -> Array:
         """Return the points (p, 3) of a sole in the world frame, m."""
         ...

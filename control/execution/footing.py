@@ -82,6 +82,10 @@ class Footing:
         """Return the points (p, 3) of a sole in the world frame, m."""
         return self.state.ground[self._rows[foot]]
 
+    def reach_yaw(self, stance: int) -> float:
+        """Return the heading, rad, of a foot's reach: the base's, under which the hips are."""
+        return self.yaw
+
     def middle(self, foot: int) -> Array:
         """Return the middle (2,) of a sole on the ground, m: its site is there."""
         return np.asarray(self.places[foot])

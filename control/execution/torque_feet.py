@@ -62,7 +62,7 @@ class TorqueFeet:
     @property
     def yaw(self) -> float:
         """Heading of the base, rad."""
-        return self.dynamics.state.yaw
+        return yaw_of(self.dynamics.base.rotation)
 
     @property
     def feet(self) -> list[Pose]:
@@ -78,6 +78,10 @@ class TorqueFeet:
     def down(self) -> list[bool]:
         """For each foot, whether its lowest corner is on the ground."""
         return [float(self.ground(foot)[:, 2].min()) < self._touch for foot in (0, 1)]
+
+    def reach_yaw(self, stance: int) -> float:
+        """Return the heading, rad, of a foot's reach: the stance foot's, as the trunk turns."""
+        return yaw_of(self.feet[stance].rotation)
 
     def ground(self, foot: int) -> Array:
         """Return the corners (p, 3) of a sole in the world frame, m."""

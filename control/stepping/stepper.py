@@ -212,7 +212,8 @@ class Stepper:
         # The landing point is a centre of pressure: the sole's middle, not its site.
         middle = feet.middle(foot) - feet.places[foot]
         self._wanted = pivot + self.stepping.gain * (wanted - pivot) - middle
-        region = self._reach.region(feet.places[1 - foot], feet.yaw, 1 - 2 * foot)
+        yaw = feet.reach_yaw(1 - foot)
+        region = self._reach.region(feet.places[1 - foot], yaw, 1 - 2 * foot)
         start = self._flight.start if self.phase == "swing" and self._flight else feet.places[foot]
         holes = self.no_step.holes(foot, feet.yaw, start[:2])
         placed = place(foot, self._wanted, region, holes)

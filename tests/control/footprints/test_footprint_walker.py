@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pytest
 
-from tests.control.biped import state
+from tests.control.biped import robot_state
 from windup.control.execution.motion import Planted, WalkMotion
 from windup.control.footprints.directed_file import Directed
 from windup.control.footprints.footprint_walker import FootprintWalker
@@ -29,7 +29,7 @@ STEPS = (Footprint(0, np.array([0.1, 0.2, 0.0])), Footprint(1, np.array([0.0, -0
 class Ideal:
     """A body whose weight and feet are where the motion has them."""
 
-    state: RobotState = field(default_factory=state)
+    state: RobotState = field(default_factory=robot_state)
     contact: bool = True
     places: Array = field(default_factory=lambda: np.array([[0.0, 0.1, 0.0], [0.0, -0.1, 0.0]]))
     com: Array = field(default_factory=lambda: np.zeros(2))
