@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from windup.robots import RobotDescription
+from windup.tools.assembly.walk_options import WalkOptions
 
 if TYPE_CHECKING:
     from windup.control.limit_cycle.balancer import Balancer
@@ -10,14 +11,14 @@ if TYPE_CHECKING:
 
 
 def supervisor_for(
-    robot: RobotDescription, walker: "Balancer", catch: str | None, delay: float
+    robot: RobotDescription, walker: "Balancer", options: WalkOptions, delay: float = 0.0
 ) -> "Supervisor | None":
-    """Return the supervisor that catches pushes by the rule `catch`, or None without a rule.
+    """Return the supervisor that catches pushes, or None where the options want none.
 
     The `delay` is from a state being measured to a command for it acting, s.
     """
-    if catch is None:
+    if not options.catch:
         return None
     from windup.tools.assembly.supervise import build_supervisor
 
-    return build_supervisor(robot, walker, catch, delay)
+    return build_supervisor(robot, walker, options.way, delay)

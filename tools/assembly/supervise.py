@@ -9,14 +9,14 @@ from windup.tools.assembly.stepping import STEPPING, build_stepper, find_steppin
 
 
 def build_supervisor(
-    robot: RobotDescription, walker: Balancer, way: str, delay: float = 0.0
+    robot: RobotDescription, walker: Balancer, way: str | None = None, delay: float = 0.0
 ) -> Supervisor:
     """Return `walker` under a supervisor whose stepper steps in one of the ways.
 
     Args:
         robot: The robot.
         walker: The walk.
-        way: Name of a step rule.
+        way: Name of a step rule; the robot's own by default.
         delay: From a state being measured to a command for it acting, s; where torques are.
 
     Raises:
@@ -25,7 +25,7 @@ def build_supervisor(
             steps.
     """
     stepping = find_stepping(robot)
-    table = stepping.catch
+    table, way = stepping.catch, way or stepping.way
     if table is None:
         raise UsageError(
             f"{robot.name} does not hand its walk over to steps: its {STEPPING} has no [catch]"
