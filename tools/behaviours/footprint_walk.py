@@ -5,13 +5,13 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from windup.control.footprints.footprint_walker import FootprintWalker
 from windup.control.footprints.footprints import Footprint
 from windup.hal.controller import Predictor
 from windup.robots import RobotDescription
 from windup.tools.behaviours.behaviour import Behaviour
 from windup.tools.behaviours.directed import (
     DirectedWalk,
-    FootprintWalker,
     build_directed,
     feet_of,
     loop_rate,
