@@ -139,7 +139,7 @@ class ServoExecutor:
             self._step(goals, motion, motion.swing, now)
         else:
             self._balance(goals, motion, now)
-        return self._hold.at(goals)
+        return self._hold.with_position(goals)
 
     def _follow(self, goals: Array, motion: Motion, yaws: tuple[float, float], now: float) -> None:
         """Set the goals of the legs in `goals` (n,): the base follows the path of the weight."""

@@ -5,14 +5,14 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from windup.control.stepping.step_decision import Damping, Reach, StepRule, find_rule
-from windup.hal.config import Part, Positive, Record, Seconds
+from windup.hal.config import Fraction, Positive, Seconds, TomlRecord
 from windup.hal.joints import Array
 
 Metres = Annotated[float, Meta(ge=0.0, le=100.0)]
 Support = Literal["hull", "capsule"]
 
 
-class ReachTable(Record, frozen=True):
+class ReachTable(TomlRecord, frozen=True):
     """Bounds of a foot's place relative to the other foot, m.
 
     See `windup.control.stepping.step_decision.Reach`.
@@ -28,14 +28,14 @@ class ReachTable(Record, frozen=True):
         return Reach(self.back, self.front, self.near, self.far)
 
 
-class RuleTable(Record, frozen=True):
+class RuleTable(TomlRecord, frozen=True):
     """Dampings of a rule, in omega; without `where` the predicted capture point is the target."""
 
     when: Damping
     where: Damping | None = None
 
 
-class ComfortTable(Record, frozen=True, kw_only=True):
+class ComfortTable(TomlRecord, frozen=True, kw_only=True):
     """Comfort steps of a robot that stands still: times and tolerances.
 
     Attributes:
@@ -51,14 +51,14 @@ class ComfortTable(Record, frozen=True, kw_only=True):
 
     shift: Positive = 0.5
     pace: Positive = 100.0
-    least: Part = 0.0
+    least: Fraction = 0.0
     wait: Seconds = 0.3
     swing: Positive = 0.4
     inside: float = 0.02
     askew: Positive = 0.15
 
 
-class CatchTable(Record, frozen=True):
+class CatchTable(TomlRecord, frozen=True):
     """Pushes during a walk that are answered by steps, by the deviation of the capture point.
 
     Attributes:
@@ -82,7 +82,7 @@ class CatchTable(Record, frozen=True):
         return bool(-ahead > self.back and abs(left) < -ahead * self.slant)
 
 
-class Stepping(Record, frozen=True):
+class Stepping(TomlRecord, frozen=True):
     """Stepping parameters; `up`, `lead`, `balance` and `trunk` are for position servos only.
 
     Attributes:
@@ -123,10 +123,10 @@ class Stepping(Record, frozen=True):
     reach: ReachTable
     duration: Positive
     lift: Metres
-    up: Part = 0.5
-    early: Part = 0.6
+    up: Fraction = 0.5
+    early: Fraction = 0.6
     late: Positive = 1.0
-    update: Part = 0.5
+    update: Fraction = 0.5
     dwell: Seconds = 0.05
     settle: Seconds = 0.4
     lead: Seconds = 0.0

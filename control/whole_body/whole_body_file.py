@@ -1,9 +1,9 @@
 """Format of a robot's `whole_body.toml`: weights and gains of whole-body control. SI units."""
 
-from windup.hal.config import NotNegative, Positive, Record
+from windup.hal.config import NotNegative, Positive, TomlRecord
 
 
-class Weights(Record, frozen=True, kw_only=True):
+class Weights(TomlRecord, frozen=True, kw_only=True):
     """Weights of the objectives, for errors of accelerations in m/s2 and rad/s2.
 
     Attributes:
@@ -25,7 +25,7 @@ class Weights(Record, frozen=True, kw_only=True):
     stance: NotNegative = 1000.0
 
 
-class Feedback(Record, frozen=True, kw_only=True):
+class Feedback(TomlRecord, frozen=True, kw_only=True):
     """Feedback of an objective: acceleration = stiffness * error + damping * error of the rate.
 
     Attributes:
@@ -37,7 +37,7 @@ class Feedback(Record, frozen=True, kw_only=True):
     damping: NotNegative
 
 
-class WholeBodyFile(Record, frozen=True, kw_only=True):
+class WholeBodyFile(TomlRecord, frozen=True, kw_only=True):
     """Whole-body control of a robot with torque joints (Wu & Zordan 2010, section 5).
 
     Attributes:
