@@ -12,10 +12,10 @@ from typing import Literal
 
 import numpy as np
 
-from windup.control.footprints.footprints import between, onto, seen_from
-from windup.control.footprints.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
-from windup.control.footprints.swing import gaussian_progress, lift
+from windup.control.execution.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
+from windup.control.execution.swing import gaussian_progress, lift
 from windup.control.kinematics.limb_ik import LimbIk, Pose
+from windup.control.kinematics.places import between, onto, seen_from
 from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.rotation import lying, turn, way_round
 from windup.control.stride.pendulum import (

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.control.stepping.test_footing import OP3, seen
+from tests.control.execution.test_footing import OP3, seen
 from windup.control.stride.pendulum import VelocityCommand
 from windup.control.stride.strider import Phase, Strider
 from windup.hal.observation import Observation
