@@ -16,20 +16,21 @@ from windup.tools.benches.fuzz.bench import measure_fuzz
 from windup.tools.benches.guardian import measure_takeovers
 from windup.tools.benches.jitter import measure_jitter
 from windup.tools.benches.leaks import measure_leaks
-from windup.tools.benches.loop import measure_tick, measure_twin
 from windup.tools.benches.random_starts import measure_starts
 from windup.tools.benches.safety.bench import ROBOTS, measure_safety
 from windup.tools.benches.servo import measure_servos
 from windup.tools.benches.slow.bench import measure_slow
 from windup.tools.benches.soak_table import fault_table
 from windup.tools.benches.startup import measure_startup
+from windup.tools.benches.tick import measure_tick
+from windup.tools.benches.twin import measure_twin
 from windup.tools.benches.unplug import measure_unplugs
-from windup.tools.benches.wire import Maker, measure_bus
+from windup.tools.benches.wire import BenchFamily, measure_bus
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.quantities import Count, Seed
 
-What = Literal[
+BenchName = Literal[
     "tick",
     "twin",
     "balance",
@@ -47,7 +48,7 @@ What = Literal[
     "startup",
 ]
 
-USED: dict[What, tuple[str, ...]] = {
+USED: dict[BenchName, tuple[str, ...]] = {
     "tick": ("robot",),
     "twin": ("robot",),
     "balance": ("robot",),
@@ -71,9 +72,11 @@ USED: dict[What, tuple[str, ...]] = {
 class Bench(Command):
     """Measure the cost and the safety of the stack."""
 
-    what: Annotated[What, tyro.conf.Positional]
+    what: Annotated[BenchName, tyro.conf.Positional]
     """What to measure.
-    tick: one iteration of the loop. twin: guarded stepping of the twin against bare physics.
+    tick: one iteration of the loop, in ms and in bare physics steps of OP3; without --robot also
+    of the human, and status 1 if one takes longer than its target.
+    twin: guarded stepping of the twin against bare physics.
     balance: the rollouts of one step. servo: the twin's servo against its data sheet.
     bus: a cycle of 20 servos against the bus's own time and other packages.
     safety: end a moving robot in every way there is, and check that torque goes off (an hour).
@@ -89,7 +92,7 @@ class Bench(Command):
     that is more than 5 MB, or any file, thread or process."""
     robot: str | None = None
     """Name of the robot, or path of its folder; op3 by default, safety and slow: op3 and duck."""
-    vendor: Maker = "dynamixel2"
+    vendor: BenchFamily = "dynamixel2"
     """bus: the servos and their protocol: STS3215, MX-28 (protocol 1), or XM430 (protocol 2)."""
     moments: Count = 20
     """safety: number of random moments for each way to end, shared by the robots."""
@@ -122,7 +125,7 @@ class Bench(Command):
     def run(self) -> int:
         """Measure and print the result; return the exit status."""
         measures: dict[str, Callable[..., dict[str, Any]]] = {
-            "tick": measure_tick,
+            "tick": partial(measure_tick, targets=self.robot is None),
             "twin": measure_twin,
             "balance": measure_balance,
             "servo": measure_servos,

@@ -11,7 +11,7 @@ from windup.control.stride.strider import Phase, Strider
 from windup.hal.observation import Observation
 from windup.hal.publishing.controller_block import ControllerBlock
 from windup.hal.publishing.run_state import RunState
-from windup.tools.assembly.build import body_of
+from windup.tools.assembly.state import state_of
 from windup.tools.assembly.stepping import stepping_stance
 from windup.tools.behaviours.directed import limbs_of
 from windup.tools.behaviours.striding import find_stride
@@ -21,8 +21,8 @@ HOW = find_stride(OP3)
 
 
 def strider(order: VelocityCommand) -> Strider:
-    body, stance = body_of(OP3), stepping_stance(OP3)
-    return Strider(OP3.joints, body, OP3.base, limbs_of(OP3, body), stance, lambda _: order, HOW)
+    state, stance = state_of(OP3), stepping_stance(OP3)
+    return Strider(OP3.joints, state, limbs_of(OP3), stance, lambda _: order, HOW)
 
 
 def play(robot: Strider, still: Observation, seconds: float) -> list[Phase]:
