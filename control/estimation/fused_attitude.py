@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from windup.hal.imu.quaternion import between
+from windup.hal.geometry.quaternion import between
 from windup.hal.joints import Array
 from windup.hal.observation import ImuState
 

@@ -20,10 +20,10 @@ import numpy as np
 from windup.hal.backend import Clock
 from windup.hal.errors import PortError
 from windup.hal.geometry.gravity import STANDARD_GRAVITY
+from windup.hal.geometry.quaternion import conjugate, multiply
 from windup.hal.imu.i2c import I2cChip, I2cOpener, open_i2c
 from windup.hal.imu.kind import ImuKind
 from windup.hal.imu.mounting import Mounting
-from windup.hal.imu.quaternion import conjugate, multiply
 from windup.hal.observation import ImuState
 from windup.hal.port.replug import RETRY, Opener
 

@@ -21,10 +21,10 @@ from typing import NamedTuple
 import numpy as np
 
 from windup.hal.geometry.gravity import STANDARD_GRAVITY
+from windup.hal.geometry.quaternion import between, conjugate, euler_zxy, multiply, rotate
 from windup.hal.imu.frame_clock import FrameClock
 from windup.hal.imu.kind import ImuKind
 from windup.hal.imu.mounting import Mounting
-from windup.hal.imu.quaternion import between, conjugate, euler_zxy, multiply, rotate
 from windup.hal.imu.serial_link import SerialLink
 from windup.hal.joints import Array
 from windup.hal.observation import ImuState

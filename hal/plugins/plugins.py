@@ -102,12 +102,13 @@ class Plugins(Generic[Thing]):
         try:
             found = entry.load()
         except (Exception, SystemExit) as error:  # importing it runs code that is not ours
-            why = " ".join(f"{type(error).__name__}: {error}".split())
-            return PluginError(_describe(entry, why))
+            return PluginError(_describe(entry, exception_text(error)))
         try:
             return self._accept(entry.name, found)
         except ValueError as error:
             return PluginError(_describe(entry, str(error)))
+        except Exception as error:  # from the code of the object, such as its constructor
+            return PluginError(_describe(entry, exception_text(error)))
 
     def _report(self, line: str) -> None:
         if line not in self._reported:
@@ -118,3 +119,12 @@ class Plugins(Generic[Thing]):
 def _describe(entry: "EntryPoint", what: str) -> str:
     place = f"entry point {entry.name} = {entry.value} of {entry.group}"
     return f"{distribution_of(entry)}: {place}: {what}"
+
+
+def exception_text(error: BaseException) -> str:
+    """Return type and message of an exception in one line.
+
+    >>> exception_text(KeyError("angle"))
+    "KeyError: 'angle'"
+    """
+    return " ".join(f"{type(error).__name__}: {error}".split())

@@ -13,6 +13,7 @@ from windup.control.kinematics.body import heading
 from windup.control.loop import Estimator
 from windup.hal.errors import UsageError
 from windup.hal.geometry.angles import wrapped
+from windup.hal.geometry.quaternion import roll_pitch_yaw
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState, Observation
 from windup.robots import load_robot
@@ -226,9 +227,7 @@ def _errors(base: BaseState, truth: BaseState) -> Array:
 
 def _angles(orientation: Array) -> Array:
     """Return roll, pitch and heading, rad."""
-    w, x, y, z = orientation
-    roll = np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-    pitch = np.arcsin(np.clip(2.0 * (w * y - x * z), -1.0, 1.0))
+    roll, pitch, _ = roll_pitch_yaw(orientation)
     return np.array([roll, pitch, float(heading(orientation))])
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from windup.hal.contacts import ContactSensors
+from windup.hal.geometry.quaternion import roll_pitch_yaw
 from windup.hal.observation import Observation
 from windup.tools.robot.walk_report import WalkReport
 from windup.tools.terminal.picture import load_pyplot, save_picture
@@ -34,10 +35,9 @@ class Trace:
         base = observation.base
         if base is None or (self.times and observation.time < self.times[-1] + TRACE):
             return
-        w, x, y, z = base.orientation
-        yaw = np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+        yaw = roll_pitch_yaw(base.orientation)[2]
         self.times.append(observation.time)
-        self.base.append((float(base.position[0]), float(base.position[1]), float(yaw)))
+        self.base.append((float(base.position[0]), float(base.position[1]), yaw))
         self.feet.append([bool(down) for down in self.contacts.feet_down(observation.contacts)])
 
 

@@ -12,9 +12,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from windup.hal.geometry.gravity import STANDARD_GRAVITY
+from windup.hal.geometry.quaternion import roll_pitch_yaw
 from windup.hal.imu.mounting import Mounting
 from windup.hal.imu.opencr import IN_OP3
-from windup.hal.joints import Array
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.imu.imu import ImuSource
 from windup.sim_twin.wire.servos.register_file import (
@@ -242,15 +242,3 @@ class OpenCr:
             servo.set_supply(self.supply if on and servo not in self.dead else 0.0, now)
         if self.on_power is not None:
             self.on_power(on)
-
-
-def roll_pitch_yaw(quaternion: Array) -> Array:
-    """Return the rotations (3,) about x, then y, then z of a wxyz quaternion, rad."""
-    w, x, y, z = quaternion
-    return np.array(
-        [
-            math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
-            math.asin(max(-1.0, min(1.0, 2.0 * (w * y - z * x)))),
-            math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
-        ]
-    )

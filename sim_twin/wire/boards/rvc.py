@@ -14,7 +14,7 @@ from functools import partial
 from typing import Final
 
 from windup.hal.geometry.gravity import STANDARD_GRAVITY
-from windup.hal.joints import Array
+from windup.hal.geometry.quaternion import zxy_angles
 from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.bus.heard import Heard
 from windup.sim_twin.wire.device import Device
@@ -31,20 +31,10 @@ _BODY = struct.Struct("<B6h3x")
 
 def encode_rvc(index: int, imu: ImuSource) -> bytes:
     """Return the frame with the present readings of `imu`."""
-    angles = [angle / ANGLE_UNIT for angle in yaw_pitch_roll(imu.orientation)]
+    angles = [angle / ANGLE_UNIT for angle in zxy_angles(imu.orientation)]
     words = [*angles, *(imu.acceleration / ACCELERATION_UNIT)]
     body = _BODY.pack(index & 0xFF, *(max(-32768, min(32767, round(word))) for word in words))
     return HEADER + body + bytes((sum(body) & 0xFF,))
-
-
-def yaw_pitch_roll(quaternion: Array) -> tuple[float, float, float]:
-    """Return the rotations about z, then x, then y of a wxyz quaternion, rad."""
-    w, x, y, z = quaternion
-    return (
-        math.atan2(2.0 * (w * z - x * y), 1.0 - 2.0 * (x * x + z * z)),
-        math.asin(max(-1.0, min(1.0, 2.0 * (w * x + y * z)))),
-        math.atan2(2.0 * (w * y - x * z), 1.0 - 2.0 * (x * x + y * y)),
-    )
 
 
 class Mute:

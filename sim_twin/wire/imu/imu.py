@@ -5,8 +5,8 @@ from typing import Protocol
 import numpy as np
 
 from windup.hal.geometry.gravity import STANDARD_GRAVITY
+from windup.hal.geometry.quaternion import multiply
 from windup.hal.imu.mounting import Mounting
-from windup.hal.imu.quaternion import multiply
 from windup.hal.joints import Array
 
 

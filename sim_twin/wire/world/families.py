@@ -6,6 +6,7 @@ from pkgutil import resolve_name
 from windup.hal.errors import PluginError, UnknownNameError, UsageError
 from windup.hal.families import FAMILIES, Family, families, family_of, servo_model
 from windup.hal.families.catalogue import ADDED_FAMILIES
+from windup.hal.plugins.plugins import exception_text
 from windup.sim_twin.wire.bus.bus import WireProtocol
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.shafts.shaft import Shaft
@@ -99,7 +100,7 @@ def _emulation_of(family: Family) -> Emulation:
     try:
         found = resolve_name(family.emulation)
     except (Exception, SystemExit) as error:  # importing it runs code that is not ours
-        why = " ".join(f"{type(error).__name__}: {error}".split())
+        why = exception_text(error)
         raise PluginError(f"{where}: emulation {family.emulation}: {why}") from None
     if not isinstance(found, Emulation):
         kind = type(found).__name__

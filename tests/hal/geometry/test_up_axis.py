@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from windup.hal.geometry.quaternion import euler_zxy, rotate
 from windup.hal.geometry.up_axis import UP_AXIS, up_axis, uprightness
-from windup.hal.imu.quaternion import euler_zxy, rotate
 
 
 @pytest.mark.parametrize("angles", [(0.0, 0.0, 0.0), (1.0, 0.3, -0.2), (-2.0, 2.5, 0.7)])

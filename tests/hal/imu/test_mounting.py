@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from windup.hal.errors import ConfigError
+from windup.hal.geometry.quaternion import rotate
 from windup.hal.imu.mounting import Axes, Mounting
-from windup.hal.imu.quaternion import rotate
 
 TURNED: list[Axes] = [
     ("x", "y", "z"),

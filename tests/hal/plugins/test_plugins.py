@@ -86,6 +86,13 @@ def test_a_broken_entry_point_is_one_line_that_names_its_distribution(
     assert warned(caplog) == [line]
 
 
+def test_a_bug_in_the_object_s_own_code_is_said_as_one(folder: Path) -> None:
+    install(folder, "buggy", {GROUP: {"a": "buggy_one:A"}}, {"buggy_one": "A = {}"})
+    plugins: Plugins[object] = Plugins(GROUP, lambda name, found: vars(found)[name])
+    with pytest.raises(PluginError, match=r"^buggy 1\.0: entry point a = .*: TypeError: vars\(\)"):
+        plugins.load("a")
+
+
 def test_a_name_of_windup_or_of_another_distribution_is_not_taken(
     folder: Path, plugins: Plugins[int], caplog: pytest.LogCaptureFixture
 ) -> None:

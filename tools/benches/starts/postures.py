@@ -6,6 +6,7 @@ from typing import Literal, get_args
 import mujoco
 import numpy as np
 from scipy.optimize import brentq, least_squares
+from scipy.spatial.transform import Rotation
 
 from windup.control.estimation.posture import PostureSense
 from windup.control.kinematics.legs import legs_of
@@ -28,12 +29,13 @@ LEAN = 0.25
 """Largest tilt of a hanging robot, rad."""
 SIDES = (("front", 0.35), ("back", 0.35), ("left", 0.15), ("right", 0.15))
 QUARTER = np.pi / 2.0
-TURNS: dict[str, tuple[Array, float]] = {
-    "front": (np.array([0.0, 1.0, 0.0]), QUARTER),
-    "back": (np.array([0.0, 1.0, 0.0]), -QUARTER),
-    "left": (np.array([1.0, 0.0, 0.0]), -QUARTER),
-    "right": (np.array([1.0, 0.0, 0.0]), QUARTER),
+TURNS: dict[str, tuple[str, float]] = {
+    "front": ("y", QUARTER),
+    "back": ("y", -QUARTER),
+    "left": ("x", -QUARTER),
+    "right": ("x", QUARTER),
 }
+"""Axis and angle by which an upright robot comes to lie, rad."""
 
 
 @dataclass(frozen=True)
@@ -42,14 +44,14 @@ class Placed:
 
     Attributes:
         pose: (n,) joint positions, rad.
-        turn: (4,) orientation of the base, wxyz.
+        turn: Orientation of the base.
         lift: Height of its lowest point above the floor, m.
         held: Whether it is held until its servos are driven; else it lies, limp.
         hangs: Whether its base is held for ever.
     """
 
     pose: Array
-    turn: Array
+    turn: Rotation
     lift: float = 0.0
     held: bool = True
     hangs: bool = False
@@ -59,7 +61,7 @@ def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator
     """Return a random posture of a robot, with a random heading."""
     joints = robot.joints
     jitter = JITTER * rng.normal(size=len(joints))
-    around = turned([0.0, 0.0, 1.0], float(rng.uniform(-np.pi, np.pi)))
+    around = Rotation.from_euler("z", float(rng.uniform(-np.pi, np.pi)))
 
     def inside(pose: Array) -> Array:
         return np.clip(pose, joints.lower, joints.upper)
@@ -68,21 +70,22 @@ def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator
         low = robot.stance if robot.crouch is None else robot.crouch
         depth = float(rng.uniform(0.3, 1.0)) if kind == "squatting" else 0.0
         pose, level = on_feet(robot, robot.stance + depth * (low - robot.stance) + jitter)
-        return Placed(inside(pose), after(around, level))
+        return Placed(inside(pose), around * level)
     if kind == "hanging":
         towards = float(rng.uniform(-np.pi, np.pi))
-        tilt = turned([np.cos(towards), np.sin(towards), 0.0], float(rng.uniform(0.0, LEAN)))
+        angle = float(rng.uniform(0.0, LEAN))
+        tilt = Rotation.from_rotvec([angle * np.cos(towards), angle * np.sin(towards), 0.0])
         pose = float(rng.uniform(0.0, 1.0)) * robot.stance + 2.0 * jitter
-        return Placed(inside(pose), after(around, tilt), lift=0.2, hangs=True)
+        return Placed(inside(pose), around * tilt, lift=0.2, hangs=True)
     if kind == "sitting":
         pose = inside(np.asarray(find_gait(robot, "sit").graph.pose[-1]) + jitter)
-        return Placed(pose, after(around, _leaning_back(robot, pose)))
+        return Placed(pose, around * _leaning_back(robot, pose))
     side = str(rng.choice([name for name, _ in SIDES], p=[share for _, share in SIDES]))
-    return Placed(inside(2.0 * jitter), after(around, turned(*TURNS[side])), held=False)
+    return Placed(inside(2.0 * jitter), around * Rotation.from_euler(*TURNS[side]), held=False)
 
 
-def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Array]:
-    """Return a pose (n,) near `pose`, and a base orientation (4,) with flat soles under the CoM.
+def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Rotation]:
+    """Return a pose (n,) near `pose`, and a base orientation with flat soles under the CoM.
 
     The ankles are adjusted, as when a limp robot is put down by hand.
     """
@@ -95,7 +98,7 @@ def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Array]:
     ankles = _ankles(robot)
 
     def put(x: Array) -> Array:
-        data.qpos[3:7] = after(turned([0.0, 1.0, 0.0], x[0]), turned([1.0, 0.0, 0.0], x[1]))
+        data.qpos[3:7] = _level(x).as_quat(scalar_first=True)
         data.qpos[7:] = pose
         data.qpos[7 + ankles] += x[2:]
         mujoco.mj_kinematics(model, data)
@@ -112,7 +115,12 @@ def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Array]:
         return np.concatenate([tilts, 10.0 * step, 3.0 * weight[:2], 0.02 * x])
 
     best = least_squares(off, np.zeros(2 + len(ankles))).x
-    return put(best), data.qpos[3:7].copy()
+    return put(best), _level(best)
+
+
+def _level(x: Array) -> Rotation:
+    """Return the rotation about y and then about the new x by the first two of `x`, rad."""
+    return Rotation.from_euler("YX", x[:2])
 
 
 def _ankles(robot: RobotDescription) -> Array:
@@ -124,8 +132,8 @@ def _ankles(robot: RobotDescription) -> Array:
     return np.array(pitches + (rolls or hips))
 
 
-def _leaning_back(robot: RobotDescription, pose: Array) -> Array:
-    """Return the base orientation (4,) in which a robot sits on its seat and heels."""
+def _leaning_back(robot: RobotDescription, pose: Array) -> Rotation:
+    """Return the base orientation in which a robot sits on its seat and heels."""
     model = robot.model
     sense = PostureSense(model, [foot.body for foot in robot.feet])
 
@@ -134,18 +142,4 @@ def _leaning_back(robot: RobotDescription, pose: Array) -> Array:
         feet, others = sense.lowest(pose, np.array([np.sin(lean), 0.0, np.cos(lean)]))
         return others - feet
 
-    return turned([0.0, 1.0, 0.0], -float(brentq(seat, 0.0, 1.2)))
-
-
-def turned(axis: Array | list[float], angle: float) -> Array:
-    """Return a quaternion (4,) wxyz, a rotation by `angle` rad about `axis` (3,)."""
-    turn = np.empty(4)
-    mujoco.mju_axisAngle2Quat(turn, np.asarray(axis, dtype=np.float64), angle)
-    return turn
-
-
-def after(first: Array, then: Array) -> Array:
-    """Return the product of two quaternions (4,) wxyz."""
-    turn = np.empty(4)
-    mujoco.mju_mulQuat(turn, first, then)
-    return turn
+    return Rotation.from_euler("y", -float(brentq(seat, 0.0, 1.2)))

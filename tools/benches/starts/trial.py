@@ -128,7 +128,7 @@ def _place(robot: Robot, world: BusWorld, placed: Placed) -> None:
     physics, twin = world.physics, robot.twin
     assert isinstance(physics, TwinPhysics)
     twin.reset(placed.pose)
-    twin.data.qpos[:2], twin.data.qpos[3:7] = 0.0, placed.turn
+    twin.data.qpos[:2], twin.data.qpos[3:7] = 0.0, placed.turn.as_quat(scalar_first=True)
     mujoco.mj_forward(twin.model, twin.data)
     twin.data.qpos[2] += placed.lift - lowest_point(twin.model, twin.data)
     mujoco.mj_forward(twin.model, twin.data)

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from windup.hal.geometry.angles import wrapped
 from windup.tools.reproduce.kenwright.jobs import cell, count, push
 from windup.tools.reproduce.kenwright.recorder import apart, column
 from windup.tools.reproduce.study.figure import Claim, DataTable, Figure, Job, Result, Results
@@ -28,8 +29,8 @@ def jobs(quick: bool) -> list[Job]:
 def facing(result: Result) -> float:
     """Return how far the foot that is turned more is from the trunk's heading at the end, deg."""
     yaw = column(result, "yaw")[-1]
-    away = [column(result, f"{foot}.yaw")[-1] - yaw for foot in ("left", "right")]
-    return float(np.degrees(np.abs(np.arctan2(np.sin(away), np.cos(away)))).max())
+    away = np.array([column(result, f"{foot}.yaw")[-1] - yaw for foot in ("left", "right")])
+    return float(np.degrees(np.abs(wrapped(away))).max())
 
 
 def relaxed(result: Result) -> bool:

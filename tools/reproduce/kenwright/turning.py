@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from windup.hal.geometry.angles import wrapped
 from windup.hal.joints import Array
 from windup.tools.reproduce.kenwright.jobs import push
 from windup.tools.reproduce.kenwright.pushes import FACING, facing
@@ -32,7 +33,7 @@ def jobs(quick: bool) -> list[Job]:
 
 def apart(foot: Array, trunk: Array) -> Array:
     """Return how far a foot's heading is from the trunk's, degrees, from both in rad."""
-    return np.degrees(np.arctan2(np.sin(foot - trunk), np.cos(foot - trunk)))
+    return np.degrees(wrapped(foot - trunk))
 
 
 def landed(result: Result) -> list[float]:

@@ -37,9 +37,10 @@ def fit(k: Array, q: Array) -> tuple[float, float]:
     """Return slope and R2 of a straight line."""
     if len(k) < 3:
         return float("nan"), float("nan")
-    slope, offset = np.polyfit(k, q, 1)
-    spread = float(np.sum((q - q.mean()) ** 2))
-    return float(slope), 1.0 - float(np.sum((q - slope * k - offset) ** 2)) / max(spread, 1e-12)
+    from scipy.stats import linregress  # slow to import, and only the judgement needs it
+
+    line = linregress(k, q)
+    return float(line.slope), float(line.rvalue**2)
 
 
 def _fits(results: Results, name: str) -> list[tuple[float, float]]:

@@ -131,13 +131,14 @@ def _linear(theirs: str, speeds: dict[float, float], tried: int) -> Claim:
         # A few runs cannot tell; the whole grid with fewer walks than this can.
         told = False if tried >= 3 else None
         return Claim(theirs, f"too few walks ({_text(speeds)})", criterion, told)
-    q, v = np.array(list(speeds)), np.array(list(speeds.values()))
-    slope, fit = np.polyfit(q, v, 1)[0], np.corrcoef(q, v)[0, 1]
+    from scipy.stats import linregress  # slow to import, and only the judgement needs it
+
+    line = linregress(list(speeds), list(speeds.values()))
     return Claim(
         theirs,
-        f"{_text(speeds)}: slope {slope:+.2f} m/s a unit, correlation {fit:+.2f}",
+        f"{_text(speeds)}: slope {line.slope:+.2f} m/s a unit, correlation {line.rvalue:+.2f}",
         criterion,
-        bool(fit >= 0.9),
+        bool(line.rvalue >= 0.9),
     )
 
 

@@ -6,8 +6,8 @@ from scipy.spatial.transform import Rotation
 
 from tests.sim_twin.wire.wire_host1 import open_host1
 from windup.hal.geometry.gravity import STANDARD_GRAVITY
+from windup.hal.geometry.quaternion import euler_zxy
 from windup.hal.imu.bno08x_rvc import decode
-from windup.hal.imu.quaternion import euler_zxy
 from windup.sim_twin.twin import Twin
 from windup.sim_twin.wire import drop_world
 from windup.sim_twin.wire.boards.rvc import encode_rvc

@@ -5,9 +5,9 @@ import pytest
 
 from tests.sim_twin.wire.wire_host import Host, open_host
 from tests.sim_twin.wire.wire_host1 import open_host1
+from windup.hal.geometry.quaternion import euler_zxy
 from windup.hal.imu.bno08x_rvc import decode
 from windup.hal.imu.opencr import OpenCr
-from windup.hal.imu.quaternion import euler_zxy
 from windup.hal.joints import Array
 from windup.sim_twin.twin import Twin
 from windup.sim_twin.wire import drop_world

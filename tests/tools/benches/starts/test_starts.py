@@ -22,8 +22,7 @@ def test_a_robot_on_its_feet_has_flat_level_soles_under_its_weight() -> None:
     )
     assert legs is not None
     normals, middles = legs.soles(pose[None])
-    w, x, y, z = turn
-    up = np.array([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)])
+    up = turn.inv().apply([0.0, 0.0, 1.0])
     assert (normals[0] @ up) == pytest.approx([1.0, 1.0], abs=2e-3)
     assert np.ptp(middles[0] @ up) < 0.005
 

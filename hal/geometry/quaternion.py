@@ -1,6 +1,9 @@
-"""The few operations on unit quaternions (wxyz) that an IMU's frames need."""
+"""Operations on one unit quaternion, wxyz, for what is computed in every tick.
 
-from math import atan2, cos, sin
+`scipy.spatial.transform.Rotation` has them all, but takes ten times as long for one rotation.
+"""
+
+from math import asin, atan2, cos, sin
 
 import numpy as np
 
@@ -30,6 +33,26 @@ def euler_zxy(yaw: float, pitch: float, roll: float) -> Array:
     about_x = np.array([cos(pitch / 2), sin(pitch / 2), 0.0, 0.0])
     about_y = np.array([cos(roll / 2), 0.0, sin(roll / 2), 0.0])
     return multiply(multiply(about_z, about_x), about_y)
+
+
+def zxy_angles(orientation: Array) -> tuple[float, float, float]:
+    """Return the angles about z, then x, then y of a quaternion (4,), rad; see `euler_zxy`."""
+    w, x, y, z = orientation.tolist()
+    return (
+        atan2(2.0 * (w * z - x * y), 1.0 - 2.0 * (x * x + z * z)),
+        asin(max(-1.0, min(1.0, 2.0 * (w * x + y * z)))),
+        atan2(2.0 * (w * y - x * z), 1.0 - 2.0 * (x * x + y * y)),
+    )
+
+
+def roll_pitch_yaw(orientation: Array) -> tuple[float, float, float]:
+    """Return the angles about x, then y, then z (fixed axes) of a quaternion (4,), rad."""
+    w, x, y, z = orientation.tolist()
+    return (
+        atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
+        asin(max(-1.0, min(1.0, 2.0 * (w * y - z * x)))),
+        atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)),
+    )
 
 
 def between(before: Array, after: Array) -> Array:
