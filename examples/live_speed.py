@@ -6,7 +6,7 @@ the same until its `order` is replaced, here by a callback, elsewhere by a gamep
 
 from math import radians
 
-from windup import Robot, WalkOptions
+from windup import Robot
 from windup.control.steering.guide import Steady, WalkCommand
 
 PLAN = {
@@ -30,7 +30,7 @@ def main() -> dict[int, float]:
         guide.order = PLAN.get(number, guide.order)
 
     with Robot.open("op3") as robot:
-        report = robot.walk(steps=STEPS, options=WalkOptions(guide=guide), on_step=[on_step])
+        report = robot.walk(steps=STEPS, guide=guide, on_step=[on_step])
         print(report)
     for first, last in ((10, 20), (30, 40), (65, 70)):
         mean = sum(speeds[n] for n in range(first, last)) / (last - first)

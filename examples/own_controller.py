@@ -1,7 +1,7 @@
 """A controller of your own: OP3 shifts its weight from one foot to the other.
 
-Run it with `python examples/own_controller.py`. A controller is any class with `reset` and `step`;
-the same one runs on the twin, on an emulated bus and on the robot.
+Run it with `python`, or with `windup run op3 examples/own_controller.py`. A controller is any class
+with `reset` and `step`; the same one runs on the twin, on an emulated bus and on the robot.
 """
 
 import numpy as np

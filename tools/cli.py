@@ -113,8 +113,8 @@ def parse(arguments: list[str]) -> Any:
         parse_options,  # only now: it takes longer than the help
     )
 
-    kind = COMMANDS[name].load()
-    return parse_options(name, kind, separate(arguments)[1:])
+    words = separate(arguments)[1:]
+    return parse_options(name, COMMANDS[name].load().specialised(words), words)
 
 
 def _write_error(command: object, error: WindupError) -> None:

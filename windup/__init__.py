@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     )
     from windup.robots import RobotDescription, load_robot, robot_names
     from windup.tools.assembly.walk_options import WalkOptions
+    from windup.tools.behaviours.behaviour import Behaviour
     from windup.tools.reports.play_report import PlayReport
     from windup.tools.reports.run_data import RunData, load_run
     from windup.tools.reports.run_report import RunReport
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
 PLACES = {
     "BaseState": "windup.hal",
+    "Behaviour": "windup.tools.behaviours.behaviour",
     "Controller": "windup.hal",
     "ImuState": "windup.hal",
     "JointCommand": "windup.hal",
@@ -56,6 +58,7 @@ PLACES = {
 
 __all__ = [
     "BaseState",
+    "Behaviour",
     "Controller",
     "ImuState",
     "JointCommand",

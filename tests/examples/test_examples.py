@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from windup.tools import cli
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 PLUGIN = "windup.tools.testing.pytest_plugin"
 
@@ -23,6 +25,12 @@ def test_an_example_is_short(path: Path) -> None:
 def test_own_controller_sways_and_stands() -> None:
     width, fallen = load("own_controller")["main"]()
     assert width > 0.01 and not fallen
+
+
+@pytest.mark.parametrize("name", ["shoulder_sine", "own_controller"])
+def test_controllers_run_from_the_command_line(name: str) -> None:
+    file = str(EXAMPLES / f"{name}.py")
+    assert cli.run(["run", "op3", file, "--seconds", "1"]) == 0
 
 
 def test_live_speed_follows_what_is_commanded() -> None:

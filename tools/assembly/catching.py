@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING
 
 from windup.robots import RobotDescription
+from windup.tools.assembly.walk_options import WalkOptions
 
 if TYPE_CHECKING:
     from windup.control.limit_cycle.balancer import Balancer
@@ -10,11 +11,11 @@ if TYPE_CHECKING:
 
 
 def supervisor_for(
-    robot: RobotDescription, walker: "Balancer", catch: str | None
+    robot: RobotDescription, walker: "Balancer", options: WalkOptions
 ) -> "Supervisor | None":
-    """Return the supervisor that catches pushes by the rule `catch`, or None without a rule."""
-    if catch is None:
+    """Return the supervisor that catches pushes, or None where the options want none."""
+    if not options.catch:
         return None
     from windup.tools.assembly.supervise import build_supervisor
 
-    return build_supervisor(robot, walker, catch)
+    return build_supervisor(robot, walker, options.way)

@@ -37,7 +37,7 @@ def steering_of(
     heading = None if options.open_loop else gait.file.heading
     return Steering(
         gait=gait,
-        guide=options.guide or route or Steady(order),
+        guide=route or Steady(order),
         speed=SpeedControl(gait, options.speed),
         side=SideControl(gait, options.side),
         style=Styling(gait, spells=styles_of_walk(options)),

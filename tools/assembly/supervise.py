@@ -8,15 +8,18 @@ from windup.robots import RobotDescription
 from windup.tools.assembly.stepping import STEPPING, build_stepper, find_stepping, stepping_stance
 
 
-def build_supervisor(robot: RobotDescription, walker: Balancer, way: str) -> Supervisor:
-    """Return `walker` under a supervisor whose stepper steps in one of the ways.
+def build_supervisor(
+    robot: RobotDescription, walker: Balancer, way: str | None = None
+) -> Supervisor:
+    """Return `walker` under a supervisor whose stepper steps in a way, by default the robot's own.
 
     Raises:
         UnknownNameError: There is no such way.
         UsageError: The robot has no stepping.toml or no [catch] table in it, or the way takes no
             steps.
     """
-    table = find_stepping(robot).catch
+    stepping = find_stepping(robot)
+    table, way = stepping.catch, way or stepping.way
     if table is None:
         raise UsageError(
             f"{robot.name} does not hand its walk over to steps: its {STEPPING} has no [catch]"

@@ -1,1 +1,1 @@
-"""Runs that are more than one controller: footprints, striding, pushes."""
+"""Behaviours: whatever moves a robot, each with its options, its controller and its report."""

@@ -1,7 +1,6 @@
 """Putting together what walks footprints, walking them, and how well each foot came down."""
 
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -212,13 +211,16 @@ class DirectedWalk:
         }
 
 
-def walk_prints(robot: Robot, controller: DirectedController) -> DirectedWalk:
-    """Walk footprints, and look where the feet come down.
+def walk_prints(robot: Robot, controller: DirectedController, walk: DirectedWalk) -> None:
+    """Walk footprints, and look where the feet come down; `walk` is filled in on the way.
 
     A foot is looked at once it bears the weight, so that its slip counts; and seen from where the
     other one stood when it came down, for that one moves as soon as it bears nothing.
+
+    Raises:
+        WindupError: From the loop.
+        KeyboardInterrupt: Somebody stopped the robot; `walk` says how far it came.
     """
-    walk = DirectedWalk(feet_of(robot.description), controller.prints, controller.how)
     origin: list[Array] = []
     stances: list[Array] = []
 
@@ -234,10 +236,10 @@ def walk_prints(robot: Robot, controller: DirectedController) -> DirectedWalk:
             walk.falls.append(Footfall(wanted, seen_from(seen, places[wanted.foot])))
         return "done" if controller.finished else None
 
-    with suppress(KeyboardInterrupt):  # the robot has stopped; the report says how far it came
+    try:
         walk.reason = robot.run(controller, until=until, needs_imu=True).reason
-    walk.seconds = robot.loop.sim_time
-    return walk
+    finally:
+        walk.seconds = robot.loop.sim_time
 
 
 def _places(robot: Robot, controller: DirectedController) -> Array:

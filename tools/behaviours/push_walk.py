@@ -51,7 +51,7 @@ def push_walking(
     return {
         "robot": description.name,
         "during": "walk",
-        "way": options.catch or "walk",
+        "way": plan.way if options.catch else "walk",
         "impulse": plan.impulse,
         "directions": list(plan.directions),
         "seed": robot.seed,

@@ -2,8 +2,7 @@
 
 from bisect import bisect_right
 from collections.abc import Sequence
-from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import atan2, degrees, radians
 from typing import Any, Final
 
@@ -115,52 +114,70 @@ def build_strider(robot: RobotDescription, legs: Sequence[Leg], seconds: float) 
     return Strider(robot.joints, body, robot.base, limbs, stance, orders, how)
 
 
-def stride(
-    robot: Robot, strider: Strider, legs: Sequence[Leg], seconds: float, *, path: bool = False
-) -> dict[str, Any]:
-    """Let it stride and return how that went; a twin is measured by its truth.
+@dataclass
+class StrideTrace:
+    """Where a robot goes while it strides; a twin is measured by its truth.
 
-    Args:
+    Attributes:
         robot: The robot, in its start pose.
-        strider: The controller.
+        strider: Its controller.
         legs: What it is ordered to do.
         seconds: When it is to halt, s.
-        path: Return where it was, too: time s, x m, y m, yaw rad.
+        reason: Why the run ended.
+        rows: Time s, x m, y m, yaw rad.
     """
-    rows: list[list[float]] = []
-    origin = robot.backend.clock.now()
 
-    def until(observation: Observation) -> str | None:
-        time = observation.time - origin
-        base = observation.base if robot.stack.twin is None else robot.stack.twin.base
+    robot: Robot
+    strider: Strider
+    legs: Sequence[Leg]
+    seconds: float
+    reason: str = "interrupted"
+    rows: list[list[float]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self._origin, self._halted = self.robot.backend.clock.now(), 0.0
+
+    def until(self, observation: Observation) -> str | None:
+        """Look at a tick; return why the run is over, or None."""
+        time = observation.time - self._origin
+        twin, rows = self.robot.stack.twin, self.rows
+        base = observation.base if twin is None else twin.base
         if base is not None and (not rows or time - rows[-1][0] >= TICK - 1e-9):
             rows.append([time, *_place(base)])
-        if strider.phase != "stand" or time < seconds:
-            halted[0] = time
-        if time - halted[0] >= REST and time >= seconds + REST:
+        if self.strider.phase != "stand" or time < self.seconds:
+            self._halted = time
+        if time - self._halted >= REST and time >= self.seconds + REST:
             return "done"
-        return "does not halt" if time > seconds + LATE else None
+        return "does not halt" if time > self.seconds + LATE else None
 
-    halted, reason = [0.0], "interrupted"
-    with suppress(KeyboardInterrupt):
-        reason = robot.run(strider, until=until, needs_imu=True).reason
-    trace = np.array(rows).reshape(-1, 4)
-    moved = _seen(trace[0], trace[-1]) if len(trace) else np.zeros(3)
-    more = {"path": trace.tolist()} if path else {}
-    return more | {
-        "robot": robot.description.name,
-        "seed": robot.seed,
-        "good": reason == "done",
-        "reason": reason,
-        "steps": strider.steps,
-        "seconds": robot.loop.sim_time,
-        "moved_m": moved[:2].tolist(),
-        "turned_deg": degrees(moved[2]),
-        "legs": [
-            _measured(leg, end, trace) for leg, end in zip(legs, _ends(legs, seconds), strict=True)
-        ],
-        "tick_ms": robot.loop.tick_ms(),
-    }
+    def result(self) -> dict[str, Any]:
+        """Return how it went."""
+        robot, trace = self.robot, np.array(self.rows).reshape(-1, 4)
+        moved = _seen(trace[0], trace[-1]) if len(trace) else np.zeros(3)
+        ends = _ends(self.legs, self.seconds)
+        return {
+            "robot": robot.description.name,
+            "seed": robot.seed,
+            "good": self.reason == "done",
+            "reason": self.reason,
+            "steps": self.strider.steps,
+            "seconds": robot.loop.sim_time,
+            "moved_m": moved[:2].tolist(),
+            "turned_deg": degrees(moved[2]),
+            "legs": [_measured(leg, end, trace) for leg, end in zip(self.legs, ends, strict=True)],
+            "tick_ms": robot.loop.tick_ms(),
+        }
+
+
+def stride(trace: StrideTrace) -> None:
+    """Let a robot stride until it halts, and trace where it goes.
+
+    Raises:
+        WindupError: From the loop.
+        KeyboardInterrupt: Somebody stopped it.
+    """
+    run = trace.robot.run(trace.strider, until=trace.until, needs_imu=True)
+    trace.reason = run.reason
 
 
 def _ends(legs: Sequence[Leg], seconds: float) -> list[float]:

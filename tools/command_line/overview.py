@@ -7,7 +7,6 @@ from windup.tools.command_line.table import Entry
 
 HEAD: Final = """\
 usage: windup COMMAND ...       `windup COMMAND --help` lists its options
-
 Controllers for small servo humanoids: on the robot, and on its twin.
 """
 

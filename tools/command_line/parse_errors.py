@@ -22,15 +22,15 @@ def mistake(name: str, command: type, words: list[str], said: str) -> str:
         words: Words after the name.
         said: Output of the parser, in its box.
     """
-    known = options(command)
+    known, usage = options(command), getattr(command, "usage", "") or name
     for word in takewhile(lambda word: word != "--", words):
         option = word.partition("=")[0].replace("_", "-")
         if word.startswith("--") and option not in known:
             near = near_word(option, known)
-            return f"{name}: unknown option {option}{near}; `windup {name} --help` lists all"
+            return f"{name}: unknown option {option}{near}; `windup {usage} --help` lists all"
     if missing := re.match(r"Missing from windup \S+: (.*?)\.? \(required\)", gist(said)):
-        return f"{name}: {_wanted(missing[1])}; see `windup {name} --help`"
-    return wrong_number(said) or f"{name}: {gist(said).rstrip('.')}; see `windup {name} --help`"
+        return f"{name}: {_wanted(missing[1])}; see `windup {usage} --help`"
+    return wrong_number(said) or f"{name}: {gist(said).rstrip('.')}; see `windup {usage} --help`"
 
 
 def options(command: Any) -> set[str]:

@@ -37,6 +37,7 @@ COMMANDS: Final[dict[str, Entry]] = {
         "Stride",
         "Walk as an inverted pendulum, in any direction, and halt",
     ),
+    "run": Entry("commands.run", "Run", "Run a controller of your own, from a file of Python"),
     "stop": Entry("commands.stop", "Stop", "Switch all torque off, and read it back"),
     "scan": Entry("bringup.scan", "Scan", "Look for servos on a port, at every baud rate"),
     "emulate": Entry(

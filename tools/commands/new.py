@@ -75,7 +75,7 @@ class New(Command):
         """Return the commands to run next."""
         path = next(iter(self._files))
         if self.kind == "controller":
-            return [f"python {shlex.quote(str(path))}"]
+            return [shlex.join(["windup", "run", self.robot, str(path)])]
         if self.kind == "gait":
             inside = self.robot not in robot_names() and path.parent.parent == Path(self.robot)
             gait = path.stem if inside else str(path)

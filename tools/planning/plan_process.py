@@ -8,7 +8,6 @@ import socket
 import subprocess
 import sys
 import time as wall
-from dataclasses import replace
 from types import TracebackType
 from typing import Self
 
@@ -169,7 +168,6 @@ def plan_aside(
     robot: RobotDescription, options: WalkOptions, predictor: RolloutPredictor, period: float
 ) -> ProcessPlanner:
     """Return a process that plans what `predictor` would have played; its stopwatch counts."""
-    options = replace(options, guide=None)  # who leads the walk plans nothing, and may not pickle
     latency = robot.model_latency
     task = Task(robot.folder, options, predictor.delay, latency, period, predictor.ground)
     return ProcessPlanner(task, predictor.stopwatch)

@@ -9,6 +9,7 @@ from typing import Final
 from windup.control.loop import Until
 from windup.control.motions.play import GraphPlayer, PoseHolder
 from windup.control.motions.staged import StagedPlayer
+from windup.control.steering.guide import Guide
 from windup.hal.controller import Stopwatch
 from windup.hal.errors import UnknownNameError
 from windup.hal.joints import Array
@@ -106,6 +107,7 @@ class Motions:
         on_step: Sequence[OnStep],
         disturb: Disturb | None,
         stand: Seconds,
+        guide: Guide | None,
     ) -> WalkReport:
         """Walk a number of steps; see `Robot.walk`."""
         session, robot = self.session, self.session.description
@@ -117,7 +119,9 @@ class Motions:
         # A plan takes its time on a robot; an emulated one waits for it as long.
         wait = robot.model_latency if session.stack.wired else 0.0
         walker = build_walk(robot, options, self.predictor, latency=wait)
-        supervisor = supervisor_for(robot, walker, options.catch)
+        if guide is not None:
+            walker.steering.guide = guide
+        supervisor = supervisor_for(robot, walker, options)
         end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
         report = WalkReport(
             session, walker, options, steps, self.predictor.stopwatch, self.seed,

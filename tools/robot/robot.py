@@ -13,6 +13,7 @@ from windup.hal.joints import Array
 from windup.tools.robot.handle import Handle
 
 if TYPE_CHECKING:
+    from windup.control.steering.guide import Guide
     from windup.sim_twin.environment import Environment
     from windup.sim_twin.rollouts import RolloutPredictor
     from windup.tools.assembly.walk_options import WalkOptions
@@ -130,6 +131,7 @@ class Robot(Handle):
         on_step: "Sequence[OnStep]" = (),
         disturb: Disturb | None = None,
         stand: float = 0.0,
+        guide: "Guide | None" = None,
     ) -> "WalkReport":
         """Walk a number of steps and return a report.
 
@@ -140,12 +142,15 @@ class Robot(Handle):
             on_step: All are called at the end of each step with its number and its speed, m/s.
             disturb: Called before the first step, to arrange pushes on a twin.
             stand: Then come to rest and stand for so long, s.
+            guide: Leads the walk, instead of speed, side, turn, path and goal of the options.
 
         Raises:
             UsageError: The options do not fit the gait; nothing has moved.
             RunInterruptedError: By a signal; the robot has stopped, and the report is attached.
         """
-        return self._motions.walk(speed, steps, options, on_step, self._bound(disturb), stand)
+        return self._motions.walk(
+            speed, steps, options, on_step, self._bound(disturb), stand, guide
+        )
 
     def _bound(self, disturb: Disturb | None) -> Callable[[], None] | None:
         return None if disturb is None else partial(disturb, self)

@@ -1,12 +1,13 @@
 """Texts of the examples, by file."""
 
 import json
+import shlex
 from math import degrees, radians
 from pathlib import Path
 from typing import Final
 
 from windup.hal.joints import Joint
-from windup.robots import RobotDescription
+from windup.robots import RobotDescription, robot_names
 from windup.robots.folders import FILE, GAITS
 from windup.tools.scaffold.joint_choice import harmless_swing
 from windup.tools.schemas.files import schema_line
@@ -78,10 +79,14 @@ def controller_files(path: Path, name: str, robot: RobotDescription) -> Files:
     kind = "".join(word.capitalize() for word in path.stem.split("_"))
     kind = kind if kind.endswith("Controller") else f"{kind}Controller"
     text = (HERE / CONTROLLER).read_text(encoding="utf-8")
+    given = shlex.quote(name)
+    of_ours = name in robot_names() or Path(name).is_absolute()
+    url = shlex.quote(f"twin://{name}" if of_ours else f"twin://./{name}")
     changes = {
-        '"op3"': json.dumps(name),
+        "run op3": f"run {given}",
+        "--port twin://op3": f"--port {url}",
         '"head_pan"': json.dumps(swing.joint),
-        "DEGREES = 15.0": f"DEGREES = {swing.degrees}",
+        "degrees: float = 15.0": f"degrees: float = {swing.degrees}",
         CONTROLLER: path.name,
         "MyController": kind,
     }

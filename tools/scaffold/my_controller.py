@@ -1,25 +1,33 @@
-"""A controller of your own: it stands, and moves one joint to and fro.
+"""A controller of your own: it holds the stance, and moves one joint to and fro.
 
-Run it on the twin: `python my_controller.py`. On the robot it is the same, with
-`Robot.open(ROBOT, port="/dev/ttyUSB0", arm=True)`: hold on to the robot.
+Run it on the twin with `windup run op3 my_controller.py`, through emulated servos with
+`--port twin://op3`, and on the robot with `--port /dev/ttyUSB0 --arm`: hold on to it then.
 """
 
 import math
 
-from windup import JointCommand, Observation, Robot, RobotDescription
-
-ROBOT = "op3"
-JOINT = "head_pan"
-DEGREES = 15.0
-PERIOD = 2.0  # s
+from windup import JointCommand, Observation, RobotDescription
 
 
 class MyController:
-    """Observations in, joint commands out: no clock and no input or output of its own."""
+    """Observations in, joint commands out: no clock and no input or output of its own.
 
-    def __init__(self, robot: RobotDescription) -> None:
-        self.joints, self.stance = robot.joints, robot.stance
-        self.index = robot.joints.index(JOINT)
+    Args:
+        robot: The robot; all other arguments are options of the command line.
+        joint: Which joint moves.
+        degrees: How far.
+        period: Of one motion to and fro, s.
+    """
+
+    def __init__(
+        self,
+        robot: RobotDescription,
+        joint: str = "head_pan",
+        degrees: float = 15.0,
+        period: float = 2.0,
+    ) -> None:
+        self.joints, self.stance, self.period = robot.joints, robot.stance, period
+        self.way = robot.joints.array({joint: math.radians(degrees)})
 
     def reset(self, observation: Observation) -> None:
         """Called once, before the first step."""
@@ -27,19 +35,6 @@ class MyController:
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Called each tick; `observation` has joints, imu, contacts and base. SI units, rad."""
-        phase = 2.0 * math.pi * (observation.time - self.begin) / PERIOD
-        goal = self.stance.copy()
-        goal[self.index] += math.radians(DEGREES) * (1.0 - math.cos(phase)) / 2.0
-        return JointCommand.hold(self.joints, goal)
-
-
-def main() -> None:
-    """Stand, run the controller for two periods, and say how it went."""
-    with Robot.open(ROBOT) as robot:
-        robot.stand(1.0)
-        report = robot.run(MyController(robot.description), seconds=2 * PERIOD)
-        print(f"{report.reason} after {report.ticks} ticks; fallen: {report.fallen}")
-
-
-if __name__ == "__main__":
-    main()
+        phase = 2.0 * math.pi * (observation.time - self.begin) / self.period
+        goal = self.stance + 0.5 * (1.0 - math.cos(phase)) * self.way
+        return JointCommand.of(self.joints, position=goal)

@@ -186,7 +186,7 @@ def test_ctrl_c_in_a_walk_is_status_130_with_the_report(
 
         return update
 
-    monkeypatch.setattr("windup.tools.commands.walk._update", interrupt)
+    monkeypatch.setattr("windup.tools.behaviours.walk._shown", interrupt)
     ran = shell("walk", "op3", "--steps", 40, "--json", "-")
     assert ran.status == 130
     assert (ran.json["steps"], ran.json["reason"]) == (3, "interrupted")

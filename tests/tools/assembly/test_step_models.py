@@ -23,7 +23,7 @@ def test_a_walk_adds_its_models_to_a_file(shell: Windup, tmp_path: Path) -> None
         sizes.append(path.read_text().count("jacobian"))
     assert 0 < sizes[0] <= sizes[1]
     file = json.loads(path.read_text())
-    assert file["commands"] == [f"windup walk op3 --steps 6 --speed {at}" for at in ("0.0", "0.1")]
+    assert file["commands"] == [f"windup walk op3 --speed {at} --steps 6" for at in ("0.0", "0.1")]
     assert file["rate_hz"] == 250.0
 
 

@@ -14,6 +14,7 @@ from windup.hal.errors import UsageError
 from windup.hal.ranges import Range
 from windup.tools.command_line.table import COMMANDS
 
+OWN = Path(__file__).parents[3] / "examples" / "shoulder_sine.py"
 LINES = {
     "walk": "walk op3 --port /dev/ttyUSB9 --arm",
     "play": "play op3 wave --port /dev/ttyUSB9 --arm",
@@ -23,6 +24,7 @@ LINES = {
     "step": "step op3 --foot left --to 0.05 0.12 --port /dev/ttyUSB9",
     "footprints": "footprints op3 --random 2 --port /dev/ttyUSB9",
     "stride": "stride op3 --port /dev/ttyUSB9",
+    "run": f"run op3 {OWN} --port /dev/ttyUSB9",
     "stop": "stop op3 --port /dev/ttyUSB9",
     "scan": "scan /dev/ttyUSB9",
     "emulate": "emulate op3",

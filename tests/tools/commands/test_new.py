@@ -1,8 +1,6 @@
 """What `windup new` writes works at once, and nothing is overwritten."""
 
 import shlex
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -72,16 +70,15 @@ def test_a_new_gait_goes_into_ones_own_robot(shell: Windup, here: Path) -> None:
 
 
 @pytest.mark.parametrize("robot", ["op3", "rex"])
-def test_a_new_controller_is_a_program_that_runs(shell: Windup, here: Path, robot: str) -> None:
+def test_a_new_controller_runs(shell: Windup, here: Path, robot: str) -> None:
     shell("new", "robot", "rex")
     ran = shell("new", "controller", "head_shake", "--robot", robot, "--json", "-")
-    assert ran.json["next"] == ["python head_shake.py"]
+    assert ran.json["next"] == [f"windup run {robot} head_shake.py"]
     text = (here / "head_shake.py").read_text()
-    assert "class HeadShakeController:" in text and "python head_shake.py" in text
-    done = subprocess.run(
-        [sys.executable, "head_shake.py"], capture_output=True, text=True, check=True
-    )
-    assert done.stdout.startswith("done after ") and "fallen: False" in done.stdout
+    assert "class HeadShakeController:" in text and f"windup run {robot} head_shake.py" in text
+    did = shell(*shlex.split(ran.json["next"][0])[1:], "--period", "1", "--json", "-")
+    assert (did.status, did.json["reason"]) == (0, "done"), did.err
+    assert did.json["behaviour"] == "HeadShakeController"
 
 
 @pytest.mark.parametrize("name", ["rex/robot.toml", "rex/gaits/squat.toml"])

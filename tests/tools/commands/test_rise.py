@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from tests.tools.conftest import Windup
-from windup.tools.commands.rise import rise
+from windup.tools.behaviours.rise import rise
 from windup.tools.robot.robot import Robot
 
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from tests.tools.conftest import Windup
-from windup.tools.commands.rise import lay
-from windup.tools.commands.stand import format_stand
+from windup.tools.behaviours.rise import lay
+from windup.tools.behaviours.stand import format_stand
 from windup.tools.measures.fall_report import format_fall
 from windup.tools.measures.walk_text import format_walk
 from windup.tools.robot.robot import Robot

@@ -11,7 +11,7 @@ from windup.control.motions.play import PoseHolder
 from windup.hal.errors import FirstMotionError, PostureError
 from windup.sim_twin.servo.servo_motor import KP
 from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics
-from windup.tools.commands.rise import lay, rise
+from windup.tools.behaviours.rise import lay, rise
 from windup.tools.robot.robot import Robot
 from windup.tools.testing.servo_bus import ServoBus
 

@@ -16,9 +16,9 @@ from windup.sim_twin.lowest import lowest_point
 from windup.sim_twin.twin import Twin
 from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics
 from windup.sim_twin.wire.world.bus_world import BusWorld
+from windup.tools.behaviours.rise import rise
 from windup.tools.benches.starts.faults import Broken, Fault
 from windup.tools.benches.starts.postures import KINDS, Kind, Placed, random_posture
-from windup.tools.commands.rise import rise
 from windup.tools.robot.robot import Robot
 from windup.tools.testing.servo_bus import ServoBus
 

@@ -11,6 +11,9 @@ from windup.sim_twin.ground.touch import TouchWatch
 from windup.sim_twin.impact import ImpactGauge
 from windup.tools.assembly.stepping import find_stepping, footing_of, stepping_stance
 from windup.tools.behaviours.push_trial import push_robot
+from windup.tools.behaviours.run_record import RunRecord
+from windup.tools.behaviours.stride import STRIDE
+from windup.tools.behaviours.striding import StrideTrace
 from windup.tools.commands.push import Push
 from windup.tools.commands.stride import Stride
 from windup.tools.measures.fall_report import fall_result
@@ -55,7 +58,11 @@ def _stride(options: dict[str, Any]) -> Result:
     """Let a robot stride, and note its way."""
     then = tuple(options.pop("then", ()))
     command = Stride(robot="op3", then=then, **options)
-    return command.one(command.seed, path=True)
+    with command.open_behaving(command.seed) as robot:
+        run = RunRecord(robot, command.options)
+        STRIDE.perform(run)
+        trace: StrideTrace = run.measured
+        return {"path": [list(row) for row in trace.rows]} | STRIDE.report(run).result
 
 
 class _Arms:

@@ -13,7 +13,14 @@ from windup.hal.controller import Controller
 from windup.hal.observation import Observation
 from windup.robots import load_robot
 from windup.tools.assembly.stepping import find_stepping
-from windup.tools.behaviours.directed import build_checks, build_directed, loop_rate, walk_prints
+from windup.tools.behaviours.directed import (
+    DirectedWalk,
+    build_checks,
+    build_directed,
+    feet_of,
+    loop_rate,
+    walk_prints,
+)
 from windup.tools.behaviours.push_trial import push_robot
 from windup.tools.commands.push import Push
 from windup.tools.reproduce.study.figure import Job, Result
@@ -88,5 +95,6 @@ def _walk(name: str, prints: Sequence[Footprint]) -> Result:
     controller = build_directed(description, prints)
     with Robot.open(name, rate=loop_rate(description)) as robot:
         robot.start_at(controller.how.stance)
-        walk = walk_prints(robot, controller)
+        walk = DirectedWalk(feet_of(description), controller.prints, controller.how)
+        walk_prints(robot, controller, walk)
     return walk.record()
