@@ -34,7 +34,8 @@ def parse_options(name: str, kind: type, words: list[str]) -> Any:
     check_writable(STANDARD_OUTPUT)
     with writing(STANDARD_OUTPUT):
         try:
-            return _parse(name, kind, words)  # print the help again, in the terminal's width
+            # Once more in the terminal's width; tyro leaves out positional words before --help.
+            return _parse(name, kind, ["--help"])
         finally:
             sys.stdout.flush()
 

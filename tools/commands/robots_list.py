@@ -42,7 +42,7 @@ def _rows() -> list[dict[str, Any]]:
     rows = []
     for name, folder in robot_folders().items():
         try:
-            rows.append(summarise(folder)._asdict())
+            rows.append(summarise(folder)._asdict() | {"robot": name})
         except ConfigError as error:
             if folder == FOLDER / name:
                 raise

@@ -62,6 +62,7 @@ def test_a_class_with_reset_and_step_runs(shell: Windup, port: tuple[str, ...]) 
 @pytest.mark.usefixtures("sine")
 def test_arguments_of_the_constructor_are_in_the_help(shell: Windup) -> None:
     text = " ".join(shell("run", "op3", "sine.py:Sine", "--help").out.split())
+    assert text.startswith("usage: windup run [-h] [OPTIONS] ROBOT FILE Moves the shoulders.")
     assert "--gain FLOAT" in text and "How far they swing, degrees." in text
     assert "--seconds" in text and "--push-at" in text
     assert "--joints" not in text
