@@ -7,7 +7,7 @@ through its files; replace them by yours.
 from pathlib import Path
 
 from windup import Robot, load_robot
-from windup.robots.inspection.doubts import doubts
+from windup.robots.inspection.robot_warnings import robot_warnings
 
 FOLDER = Path(__file__).parent / "biped"
 
@@ -17,8 +17,8 @@ def main(steps: int = 40) -> tuple[bool, float | None]:
     description = load_robot(FOLDER)
     mass = description.spec().compile().body_subtreemass[0]
     print(f"{description.title}: {len(description.joints)} joints, {mass:.2f} kg")
-    for doubt in doubts(description):
-        print(f"doubtful: {doubt}")
+    for warning in robot_warnings(description):
+        print(f"doubtful: {warning}")
 
     with Robot.open(str(FOLDER)) as robot:
         robot.stand(2.0)

@@ -7,7 +7,7 @@ import os
 import time
 from collections.abc import Iterator
 
-SPIN = 1.5e-4
+SPIN_TIME = 1.5e-4
 """Last part of a wait, spent spinning instead of sleeping, s."""
 PR_SET_TIMERSLACK = 29
 PRIORITY = 10
@@ -29,12 +29,12 @@ class WallClock:
 def sleep_until(time_: float) -> None:
     """Block until `time.monotonic()` is `time_` s: sleep to just before it, then spin."""
     while (left := time_ - time.monotonic()) > 0.0:
-        if left > SPIN:
-            time.sleep(left - SPIN)
+        if left > SPIN_TIME:
+            time.sleep(left - SPIN_TIME)
 
 
 @contextlib.contextmanager
-def punctual() -> Iterator[None]:
+def real_time_loop() -> Iterator[None]:
     """Run a loop with real-time priority, exact sleeps, and garbage collection switched off.
 
     A full collection takes 10 to 20 ms, and a tick does not need one: reference counting frees
@@ -46,18 +46,18 @@ def punctual() -> Iterator[None]:
     gc.freeze()
     gc.disable()
     _timer_slack(1)
-    _precedence(True)
+    _set_scheduling(True)
     try:
         yield
     finally:
-        _precedence(False)
+        _set_scheduling(False)
         _timer_slack(0)
         gc.unfreeze()
         if was:
             gc.enable()
 
 
-def _precedence(on: bool) -> None:
+def _set_scheduling(on: bool) -> None:
     """Switch this process to real-time scheduling, or back to ordinary scheduling."""
     kind, priority = (os.SCHED_RR, PRIORITY) if on else (os.SCHED_OTHER, 0)
     with contextlib.suppress(OSError, AttributeError):

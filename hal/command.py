@@ -92,7 +92,7 @@ class JointCommand:
         """Return the command that holds `position` (n,) rad with the robot's default gains."""
         return cls.of(joints, position=position)
 
-    def at(self, position: Array) -> "JointCommand":
+    def with_position(self, position: Array) -> "JointCommand":
         """Return the same command with other target positions (n,) rad."""
         block = self.block.copy()
         block[0] = position

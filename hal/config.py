@@ -22,7 +22,7 @@ MOST_NAMED: Final = 12
 
 Positive = Annotated[float, Meta(gt=0.0)]
 NotNegative = Annotated[float, Meta(ge=0.0)]
-Part = Annotated[float, Meta(ge=0.0, le=1.0)]
+Fraction = Annotated[float, Meta(ge=0.0, le=1.0)]
 Count = Annotated[int, Meta(ge=0, le=10_000)]
 Seconds = Annotated[float, Meta(ge=0.0, le=86_400.0)]
 Delay = Annotated[float, Meta(ge=0.0, le=1.0)]
@@ -30,7 +30,7 @@ Length = Annotated[float, Meta(gt=0.0, le=100.0)]
 Tilt = Annotated[float, Meta(gt=0.0, le=4.0)]
 
 
-class Record(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
+class TomlRecord(msgspec.Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
     """Base class of every record that is read from a TOML file. An unknown key is an error."""
 
 
@@ -61,7 +61,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     except OSError as error:
         raise ConfigError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
-        raise ConfigError(f"{path}: not TOML: this is no UTF-8 text") from None
+        raise ConfigError(f"{path}: not TOML: the text is not UTF-8") from None
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # numbers of 5000 digits, brackets 500 deep
@@ -74,19 +74,17 @@ def check_finite(path: Path, data: Any) -> None:
     Raises:
         ConfigError: A number is not finite; the message names the file and the key.
     """
-    for key, why in not_finite(data):
+    for key, why in non_finite_numbers(data):
         raise ConfigError(f"{path}: {key}: {why}")
 
 
-def not_finite(data: Any) -> Iterator[tuple[str, str]]:
+def non_finite_numbers(data: Any) -> Iterator[tuple[str, str]]:
     """Yield key and message of every number in `data` that is not finite, or too large."""
     for key, number in _numbers(data, ""):
         if not -LARGEST <= number <= LARGEST:
             infinite = isinstance(number, float) and not isfinite(number)
-            yield (
-                key,
-                (f"{number:g} is not finite" if infinite else f"no number is beyond {LARGEST:g}"),
-            )
+            problem = "not finite" if infinite else f"too large (maximum {LARGEST:g})"
+            yield key, f"{number:g} is {problem}"
 
 
 def _numbers(data: Any, key: str) -> Iterator[tuple[str, float]]:

@@ -31,7 +31,7 @@ class Controller(Protocol):
 
 
 @runtime_checkable
-class Begins(Protocol):
+class HasFirstPose(Protocol):
     """A controller that moves to its first pose gradually: its first command is not that pose."""
 
     @property
@@ -42,7 +42,7 @@ class Begins(Protocol):
 
 def first_pose_of(controller: Controller, first: JointCommand) -> Array:
     """Return the pose (n,) rad that a controller moves to first; `first` is its first command."""
-    return controller.first_pose if isinstance(controller, Begins) else first.position
+    return controller.first_pose if isinstance(controller, HasFirstPose) else first.position
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,11 +13,11 @@ class WindupError(Exception):
 
     Attributes:
         exit_status: 1 the run failed, 2 usage or configuration (nothing moved), 3 bus or hardware.
-        limp: Whether torque is switched off at once on this error, whatever the stop policy.
+        torque_off_at_once: Whether torque goes off at once, whatever the stop policy.
     """
 
     exit_status = 1
-    limp = False
+    torque_off_at_once = False
 
 
 class ConfigError(WindupError):
@@ -96,12 +96,12 @@ class NoAnswerError(HardwareError):
     """A servo did not answer a request before the deadline.
 
     Attributes:
-        came: Number of bytes that were received but did not belong to its answer.
+        extra_bytes: Number of bytes that were received but did not belong to its answer.
     """
 
-    def __init__(self, message: str, came: int = 0) -> None:
+    def __init__(self, message: str, extra_bytes: int = 0) -> None:
         super().__init__(message)
-        self.came = came
+        self.extra_bytes = extra_bytes
 
 
 class CorruptAnswerError(HardwareError):
@@ -116,7 +116,7 @@ class TorqueUnknownError(HardwareError):
     """Torque was switched off, but a joint could not be read back: it may be on or off."""
 
 
-class UnwellError(HardwareError):
+class MonitoredLimitError(HardwareError):
     """A monitored quantity reached the level at which the robot stops.
 
     Attributes:
@@ -132,11 +132,11 @@ class TorqueLostError(HardwareError):
     """A joint lost its torque, and this stack did not switch it off."""
 
 
-class UnhealthyError(UnwellError):
+class UnhealthyError(MonitoredLimitError):
     """A joint is too hot, has a wrong supply voltage, is loaded for too long, or is blocked."""
 
 
-class ImuError(UnwellError):
+class ImuError(MonitoredLimitError):
     """The IMU is silent, frozen or wrong, and the robot balances with it."""
 
 
@@ -147,14 +147,14 @@ class GuardianError(HardwareError):
 class FirstMotionError(HardwareError):
     """A joint did not follow in the first motion after torque enable; the robot goes limp."""
 
-    limp = True
+    torque_off_at_once = True
 
 
 class PostureError(UsageError):
     """The robot's posture does not allow the requested motion; nothing has moved."""
 
 
-class RefusedError(HardwareError):
+class ServoRejectionError(HardwareError):
     """A servo rejected an instruction: its status packet carries an error."""
 
 

@@ -7,7 +7,7 @@ from typing import Protocol
 Heartbeat = Callable[[], None]
 
 
-class Beating(Protocol):
+class HasHeartbeat(Protocol):
     """An object that calls its `heartbeat` during long operations."""
 
     heartbeat: Heartbeat
@@ -18,7 +18,7 @@ def no_heartbeat() -> None:
 
 
 @contextmanager
-def beating(parts: Sequence[Beating], heartbeat: Heartbeat) -> Iterator[None]:
+def with_heartbeat(parts: Sequence[HasHeartbeat], heartbeat: Heartbeat) -> Iterator[None]:
     """Make `parts` call `heartbeat` inside the `with` block; restore their own afterwards."""
     before = [part.heartbeat for part in parts]
     for part in parts:

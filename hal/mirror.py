@@ -10,7 +10,7 @@ import numpy.typing as npt
 from windup.hal.joints import Array
 
 Side = Literal["left", "right"]
-WORDS = (("l", "r"), ("left", "right"))
+SIDE_WORDS = (("l", "r"), ("left", "right"))
 """How names say a side: the left word and the right one."""
 
 
@@ -37,7 +37,7 @@ def other_side(name: str) -> str:
     >>> other_side("l_knee"), other_side("right_foot"), other_side("neck")
     ('r_knee', 'left_foot', 'neck')
     """
-    for left, right in ((f"{one}_", f"{other}_") for one, other in WORDS):
+    for left, right in ((f"{one}_", f"{other}_") for one, other in SIDE_WORDS):
         if name.startswith(left):
             return right + name.removeprefix(left)
         if name.startswith(right):
@@ -52,7 +52,7 @@ def side_of(name: str) -> Side | Literal[""]:
     ('left', 'right', '', '')
     """
     words = set(re.split(r"[^a-z]+", name.lower()))
-    left, right = (any(word in words for word in pair) for pair in zip(*WORDS, strict=True))
+    left, right = (any(word in words for word in pair) for pair in zip(*SIDE_WORDS, strict=True))
     if left == right:
         return ""
     return "left" if left else "right"

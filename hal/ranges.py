@@ -67,7 +67,7 @@ def check_number(name: str, value: float, range: Range = FINITE) -> None:
         UsageError: It is not; the message begins with `name` and states the valid range.
     """
     if problem := range.problem(value):
-        raise UsageError(f"{name} {written(value)}: {problem}")
+        raise UsageError(f"{name} {format_number(value)}: {problem}")
 
 
 def read_number(name: str, text: str, range: Range = FINITE, *, kind: type = float) -> float:
@@ -121,7 +121,7 @@ def numbers_checked(function: Callable[P, T]) -> Callable[P, T]:
     return checked
 
 
-def written(value: float) -> str:
+def format_number(value: float) -> str:
     """Return a number as text for messages; integers with all their digits."""
     return f"{value:g}" if isinstance(value, float) else str(value)
 

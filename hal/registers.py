@@ -11,7 +11,7 @@ import numpy.typing as npt
 from windup.hal.errors import UnknownNameError
 
 Area = Literal["eeprom", "ram"]
-Order = Literal["little", "big"]
+ByteOrder = Literal["little", "big"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Register:
     signed: bool = False
     unit: float = 1.0
     sign_bit: int | None = None
-    order: Order = "little"
+    order: ByteOrder = "little"
 
     @property
     def dtype(self) -> str:

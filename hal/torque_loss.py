@@ -10,18 +10,18 @@ class Loss(NamedTuple):
     """Cause of a loss of torque, and its remedy.
 
     Attributes:
-        what: The cause; "{servo}" is replaced by the servo or servos concerned.
+        cause: The cause; "{servo}" is replaced by the servo or servos concerned.
         remedy: What the user should do.
     """
 
-    what: str
+    cause: str
     remedy: str
 
     def __str__(self) -> str:
-        return self.what.format(servo="its servo")
+        return self.cause.format(servo="its servo")
 
 
-def restarted(volts: float) -> Loss:
+def restart_loss(volts: float) -> Loss:
     """Return the loss for a servo that restarted; `volts` is the lowest supply read, V, or NaN."""
     seen = "" if volts != volts else f" (lowest supply that was read: {volts:.1f} V)"
     return Loss(
@@ -30,7 +30,7 @@ def restarted(volts: float) -> Loss:
     )
 
 
-def shut_down(errors: tuple[str, ...]) -> Loss:
+def shutdown_loss(errors: tuple[str, ...]) -> Loss:
     """Return the loss for a servo whose own protection (hardware error) switched torque off."""
     return Loss(
         "{servo} shut down: " + ", ".join(errors),
@@ -38,23 +38,23 @@ def shut_down(errors: tuple[str, ...]) -> Loss:
     )
 
 
-def weakened(errors: tuple[str, ...]) -> Loss:
+def reduced_torque_loss(errors: tuple[str, ...]) -> Loss:
     """Return the loss for a servo whose own protection has reduced its torque."""
     return Loss(
-        "{servo} pushes with a part of the torque only: " + ", ".join(errors),
+        "{servo} has reduced its torque: " + ", ".join(errors),
         "remove the cause, then start again",
     )
 
 
 SWITCHED_OFF = Loss(
-    "somebody switched it off", "end the other program on the bus, then start again"
+    "another program switched it off", "end the other program on the bus, then start again"
 )
 UNEXPLAINED = Loss(
-    "{servo}, or somebody, switched it off",
+    "{servo} or another program switched it off",
     "check supply, load and temperature, and that no other program uses the bus",
 )
 UNPLUGGED = Loss(
-    "the port went away, and when it was back torque was switched off",
+    "the port was disconnected, and torque was switched off when it came back",
     "check the cable of the adapter, then start again",
 )
 SILENT = "check its cable and power, then run `windup health`"
@@ -71,5 +71,5 @@ def torque_lost(losses: Mapping[str, Loss]) -> TorqueLostError:
 
 def _sentence(loss: Loss, names: list[str]) -> str:
     servo, its = ("its servo", "its") if len(names) == 1 else ("their servos", "their")
-    what = loss.what.format(servo=servo)
-    return f"{', '.join(names)} lost {its} torque: {what}; {loss.remedy}"
+    cause = loss.cause.format(servo=servo)
+    return f"{', '.join(names)} lost {its} torque: {cause}; {loss.remedy}"

@@ -65,7 +65,7 @@ class Checks:
         robot, model = self.robot, self.model
         rate = robot.rate_hz
         if whole_steps(rate, model.opt.timestep) is None:
-            yield "rate_hz", f"a period of 1/{rate:g} s is no whole number of physics steps"
+            yield "rate_hz", f"a period of 1/{rate:g} s is not a whole number of physics steps"
         yield from name_mistakes(robot, model)
         yield from structure_mistakes(robot, model)
         yield from joint_mistakes(robot, model)

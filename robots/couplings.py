@@ -33,7 +33,7 @@ def add_couplings(spec: mujoco.MjSpec, couplings: Iterable[CouplingEntry]) -> No
         added.data[:5] = [coupling.offset + coupling.ratio * x0 - y0, coupling.ratio, 0, 0, 0]
 
 
-def bring_in_step(model: mujoco.MjModel, qpos: Array, driven: Iterable[str]) -> None:
+def satisfy_couplings(model: mujoco.MjModel, qpos: Array, driven: Iterable[str]) -> None:
     """Set the coupled joints in `qpos` (nq,) consistent with the `driven` ones, in place.
 
     A linkage that violates its constraint would jump into place in the first physics step.
@@ -56,7 +56,7 @@ def coupling_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mista
         key, joint = f"coupling {coupling.joint!r}", model.joint(coupling.joint)
         both = (model.eq_type == int(KIND)) & (model.eq_obj1id == joint.id)
         if both.sum() > 1:
-            yield key, "is coupled twice, maybe by an <equality> of the MJCF: leave one of them"
+            yield key, "is coupled twice, perhaps by an <equality> of the MJCF: remove one of them"
         driver = entries[coupling.follows]
         ends = sorted(coupling.offset + coupling.ratio * q for q in (driver.lower, driver.upper))
         low, high = joint.range
@@ -64,7 +64,7 @@ def coupling_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mista
             unit = "m" if joint.type[0] == SLIDE else "rad"
             yield (
                 key,
-                f"{driver.name!r} takes it from {ends[0]:g} to {ends[1]:g} {unit}, and its range "
+                f"{driver.name!r} moves it from {ends[0]:g} to {ends[1]:g} {unit}, and its range "
                 f"in the MJCF is {low:g} to {high:g}: widen that, or change ratio or offset",
             )
 

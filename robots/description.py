@@ -20,7 +20,7 @@ from windup.hal.servos.servo_model import ServoMount
 from windup.robots import mjcf, structure
 from windup.robots.checks import Checks, whole_steps
 from windup.robots.completion import complete, complete_for
-from windup.robots.folders import FILE, Loaded, gait_files, named_folder, robot_names
+from windup.robots.folders import FILE, RobotCache, gait_files, named_folder, robot_names
 from windup.robots.imu import imu_of
 from windup.robots.limits import with_limits
 from windup.robots.mirror import mirror_map
@@ -39,7 +39,7 @@ from windup.robots.records import (
 
 NEVER = Fall(height=1e-9, tilt=4.0)
 """Fall criterion of a robot with a fixed base, which is never met."""
-_loaded: "Loaded[RobotDescription]" = Loaded()
+_loaded: "RobotCache[RobotDescription]" = RobotCache()
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +125,7 @@ class RobotDescription:
     @cached_property
     def health(self) -> HealthLevels:
         """Warning and stop levels of the joints' health."""
-        return HealthLevels.of(self.servos, self.drive.supply, self.safety.given())
+        return HealthLevels.of(self.servos, self.drive.supply, self.safety.configured())
 
     def spec(self) -> mujoco.MjSpec:
         """Return a new parse of the MJCF, completed with sensors; callers may change it."""
@@ -147,7 +147,7 @@ class RobotDescription:
         steps = whole_steps(rate, self.timestep) if rate > 0.0 else None
         if steps is None:
             raise UsageError(
-                f"a rate of {rate:g} Hz is no whole number of physics steps of "
+                f"a rate of {rate:g} Hz is not a whole number of physics steps of "
                 f"{1e3 * self.timestep:g} ms; {self.rate_hz:g} Hz is"
             )
         return steps
@@ -164,30 +164,30 @@ def load_robot(name_or_path: str | Path) -> RobotDescription:
         ConfigError: A file of the robot cannot be read or failed a check.
     """
     folder = folder_of(name_or_path)
-    if (known := _loaded.of(folder)) is not None:
+    if (known := _loaded.get(folder)) is not None:
         return known
     robot = _load(folder)
-    if mjcf.is_alone(robot.model_path):
-        _loaded.keep(folder, (folder / FILE, robot.model_path), robot)
+    if mjcf.is_self_contained(robot.model_path):
+        _loaded.put(folder, (folder / FILE, robot.model_path), robot)
     return robot
 
 
 def _load(folder: Path) -> RobotDescription:
     """Return the robot in a folder, read anew."""
     path = folder / FILE
-    robot = filled_in(load_toml(path, RobotFile))
+    robot = with_drive_defaults(load_toml(path, RobotFile))
     model = mjcf.compile_mjcf(folder / robot.model, partial(complete_for, robot))
-    robot = limited(robot, model)
+    robot = with_mjcf_limits(robot, model)
     Checks(path, robot, model).run()
     return describe(folder, robot, model)
 
 
-def filled_in(robot: RobotFile) -> RobotFile:
+def with_drive_defaults(robot: RobotFile) -> RobotFile:
     """Return a robot.toml with the defaults of `[drive]` filled in for each joint."""
     return replace(robot, joint=tuple(with_defaults(joint, robot.drive) for joint in robot.joint))
 
 
-def limited(robot: RobotFile, model: mujoco.MjModel) -> RobotFile:
+def with_mjcf_limits(robot: RobotFile, model: mujoco.MjModel) -> RobotFile:
     """Return a robot.toml with omitted joint limits filled in from the MJCF."""
     return replace(robot, joint=tuple(with_limits(joint, model) for joint in robot.joint))
 
@@ -226,7 +226,7 @@ def describe(folder: Path, robot: RobotFile, model: mujoco.MjModel) -> RobotDesc
         model_latency=robot.model_latency,
         base=robot.base,
         fixed=structure.is_fixed(model),
-        passive=robot.unmoved,
+        passive=robot.joints_without_servo,
         couplings=robot.coupling,
         torso=robot.torso,
         joints=joints,

@@ -77,7 +77,7 @@ def gait_files(folder: Path) -> dict[str, Path]:
     return {path.stem: path for path in sorted((folder / GAITS).glob("*.toml"))}
 
 
-class Loaded(Generic[Made]):
+class RobotCache(Generic[Made]):
     """Keeps one object per folder.
 
     Args:
@@ -88,7 +88,7 @@ class Loaded(Generic[Made]):
         self._most = most
         self._kept: dict[tuple[str, str], tuple[Sequence[Path], Stamp, Made]] = {}
 
-    def of(self, folder: Path) -> Made | None:
+    def get(self, folder: Path) -> Made | None:
         """Return the object kept for a folder if its files are unchanged, else None."""
         kept = self._kept.get(_key(folder))
         if kept is None:
@@ -96,7 +96,7 @@ class Loaded(Generic[Made]):
         files, stamp, made = kept
         return made if _stamp(files) == stamp else None
 
-    def keep(self, folder: Path, files: Sequence[Path], made: Made) -> None:
+    def put(self, folder: Path, files: Sequence[Path], made: Made) -> None:
         """Keep the object made from the `files` of a folder, unless one was just written."""
         stamp = _stamp(files)
         newest = max((changed for changed, _, _ in stamp), default=0)

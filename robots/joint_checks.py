@@ -8,27 +8,27 @@ import mujoco
 from windup.hal.families import FAMILIES, families, family_of, is_servo, servo_names
 from windup.robots import mjcf
 from windup.robots.limits import travel_mistakes
-from windup.robots.mistake import SLACK, Mistake, known, unique
+from windup.robots.mistake import SLACK, Mistake, check_known, check_unique
 from windup.robots.records import JointEntry, RobotFile
 
 
 def name_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
     """Yield repeated names of joints, and names that do not exist in the MJCF."""
     entries = [joint.name for joint in robot.joint]
-    yield from unique("joint", "joint", entries)
+    yield from check_unique("joint", "joint", entries)
     for index, body in enumerate(model.jnt_bodyid.tolist()):
         if model.jnt_type[index] != mjcf.FREE and not model.joint(index).name:
             on = model.body(body).name
             yield "model", f"a joint of body {on!r} has no name in the MJCF: give it one"
     hinges, joints = mjcf.hinge_names(model), mjcf.names(model, "joint")
     for name in entries:
-        yield from known("joint", "MJCF hinge", name, hinges)
+        yield from check_known("joint", "MJCF hinge", name, hinges)
     for name in robot.passive:
-        yield from known("passive", "MJCF joint", name, joints)
+        yield from check_known("passive", "MJCF joint", name, joints)
     for coupling in robot.coupling:
         key = f"coupling {coupling.joint!r}"
-        yield from known("coupling", "MJCF joint", coupling.joint, joints)
-        yield from known(f"{key}: follows", "joint", coupling.follows, entries)
+        yield from check_known("coupling", "MJCF joint", coupling.joint, joints)
+        yield from check_known(f"{key}: follows", "joint", coupling.follows, entries)
 
 
 def joint_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
@@ -47,7 +47,7 @@ def _without_limits(robot: RobotFile, hinges: tuple[str, ...]) -> Iterator[Mista
     lost = [joint.name for joint in robot.joint if joint.name in hinges and _unlimited(joint)]
     if lost:
         names = ", ".join(repr(name) for name in lost)
-        extended = 'mode = "extended" where a Dynamixel X shall turn on and on'
+        extended = 'mode = "extended" for a Dynamixel X that turns further'
         yield (
             f"joint {names}",
             "no range in the MJCF, and no lower and upper here: give both, at most one turn "
@@ -86,9 +86,9 @@ def _servo_mistakes(robot: RobotFile, joint: JointEntry) -> Iterator[Mistake]:
         yield key, 'needs servo, bus and id: drive.kind is "servo"'
     exists = joint.servo is not None and is_servo(joint.servo)
     if joint.servo is not None and not exists:
-        yield from known(f"{key}: servo", "servo", joint.servo, servo_names())
+        yield from check_known(f"{key}: servo", "servo", joint.servo, servo_names())
     if joint.bus is not None:
-        yield from known(f"{key}: bus", "bus", joint.bus, [bus.name for bus in robot.bus])
+        yield from check_known(f"{key}: bus", "bus", joint.bus, [bus.name for bus in robot.bus])
     if exists:
         yield from _bus_mistakes(robot, joint, key)
         if not _unlimited(joint):
@@ -100,7 +100,7 @@ def _bus_mistakes(robot: RobotFile, joint: JointEntry, key: str) -> Iterator[Mis
     family = family_of(str(joint.servo))
     for bus in [bus for bus in robot.bus if bus.name == joint.bus][:1]:
         if family.protocol_name != bus.protocol:
-            speaks = f'a {joint.servo} speaks "{family.protocol_name}"'
+            speaks = f'a {joint.servo} uses protocol "{family.protocol_name}"'
             yield key, f'{speaks}, and bus {bus.name!r} has protocol "{bus.protocol}"'
         elif bus.baud not in family.bauds:
             rates = ", ".join(map(str, sorted(family.bauds)))
@@ -113,12 +113,12 @@ def _protocol_mistakes(robot: RobotFile) -> Iterator[Mistake]:
     for bus in robot.bus:
         if bus.protocol not in own:  # without importing what other distributions add
             names = {family.protocol_name for family in families()}
-            yield from known(f"bus {bus.name!r}: protocol", "protocol", bus.protocol, names)
+            yield from check_known(f"bus {bus.name!r}: protocol", "protocol", bus.protocol, names)
 
 
 def _id_mistakes(robot: RobotFile) -> Iterator[Mistake]:
     """Yield repeated names of buses, and ids that two servos of a bus share."""
-    yield from unique("bus", "bus", [bus.name for bus in robot.bus])
+    yield from check_unique("bus", "bus", [bus.name for bus in robot.bus])
     taken: dict[tuple[str | None, int], str] = {}
     for joint in robot.joint:
         if joint.id is None:

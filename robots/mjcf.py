@@ -74,7 +74,7 @@ def model_of(path: Path, complete: Callable[[mujoco.MjSpec], None] | None = None
         raise ConfigError(f"{path}: {_one_line(error)}") from None
 
 
-def is_alone(path: Path) -> bool:
+def is_self_contained(path: Path) -> bool:
     """Return whether an MJCF or URDF names no other file, such as a mesh or a part of itself."""
     return b"file" not in path.read_bytes()
 

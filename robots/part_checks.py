@@ -6,7 +6,7 @@ import mujoco
 
 from windup.robots import mjcf
 from windup.robots.imu import kind_mistakes
-from windup.robots.mistake import Mistake, known, unique
+from windup.robots.mistake import Mistake, check_known, check_unique
 from windup.robots.records import Foot, RobotFile
 
 TOUCH = mujoco.mjtSensor.mjSENS_TOUCH
@@ -20,16 +20,16 @@ IMU_SENSORS = {
 def foot_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
     """Yield unknown bodies, sites and sensors of feet, and two feet of the same side."""
     feet = [entry.foot() for entry in robot.foot]
-    yield from unique("foot", "foot", [foot.name for foot in feet])
-    yield from unique("foot", "sensor", [name for foot in feet for name in foot.sensors])
+    yield from check_unique("foot", "foot", [foot.name for foot in feet])
+    yield from check_unique("foot", "sensor", [name for foot in feet for name in foot.sensors])
     if len(feet) == 2 and feet[0].side and feet[0].side == feet[1].side:
         one, other = (foot.name for foot in feet)
-        yield "foot", f"{one!r} and {other!r} are both {feet[0].side}: give them a side"
+        yield "foot", f"{one!r} and {other!r} are both {feet[0].side}: give each its `side`"
     for foot, entry in zip(feet, robot.foot, strict=True):
         key = f"foot {foot.name!r}"
         bodies, sites = mjcf.names(model, "body"), mjcf.names(model, "site")
-        yield from known(f"{key}: body", "body", foot.body, bodies)
-        yield from known(f"{key}: site", "site", foot.site, sites)
+        yield from check_known(f"{key}: body", "body", foot.body, bodies)
+        yield from check_known(f"{key}: site", "site", foot.site, sites)
         placed = foot.body in bodies and foot.site in sites
         if placed:
             yield from _sole(key, foot, model)
@@ -43,7 +43,7 @@ def imu_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
     imu, sites = robot.imu, mjcf.names(model, "site")
     if imu is None:
         return
-    yield from known("imu.site", "site", imu.site, sites)
+    yield from check_known("imu.site", "site", imu.site, sites)
     yield from kind_mistakes(imu, robot.bus)
     for key, kind in IMU_SENSORS.items() if imu.site in sites else ():
         if (name := getattr(imu, key)) is not None:
@@ -63,4 +63,4 @@ def _sensor(
 ) -> Iterator[Mistake]:
     """Yield a mistake unless the MJCF has a sensor `name` of the given kind."""
     wanted = [other for other in mjcf.names(model, "sensor") if model.sensor(other).type[0] == kind]
-    yield from known(key, f"{kind.name.removeprefix('mjSENS_').lower()} sensor", name, wanted)
+    yield from check_known(key, f"{kind.name.removeprefix('mjSENS_').lower()} sensor", name, wanted)

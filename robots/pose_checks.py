@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from math import isnan
 
-from windup.robots.mistake import SLACK, Mistake, known
+from windup.robots.mistake import SLACK, Mistake, check_known
 from windup.robots.records import JointEntry, RobotFile
 
 
@@ -12,7 +12,7 @@ def pose_mistakes(robot: RobotFile) -> Iterator[Mistake]:
     joints = {joint.name: joint for joint in robot.joint}
     for pose, angles in robot.poses.items():
         for name, angle in angles.items():
-            yield from known(f"poses.{pose}", "joint", name, joints)
+            yield from check_known(f"poses.{pose}", "joint", name, joints)
             if name in joints:
                 yield from _outside(f"poses.{pose}.{name}", angle, joints[name])
         yield from _unnamed(f"poses.{pose}", angles, joints)
@@ -20,9 +20,9 @@ def pose_mistakes(robot: RobotFile) -> Iterator[Mistake]:
 
 def stop_mistakes(robot: RobotFile) -> Iterator[Mistake]:
     """Yield mistakes in stance, crouch, stop and fall."""
-    yield from known("stance", "pose", robot.stance, robot.poses)
+    yield from check_known("stance", "pose", robot.stance, robot.poses)
     if robot.crouch is not None:
-        yield from known("crouch", "pose", robot.crouch, robot.poses)
+        yield from check_known("crouch", "pose", robot.crouch, robot.poses)
     elif robot.stop == "crouch":
         yield "stop", '"crouch" needs the key crouch: the name of a pose'
     fall = robot.fall
@@ -31,9 +31,9 @@ def stop_mistakes(robot: RobotFile) -> Iterator[Mistake]:
     if fall.way and fall.reach is None:
         yield "fall.way", "needs fall.reach: how far outside its soles it can step, m"
     if fall.way and not robot.foot:
-        yield "fall.way", "needs a [[foot]]: where the soles are tells when it falls"
+        yield "fall.way", "needs a [[foot]]: falls are predicted from the positions of the soles"
     for way in fall.way:
-        yield from known("fall.way.pose", "pose", way.pose, robot.poses)
+        yield from check_known("fall.way.pose", "pose", way.pose, robot.poses)
 
 
 def _outside(key: str, angle: float, joint: JointEntry) -> Iterator[Mistake]:

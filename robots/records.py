@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from msgspec import Meta
 from msgspec.structs import replace
 
-from windup.hal.config import Delay, Length, NotNegative, Positive, Record, Tilt
+from windup.hal.config import Delay, Length, NotNegative, Positive, Tilt, TomlRecord
 from windup.hal.guard import StopPolicy
 from windup.hal.mirror import Side, side_of
 from windup.robots.levels import JointLevels
@@ -18,7 +18,7 @@ Wait = Annotated[float, Meta(gt=0.0, le=86_400.0)]
 Share = Annotated[float, Meta(ge=0.05, le=1.0)]
 
 
-class Drive(Record, frozen=True):
+class Drive(TomlRecord, frozen=True):
     """Actuators of the joints, their latencies, and defaults of the joints.
 
     Attributes:
@@ -45,7 +45,7 @@ class Drive(Record, frozen=True):
     damping: NotNegative | None = None
 
 
-class Bus(Record, frozen=True):
+class Bus(TomlRecord, frozen=True):
     """A servo bus; its serial port is given when the robot is opened.
 
     Attributes:
@@ -58,7 +58,7 @@ class Bus(Record, frozen=True):
     baud: Annotated[int, Meta(gt=0, le=10_000_000)]
 
 
-class JointEntry(Record, frozen=True):
+class JointEntry(TomlRecord, frozen=True):
     """One joint: limits rad, gains N m/rad and N m s/rad, and the servo that drives it.
 
     Omitted `servo`, `bus`, `stiffness` and `damping` are the defaults of the drive.
@@ -94,7 +94,7 @@ class JointEntry(Record, frozen=True):
     offset: Annotated[int, Meta(ge=-1_044_479, le=1_044_479)] = 0
 
 
-class CouplingEntry(Record, frozen=True):
+class CouplingEntry(TomlRecord, frozen=True):
     """A joint without a servo that a linkage moves with another one, like URDF's <mimic>.
 
     ``angle of joint = offset + ratio (angle of follows)``, a constraint in the twin.
@@ -112,7 +112,7 @@ class CouplingEntry(Record, frozen=True):
     offset: Annotated[float, Meta(ge=-1_000.0, le=1_000.0)] = 0.0
 
 
-class Foot(Record, frozen=True):
+class Foot(TomlRecord, frozen=True):
     """One foot.
 
     Attributes:
@@ -130,7 +130,7 @@ class Foot(Record, frozen=True):
     side: Side | Literal[""] = ""
 
 
-class FootEntry(Record, frozen=True):
+class FootEntry(TomlRecord, frozen=True):
     """A foot in the file; by default it gets one sensor, and its side follows from its name."""
 
     name: str
@@ -146,7 +146,7 @@ class FootEntry(Record, frozen=True):
         return Foot(name=self.name, body=self.body, site=self.site, sensors=sensors, side=side)
 
 
-class Imu(Record, frozen=True):
+class Imu(TomlRecord, frozen=True):
     """The IMU: its site and the names of its sensors in the MJCF.
 
     A gyroscope and an accelerometer of the default names are added if the MJCF lacks them.
@@ -170,7 +170,7 @@ class Imu(Record, frozen=True):
     orientation: str | None = None
 
 
-class Shares(Record, frozen=True):
+class StiffnessShares(TomlRecord, frozen=True):
     """Shares of the joints' stiffness: for joints between base and feet, and for all others.
 
     The minimum is large enough that no joint is limp.
@@ -180,7 +180,7 @@ class Shares(Record, frozen=True):
     others: Share
 
 
-class FallWay(Record, frozen=True):
+class ProtectiveFallEntry(TomlRecord, frozen=True):
     """Pose and stiffness of a protective fall in one direction.
 
     Attributes:
@@ -194,11 +194,11 @@ class FallWay(Record, frozen=True):
     toward: Annotated[float, Meta(ge=-4.0, le=4.0)]
     pose: str
     soften: Tilt
-    falling: Shares
-    impact: Shares
+    falling: StiffnessShares
+    impact: StiffnessShares
 
 
-class Fall(Record, frozen=True):
+class Fall(TomlRecord, frozen=True):
     """Criterion for a fallen robot: base lower than `height` m or torso tilted by over `tilt` rad.
 
     Attributes:
@@ -210,7 +210,7 @@ class Fall(Record, frozen=True):
     height: Length
     tilt: Tilt
     reach: Length | None = None
-    way: tuple[FallWay, ...] = ()
+    way: tuple[ProtectiveFallEntry, ...] = ()
 
 
 class Safety(JointLevels, frozen=True):
@@ -229,7 +229,7 @@ class Safety(JointLevels, frozen=True):
     idle: Wait = 10.0
     hold: Wait = 60.0
     first_speed: Annotated[float, Meta(ge=0.01, le=50.0)] = 0.6
-    first_stiffness: Shares = Shares(legs=0.6, others=0.3)
+    first_stiffness: StiffnessShares = StiffnessShares(legs=0.6, others=0.3)
     first_lag: Tilt = 0.25
 
 
@@ -242,7 +242,7 @@ def with_defaults(entry: JointEntry, drive: Drive) -> JointEntry:
     return replace(entry, **{key: getattr(drive, key) for key in missing})
 
 
-class RobotFile(Record, frozen=True):
+class RobotFile(TomlRecord, frozen=True):
     """A whole `robot.toml`.
 
     Attributes:
@@ -291,7 +291,7 @@ class RobotFile(Record, frozen=True):
     safety: Safety = Safety()
 
     @property
-    def unmoved(self) -> tuple[str, ...]:
+    def joints_without_servo(self) -> tuple[str, ...]:
         """The joints of the MJCF without a servo, including coupled ones."""
         followers = tuple(coupling.joint for coupling in self.coupling)
         return tuple(dict.fromkeys((*self.passive, *followers)))

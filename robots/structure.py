@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from windup.robots import mjcf
-from windup.robots.mistake import Mistake, known
+from windup.robots.mistake import Mistake, check_known
 from windup.robots.records import RobotFile
 
 SLIDE = int(mujoco.mjtJoint.mjJNT_SLIDE)
@@ -20,8 +20,8 @@ def is_fixed(model: mujoco.MjModel) -> bool:
 def structure_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
     """Yield key and message of each mismatch between robot.toml and MJCF in base and joints."""
     bodies = mjcf.names(model, "body")
-    yield from known("base", "body", robot.base, bodies)
-    yield from known("torso", "body", robot.torso, bodies)
+    yield from check_known("base", "body", robot.base, bodies)
+    yield from check_known("torso", "body", robot.torso, bodies)
     if robot.base in bodies:
         yield from _of_the_base(robot, model)
     if model.nu:
@@ -41,7 +41,10 @@ def _of_the_base(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
     if not len(free) and model.body_weldid[base.id] != 0:
         yield "base", f"body {robot.base!r} moves with a joint; name one that is fixed to the world"
     if len(free) and robot.fall is None:
-        yield "fall", "is missing: when does it count as fallen? [fall] has height and tilt"
+        yield (
+            "fall",
+            "is missing: give [fall] with height and tilt, beyond which it counts as fallen",
+        )
     if not len(free) and robot.foot:
         yield "foot", "feet are for a robot whose base has a free joint; this one is fixed"
 
@@ -59,13 +62,16 @@ def _actuators(model: mujoco.MjModel) -> str:
 def _of_the_joints(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
     entries = [joint.name for joint in robot.joint]
     if not entries:
-        yield "joint", "is missing: a robot has at least one [[joint]], with name and, on a bus, id"
+        yield (
+            "joint",
+            "is missing: a robot needs at least one [[joint]], with name and, on a bus, id",
+        )
     for index, kind in enumerate(model.jnt_type):
         name = model.joint(index).name
-        passive = name in robot.unmoved
+        passive = name in robot.joints_without_servo
         if kind == mjcf.HINGE and passive and name in entries:
             key = "passive" if name in robot.passive else "coupling"
-            yield key, f"{name!r} is a [[joint]] as well; it has a servo or it has none"
+            yield key, f"{name!r} is a [[joint]] as well; remove one of them"
         if kind == mjcf.HINGE and not passive and name not in entries:
             how = "or name it in passive or a [[coupling]], where no servo moves it"
             yield "joint", f"the MJCF hinge {name!r} has no [[joint]]; give it one, {how}"

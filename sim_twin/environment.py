@@ -8,7 +8,7 @@ import mujoco
 from windup.robots.completion import COM_VELOCITY
 from windup.robots.description import RobotDescription
 from windup.sim_twin.ground.terrain import Ground
-from windup.sim_twin.masses import keep_masses
+from windup.sim_twin.masses import set_explicit_masses
 from windup.sim_twin.plant import Plant
 from windup.sim_twin.servo.servo_motor import add_actuators
 
@@ -47,8 +47,8 @@ def build_model(
     """
     world = world or Environment()
     spec = robot.spec()
-    keep_masses(spec)
-    world.plant.change(spec)
+    set_explicit_masses(spec)
+    world.plant.apply_to(spec)
     world.ground.build(spec)
     if world.self_collision:
         _part_legs(spec, robot)

@@ -11,7 +11,7 @@ from windup.sim_twin.twin import Twin
 
 HEADS = ("head", "neck")
 """Substrings of body names that count as head: not torso, but as fragile."""
-KNOCK = 0.01
+JUMP_WINDOW = 0.01
 """Window over which the torso's velocity change is measured, s."""
 
 
@@ -24,7 +24,7 @@ class ImpactGauge:
         torso: Greatest downward speed of a torso point at the moment it touched the floor, m/s; 0
             when the torso never touched it.
         head: The same for head and neck.
-        knock: Greatest change of the torso's velocity within 10 ms, m/s; includes the shocks that
+        velocity_jump: Greatest change of the torso's velocity in 10 ms, m/s; includes shocks that
             limbs transmit when they hit the floor.
         load: (n,) greatest torque of each joint's actuator, as a share of its limit (for a servo:
             the stall torque); 0 for joints without a limit.
@@ -34,7 +34,7 @@ class ImpactGauge:
     twin: Twin
     torso: float = field(default=0.0, init=False)
     head: float = field(default=0.0, init=False)
-    knock: float = field(default=0.0, init=False)
+    velocity_jump: float = field(default=0.0, init=False)
     overload: float = field(default=0.0, init=False)
 
     def __post_init__(self) -> None:
@@ -48,21 +48,21 @@ class ImpactGauge:
         self._torso = {geom for geom, name in pairs if name == twin.robot.torso}
         self._head = {geom for geom, name in pairs if any(part in name for part in HEADS)}
         self._body = twin.model.body(twin.robot.torso).id
-        self._past: deque[Array] = deque(maxlen=1 + round(KNOCK / twin.timestep))
+        self._past: deque[Array] = deque(maxlen=1 + round(JUMP_WINDOW / twin.timestep))
         self._before: dict[int, tuple[Array, Array]] = {}
-        self._also, twin.on_step = twin.on_step, self._look
+        self._also, twin.on_step = twin.on_step, self._update
 
     @property
-    def trunk(self) -> float:
+    def trunk_speed(self) -> float:
         """The greater of the torso and head impact speeds, m/s."""
         return max(self.torso, self.head)
 
     @property
-    def busiest(self) -> str:
+    def most_loaded_joint(self) -> str:
         """Name of the joint with the greatest load."""
         return self.twin.robot.joints.names[int(self.load.argmax())]
 
-    def _look(self) -> None:
+    def _update(self) -> None:
         if self._also is not None:
             self._also()
         data = self.twin.data
@@ -73,7 +73,9 @@ class ImpactGauge:
                 self._touched(geom, contact.pos)
         self._before = {geom: self._motion(geom) for geom in self._torso | self._head}
         self._past.append(self._velocity(mujoco.mjtObj.mjOBJ_BODY, self._body)[3:])
-        self.knock = max(self.knock, float(np.linalg.norm(self._past[-1] - self._past[0])))
+        self.velocity_jump = max(
+            self.velocity_jump, float(np.linalg.norm(self._past[-1] - self._past[0]))
+        )
         self._work()
 
     def _touched(self, geom: int, point: Array) -> None:

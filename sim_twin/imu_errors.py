@@ -25,14 +25,14 @@ class LowPass:
 
     Args:
         lag: Time constant, s.
-        timestep: Time between two calls of `follow`, s.
+        timestep: Time between two calls of `update`, s.
     """
 
     def __init__(self, lag: float, timestep: float) -> None:
         self._gain = 1.0 - np.exp(-timestep / lag)
         self._value: Array | None = None
 
-    def follow(self, signal: Array) -> None:
+    def update(self, signal: Array) -> None:
         """Advance the filter by one time step with input `signal`."""
         if self._value is None:
             self._value = np.array(signal)
@@ -40,7 +40,7 @@ class LowPass:
             self._value += self._gain * (signal - self._value)
 
     def value(self, signal: Array) -> Array:
-        """Return the filtered signal; before the first `follow`, return `signal` itself."""
+        """Return the filtered signal; before the first `update`, return `signal` itself."""
         return np.array(signal if self._value is None else self._value)
 
 
@@ -49,7 +49,7 @@ class ImuErrors:
 
     Args:
         kind: The IMU.
-        timestep: Time between two calls of `feel`, s.
+        timestep: Time between two calls of `filter_motion`, s.
         seed: Seed of noise and biases.
 
     Attributes:
@@ -61,14 +61,14 @@ class ImuErrors:
         self._filter = LowPass(kind.lag, timestep)
         bandwidth = 0.5 * pi * kind.cutoff
         self._noise = np.repeat(kind.noise, 3) * bandwidth**0.5
-        self._unit = np.repeat(kind.unit, 3)
+        self._unit = np.repeat(kind.count_size, 3)
         self.bias = self._random.normal(size=6) * np.repeat(kind.bias, 3)
 
-    def feel(self, motion: Array) -> None:
+    def filter_motion(self, motion: Array) -> None:
         """Filter the true angular rates and accelerations (6,) of one time step."""
-        self._filter.follow(motion)
+        self._filter.update(motion)
 
     def sample(self, motion: Array) -> Array:
-        """Return a sample (6,) with errors; `motion` (6,) is its input until the first `feel`."""
+        """Return a sample (6,) with errors; before any `filter_motion`, of `motion` (6,)."""
         noise = self._noise * self._random.normal(size=6)
         return np.rint((self._filter.value(motion) + self.bias + noise) / self._unit) * self._unit

@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 
 
-def keep_masses(spec: mujoco.MjSpec) -> None:
+def set_explicit_masses(spec: mujoco.MjSpec) -> None:
     """Write mass and inertia into every body of `spec`, as MuJoCo computes them from its geoms.
 
     Needed because a rollout deletes all geoms but those of the feet, and because a plant scales

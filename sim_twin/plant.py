@@ -51,7 +51,7 @@ class Plant:
             supply=draw(10.5, 12.6) * nominal,
         )
 
-    def change(self, spec: mujoco.MjSpec) -> None:
+    def apply_to(self, spec: mujoco.MjSpec) -> None:
         """Apply this plant's friction and mass factors to `spec`."""
         for body in spec.bodies:
             body.mass *= self.mass

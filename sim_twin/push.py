@@ -46,7 +46,7 @@ class Push:
         """Return a push that gives a robot of `mass` kg `speed` m/s toward `direction` rad."""
         return cls.impulse("", speed * mass, direction, start, duration)
 
-    def share(self, time: float, step: float) -> float:
+    def active_fraction(self, time: float, step: float) -> float:
         """Return the fraction of the step `time` .. `time + step` s in which the push acts."""
         begin, end = max(self.start, time), min(self.start + self.duration, time + step)
         return max(end - begin, 0.0) / step

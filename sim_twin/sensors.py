@@ -11,7 +11,7 @@ from windup.hal.joints import Array
 from windup.hal.observation import BaseState, ImuState, JointState, Observation
 from windup.robots import Imu, RobotDescription
 from windup.sim_twin.imu_errors import ImuErrors
-from windup.sim_twin.places import places
+from windup.sim_twin.joint_indices import as_index
 from windup.sim_twin.twin import Twin
 
 AMBIENT = 25.0
@@ -52,8 +52,8 @@ class Sensors:
         self._counts = _counts_per_rad(robot)
         self._encoders = bool(self._counts.any())
         touch = [model.sensor(name).adr[0] for name in robot.contacts.names]
-        self._contacts = places(np.array(touch, dtype=np.intp))
-        self._position, self._velocity = twin.places.position, twin.places.velocity
+        self._contacts = as_index(np.array(touch, dtype=np.intp))
+        self._position, self._velocity = twin.indices.position, twin.indices.velocity
         self._fixed = twin.fixed_base() if robot.fixed else None
         self._find_imu(robot.imu, model)
         self._voltage = _constant(n, twin.supply)
@@ -111,7 +111,7 @@ class Sensors:
 
     def _record(self) -> None:
         if self._errors is not None:
-            self._errors.feel(self._views[3][self._motion])
+            self._errors.filter_motion(self._views[3][self._motion])
         if self.delay > 0.0:
             self._line.append(self._snapshot())
 

@@ -11,12 +11,12 @@ from windup.hal.errors import DivergedError, UnknownNameError, UsageError
 from windup.hal.geometry.up_axis import UP_AXIS
 from windup.hal.joints import Array
 from windup.hal.observation import BaseState
-from windup.robots.couplings import bring_in_step
+from windup.robots.couplings import satisfy_couplings
 from windup.robots.description import RobotDescription
 from windup.robots.fallen import has_fallen
 from windup.sim_twin.environment import Environment, build_model
+from windup.sim_twin.joint_indices import JointIndices
 from windup.sim_twin.lowest import lowest_point
-from windup.sim_twin.places import JointPlaces
 from windup.sim_twin.push import Push
 from windup.sim_twin.runaway import WILD, fastest_dof
 
@@ -50,7 +50,7 @@ class Twin:
         world: The environment, as given.
         model: MuJoCo's model, with actuators.
         data: MuJoCo's state.
-        places: Indices of the joints in MuJoCo's state.
+        indices: Indices of the joints in MuJoCo's state.
         up: (3,) the torso's up axis in the world frame, a live view.
         on_step: Called after every physics step, if set.
         on_jump: Called after a reset or a restore, if set, so that callers can clear history.
@@ -79,7 +79,7 @@ class Twin:
         self._suspect: int | None = None
         self._pushes: list[Push] = []
         self._torso = self.model.body(robot.torso).id
-        self.places = JointPlaces(self.model, robot.joints.names)
+        self.indices = JointIndices(self.model, robot.joints.names)
         self.up = self.data.xmat[self._torso, UP_AXIS]
         self._qpos, self._qvel = self.data.qpos, self.data.qvel
         self._before = np.empty(self.model.nq + self.model.nv)
@@ -97,13 +97,13 @@ class Twin:
         jitter = np.random.default_rng(seed).normal(0.0, 1.0, len(pose)) * radians(noise)
         mujoco.mj_resetData(self.model, self.data)
         self._pushes.clear()
-        self.data.qpos[self.places.position] = pose + jitter
-        bring_in_step(self.model, self.data.qpos, self.robot.joints.names)
+        self.data.qpos[self.indices.position] = pose + jitter
+        satisfy_couplings(self.model, self.data.qpos, self.robot.joints.names)
         self._drop_to_floor()
         self.set_goals(pose)
         self._jumped()
 
-    def lay(self, front: bool, pose: Array, *, noise: float = 0.0, seed: int = 0) -> None:
+    def lay_down(self, front: bool, pose: Array, *, noise: float = 0.0, seed: int = 0) -> None:
         """Put the robot on the floor, lying on its front or its back, with a random heading.
 
         Args:
@@ -116,7 +116,7 @@ class Twin:
             UsageError: The robot is fixed to the ground.
         """
         if self.robot.fixed:
-            raise UsageError(f"{self.robot.name} is fixed to the ground and cannot lie")
+            raise UsageError(f"{self.robot.name} is fixed to the ground and cannot be laid down")
         self.reset(pose, noise=noise, seed=seed)
         turn = np.random.default_rng([1, seed]).uniform(-np.pi, np.pi)
         level, around = np.empty(4), np.empty(4)
@@ -251,7 +251,7 @@ class Twin:
     def _apply_pushes(self) -> None:
         self.data.xfrc_applied[:] = 0.0
         for push in self._pushes:
-            share = push.share(self.time, self.timestep)
+            share = push.active_fraction(self.time, self.timestep)
             if share > 1e-6:  # smaller shares are rounding errors of the time
                 self._apply(push, share * push.force)
         if all(self.time >= push.start + push.duration for push in self._pushes):

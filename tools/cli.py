@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from windup.hal.errors import UnwellError, UsageError, WindupError
+from windup.hal.errors import MonitoredLimitError, UsageError, WindupError
 from windup.tools.command_line.near_word import near_word
 from windup.tools.command_line.overview import overview
 from windup.tools.command_line.sweep_line import separate
@@ -46,7 +46,7 @@ def run(arguments: list[str] | None = None) -> int:
         _say_warnings()
         return _say_lost(status)
     except WindupError as error:
-        _say_warnings(error.kind if isinstance(error, UnwellError) else "")
+        _say_warnings(error.kind if isinstance(error, MonitoredLimitError) else "")
         say(f"windup: {error}")
         if command is None:
             _write_unparsed(words, error)
@@ -74,7 +74,7 @@ def _quiet_mujoco() -> None:
 
 def _say_warnings(ended_by: str = "") -> None:
     """Print what there was to warn about, but for the kind of what ended the run."""
-    if said := NOTES.said(ended_by):
+    if said := NOTES.summary(ended_by):
         say(f"warning: {said}")
 
 

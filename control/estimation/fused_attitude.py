@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from windup.hal.geometry.quaternion import between
+from windup.hal.geometry.quaternion import rotation_between
 from windup.hal.joints import Array
 from windup.hal.observation import ImuState
 
@@ -66,7 +66,7 @@ class FusedAttitude:
         self._orientation, self._sampled = orientation, sampled
         if last is None:
             return np.zeros(3)
-        turn = between(last, orientation)
+        turn = rotation_between(last, orientation)
         rate, half = turn / passed, 0.5 * passed
         known = self._half > 0.0 and passed < LONGEST
         self._slope = (rate - self._rate) / (half + self._half) if known else np.zeros(3)

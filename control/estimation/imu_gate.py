@@ -9,7 +9,7 @@ import numpy as np
 from windup.hal.errors import ImuError
 from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.guard.finding import CHECK
-from windup.hal.guard.imu_watch import SILENT, ImuWatch
+from windup.hal.guard.imu_watch import MAX_SILENCE, ImuWatch
 from windup.hal.observation import ImuState, Observation
 
 ATTEMPTS = 5
@@ -58,7 +58,7 @@ class ImuGate:
         looks = ATTEMPTS if self._needed else 0
         for _ in range(looks):
             imu = read().imu
-            if imu is not None and imu.age <= SILENT:
+            if imu is not None and imu.age <= MAX_SILENCE:
                 return
         if looks:
             since = "yet" if imu is None else f"for {imu.age:.2f} s"
@@ -75,7 +75,7 @@ class ImuGate:
         if found is not None and not found.stop:
             found = None
         if found is not None and self._needed:
-            raise ImuError(f"{found}: {found.saying.do}{self._look}", found.saying.name)
+            raise ImuError(f"{found}: {found.text.remedy}{self._look}", found.text.name)
         if found is not None or imu is None:
             return self._guess(observation, dt)
         self._failed = False

@@ -33,7 +33,7 @@ LONGEST = 2.5
 
 
 @dataclass(frozen=True)
-class FallWay:
+class ProtectiveFall:
     """Pose and stiffness of a fall in one direction.
 
     Attributes:
@@ -105,7 +105,7 @@ class Protected:
         self,
         controller: Controller,
         predictor: FallPredictor,
-        ways: Sequence[FallWay],
+        ways: Sequence[ProtectiveFall],
         joints: Joints,
     ) -> None:
         self.controller, self.predictor = controller, predictor
@@ -115,7 +115,7 @@ class Protected:
 
     def _clear(self) -> None:
         self.phase = Phase.SAFE
-        self.way: FallWay | None = None
+        self.way: ProtectiveFall | None = None
         self.began: float | None = None
         self._still: float | None = None
 
@@ -173,13 +173,13 @@ class Protected:
         share = self.way.falling if falling else self.way.impact
         return bounded(self.joints, self.way.pose, share, observation.joints)
 
-    def _choose(self) -> FallWay:
+    def _choose(self) -> ProtectiveFall:
         """Return the available fall nearest to the predicted direction."""
         toward = self.predictor.toward
         assert toward is not None, "a fall has a direction"
         return max(self.ways, key=lambda way: cos(way.toward - toward))
 
-    def _advance(self, observation: Observation, way: FallWay, passed: float) -> None:
+    def _advance(self, observation: Observation, way: ProtectiveFall, passed: float) -> None:
         """Enter the next phase if it is due."""
         base = observation.base
         if base is None:

@@ -3,10 +3,10 @@
 from math import inf
 
 from windup.hal.config import NotNegative as Gain
-from windup.hal.config import Positive, Record
+from windup.hal.config import Positive, TomlRecord
 
 
-class Directed(Record, frozen=True, kw_only=True):
+class Directed(TomlRecord, frozen=True, kw_only=True):
     """Times, distances and tolerances of steps to footprints.
 
     Attributes:

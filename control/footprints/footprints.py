@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from windup.hal.config import Positive, Record, load_toml
+from windup.hal.config import Positive, TomlRecord, load_toml
 from windup.hal.errors import UnknownNameError, UsageError
 from windup.hal.joints import Array
 from windup.hal.mirror import side_of
@@ -18,7 +18,7 @@ from windup.hal.mirror import side_of
 Frame = Literal["stance", "start"]
 
 
-class StepRecord(Record, frozen=True, kw_only=True):
+class StepRecord(TomlRecord, frozen=True, kw_only=True):
     """One `[[step]]` of a footprint file; metres, degrees and seconds."""
 
     foot: str
@@ -28,7 +28,7 @@ class StepRecord(Record, frozen=True, kw_only=True):
     duration: Positive | None = None
 
 
-class FootprintFile(Record, frozen=True, kw_only=True):
+class FootprintFile(TomlRecord, frozen=True, kw_only=True):
     """A footprint file.
 
     Attributes:

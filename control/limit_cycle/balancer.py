@@ -160,7 +160,7 @@ class Balancer:
         goals = self._tracker.step(policy_input(observation), dt)[0]
         goals = self._limits.apply(goals, self._sent[-1] if self._sent else None, dt)
         self._sent.append(goals)
-        return self._hold.at(goals)
+        return self._hold.with_position(goals)
 
     @property
     def published(self) -> BlockNames:

@@ -12,13 +12,13 @@ import msgspec
 import numpy as np
 from msgspec import Meta
 
-from windup.hal.config import Count, Record, check_finite
+from windup.hal.config import Count, TomlRecord, check_finite
 from windup.hal.errors import ConfigError
 from windup.hal.joints import Array
 from windup.hal.small_file import read_small
 
 
-class LearntModel(Record, frozen=True):
+class LearntModel(TomlRecord, frozen=True):
     """The model of a step for starts near one point.
 
     Attributes:
@@ -34,7 +34,7 @@ class LearntModel(Record, frozen=True):
     steps: Annotated[int, Meta(ge=1)] = 1
 
 
-class ModelFile(Record, frozen=True):
+class ModelFile(TomlRecord, frozen=True):
     """A file of step models with their variables.
 
     Attributes:

@@ -12,7 +12,7 @@ import numpy as np
 from windup.control.motions.following import Following
 from windup.control.motions.planted import Planted
 from windup.hal.command import JointCommand
-from windup.hal.controller import Begins, Controller, first_pose_of
+from windup.hal.controller import Controller, HasFirstPose, first_pose_of
 from windup.hal.errors import FirstMotionError
 from windup.hal.geometry.smooth_step import PEAK, smooth_step
 from windup.hal.joints import Array, Joints
@@ -122,11 +122,11 @@ class Approach:
         self._following: Following | None = None
 
     def _begin(self, observation: Observation, goal: Array | None) -> None:
-        """Reset the controller; a `Begins` controller starts from `goal`, if that is given.
+        """Reset the controller; a `HasFirstPose` controller starts from `goal`, if that is given.
 
         Loaded joints lag behind their goals: with goals at the measured positions they would sag.
         """
-        if goal is not None and isinstance(self.controller, Begins):
+        if goal is not None and isinstance(self.controller, HasFirstPose):
             joints = replace(observation.joints, position=goal)
             observation = replace(observation, joints=joints)
         self.controller.reset(observation)
@@ -134,10 +134,12 @@ class Approach:
     def _needed(self) -> bool:
         """Return whether a motion to the first pose is necessary.
 
-        Without `Begins`, the first command of a controller may be the middle of a step: a robot
-        that has full stiffness already then goes without this motion.
+        Without `HasFirstPose`, the first command of a controller may be the middle of a step: a
+        robot that has full stiffness already then goes without this motion.
         """
-        return self.motion.due and (not self.motion.made or isinstance(self.controller, Begins))
+        return self.motion.due and (
+            not self.motion.made or isinstance(self.controller, HasFirstPose)
+        )
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the command of the motion to the first pose, afterwards the controller's.

@@ -28,7 +28,7 @@ class PoseHolder:
 
     @property
     def first_pose(self) -> Array:
-        """First pose (n,), rad; see `Begins`."""
+        """First pose (n,), rad; see `HasFirstPose`."""
         return self.pose
 
     def reset(self, observation: Observation) -> None:
@@ -78,7 +78,7 @@ class GraphPlayer:
         self._begun = True
         nothing = np.zeros((1, 0))
         state = PolicyInput(nothing, nothing, nothing, nothing, observation.contacts[None])
-        return self._hold.at(self._tracker.step(state, dt)[0])
+        return self._hold.with_position(self._tracker.step(state, dt)[0])
 
     def publish(self, block: ControllerBlock) -> None:
         """Publish the state of the graph."""

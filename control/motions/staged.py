@@ -56,7 +56,7 @@ class StagedPlayer:
 
     @property
     def first_pose(self) -> Array:
-        """First pose (n,), rad; see `Begins`."""
+        """First pose (n,), rad; see `HasFirstPose`."""
         return self.gait.graph.pose[0]
 
     def reset(self, observation: Observation) -> None:
@@ -85,7 +85,7 @@ class StagedPlayer:
         goal = self._goal
         if self._upright is not None:
             goal = self._upright.apply(goal, observation, self._state)
-        return self._hold.at(goal)
+        return self._hold.with_position(goal)
 
     def publish(self, block: ControllerBlock) -> None:
         """Publish the state of the graph, and whether it is tried again."""

@@ -8,14 +8,14 @@ from typing import Annotated, Literal
 
 from msgspec import Meta
 
-from windup.hal.config import Count, NotNegative, Part, Positive, Record, Seconds
+from windup.hal.config import Count, Fraction, NotNegative, Positive, Seconds, TomlRecord
 
 Axis = Literal["forward", "lateral"]
 Sampling = Literal["sp", "fl", "lf", "full"]
 Pose = dict[str, float] | list[float]
 
 
-class Until(Record, frozen=True):
+class Until(TomlRecord, frozen=True):
     """End of a state: a hold time, s, or a contact with an optional time-out, s."""
 
     time: Seconds | None = None
@@ -23,7 +23,7 @@ class Until(Record, frozen=True):
     timeout: Seconds | None = None
 
 
-class Reach(Record, frozen=True):
+class Reach(TomlRecord, frozen=True):
     """Condition for the end of a state in a graph that is played; all parts at the same instant.
 
     `joints` is the maximum error of any joint, degrees; `still` the maximum speed of any joint,
@@ -41,7 +41,7 @@ class Reach(Record, frozen=True):
     again: str | None = None
 
 
-class State(Record, frozen=True):
+class State(TomlRecord, frozen=True):
     """One row of a pose table; angles in degrees, added to the file's `pose`.
 
     `move` and `reach` are for graphs that are played; `move` is the time in which the goals move
@@ -58,7 +58,7 @@ class State(Record, frozen=True):
     ends_step: bool = False
 
 
-class Perturbation(Record, frozen=True):
+class Perturbation(TomlRecord, frozen=True):
     """A linear parametric perturbation: changes of poses and hold times for a scaling of 1.
 
     `pose`, degrees, is added to the states of the steps on stance foot `stance`; the steps on the
@@ -77,7 +77,7 @@ class Perturbation(Record, frozen=True):
     limit: NotNegative = 20.0
 
 
-class Balance(Record, frozen=True):
+class Balance(TomlRecord, frozen=True):
     """Parameters of the gait's balance control.
 
     A step is replanned when the CoM velocity at a state differs by more than `replan` m/s from
@@ -103,7 +103,7 @@ class Balance(Record, frozen=True):
     horizon: Annotated[float, Meta(gt=0.0, le=60.0)] = 1.5
 
 
-class SpeedRow(Record, frozen=True):
+class SpeedRow(TomlRecord, frozen=True):
     """Scalings of perturbations and targets for one commanded speed, m/s, before feedback."""
 
     speed: float
@@ -111,7 +111,7 @@ class SpeedRow(Record, frozen=True):
     targets: dict[str, float] = {}
 
 
-class Speed(Record, frozen=True):
+class Speed(TomlRecord, frozen=True):
     """Commanded speed: rows that are interpolated, and feedback of the measured speed.
 
     A walk begins at the speed `begin` and changes by `ramp` m/s per step. Without a `default` the
@@ -130,7 +130,7 @@ class Speed(Record, frozen=True):
     limit: NotNegative = 0.0
 
 
-class Side(Record, frozen=True):
+class Side(TomlRecord, frozen=True):
     """Commanded sideways speed: scalings and targets for 1 m/s to the left, before feedback.
 
     `scale` follows the sign of the speed, `spread` its magnitude (to keep the legs apart).
@@ -147,7 +147,7 @@ class Side(Record, frozen=True):
     correction: float = 0.0
 
 
-class Turn(Record, frozen=True):
+class Turn(TomlRecord, frozen=True):
     """Commanded turning; `limit` is the maximum turn rate, degrees/s.
 
     `feed` is the scaling per degree of turn in a step, `spread` scalings per degree/s in either
@@ -165,7 +165,7 @@ class Turn(Record, frozen=True):
     radius: NotNegative = 0.0
 
 
-class Heading(Record, frozen=True):
+class Heading(TomlRecord, frozen=True):
     """Course control: a perturbation scaled by `gain` times the heading error, degrees."""
 
     perturbation: str
@@ -173,7 +173,7 @@ class Heading(Record, frozen=True):
     limit: NotNegative = 10.0
 
 
-class Incline(Record, frozen=True):
+class Incline(TomlRecord, frozen=True):
     """Slope compensation: a perturbation scaled by the filtered error of a regulation variable.
 
     The scaling approaches `gain` times the error of `variable` by the share `rate` per step.
@@ -183,10 +183,10 @@ class Incline(Record, frozen=True):
     gain: float
     limit: NotNegative
     variable: str = "up.forward"
-    rate: Part = 0.1
+    rate: Fraction = 0.1
 
 
-class Slip(Record, frozen=True):
+class Slip(TomlRecord, frozen=True):
     """Style for slippery ground.
 
     Once the stance foot has slid by more than `least` m during one of the `states` in two
@@ -198,7 +198,7 @@ class Slip(Record, frozen=True):
     least: NotNegative
 
 
-class Style(Record, frozen=True):
+class Style(TomlRecord, frozen=True):
     """A style of walking with a variable amount: scalings and targets for an amount of 1.
 
     Styles add up, and an amount between 0 and 1 blends (section 5.4). Amounts are in `least` ..
@@ -213,14 +213,14 @@ class Style(Record, frozen=True):
     most: float = 1.0
 
 
-class TorsoServo(Record, frozen=True):
+class TorsoServo(TomlRecord, frozen=True):
     """A joint that keeps the torso at a forward lean of `angle` degrees (section 3.8)."""
 
     joint: str
     angle: float = 0.0
 
 
-class Upright(Record, frozen=True):
+class Upright(TomlRecord, frozen=True):
     """Balance feedback of a graph that is played, see `windup.control.motions.upright`.
 
     Gains by joint: `forward` and `right` in degrees per degree of the base's lean, the rates in
@@ -236,7 +236,7 @@ class Upright(Record, frozen=True):
     states: list[str] | None = None
 
 
-class GaitFile(Record, frozen=True):
+class GaitFile(TomlRecord, frozen=True):
     """One file of `gaits/`: a pose graph and, for a walk, its balance control.
 
     `tries` is the number of tries of a state with a `reach` before the graph is aborted. `lying`

@@ -136,7 +136,7 @@ class Stepper:
         goals = self._before + part * (self.stance - self._before)
         self._height = self._above + part * (self.footing.height - self._above)
         self._pose(goals, now)
-        return self._hold.at(goals)
+        return self._hold.with_position(goals)
 
     def publish(self, block: ControllerBlock) -> None:
         """Publish the phase, the capture point and the target of the swing foot."""

@@ -5,14 +5,14 @@ from typing import Annotated, Literal
 from msgspec import Meta
 
 from windup.control.stepping.step_decision import Damping, Reach, StepRule, find_rule
-from windup.hal.config import Part, Positive, Record, Seconds
+from windup.hal.config import Fraction, Positive, Seconds, TomlRecord
 from windup.hal.joints import Array
 
 Metres = Annotated[float, Meta(ge=0.0, le=100.0)]
 Support = Literal["hull", "capsule"]
 
 
-class ReachTable(Record, frozen=True):
+class ReachTable(TomlRecord, frozen=True):
     """Bounds of a foot's place relative to the other foot, m.
 
     See `windup.control.stepping.step_decision.Reach`.
@@ -28,14 +28,14 @@ class ReachTable(Record, frozen=True):
         return Reach(self.back, self.front, self.near, self.far)
 
 
-class RuleTable(Record, frozen=True):
+class RuleTable(TomlRecord, frozen=True):
     """Dampings of a rule, in omega; without `where` the predicted capture point is the target."""
 
     when: Damping
     where: Damping | None = None
 
 
-class CatchTable(Record, frozen=True):
+class CatchTable(TomlRecord, frozen=True):
     """Pushes during a walk that are answered by steps, by the deviation of the capture point.
 
     Attributes:
@@ -52,7 +52,7 @@ class CatchTable(Record, frozen=True):
         return bool(-ahead > self.back and abs(left) < -ahead * self.slant)
 
 
-class Stepping(Record, frozen=True):
+class Stepping(TomlRecord, frozen=True):
     """Stepping parameters; `up`, `lead`, `balance` and `trunk` are for position servos only.
 
     Attributes:
@@ -89,9 +89,9 @@ class Stepping(Record, frozen=True):
     reach: ReachTable
     duration: Positive
     lift: Metres
-    up: Part = 0.5
-    early: Part = 0.6
-    update: Part = 0.5
+    up: Fraction = 0.5
+    early: Fraction = 0.6
+    update: Fraction = 0.5
     dwell: Seconds = 0.05
     settle: Seconds = 0.4
     lead: Seconds = 0.0

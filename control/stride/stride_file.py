@@ -1,11 +1,11 @@
 """Format of a robot's `stride.toml`: parameters of walking with a pendulum plan. SI units."""
 
 from windup.control.stride.pendulum import StepTiming
+from windup.hal.config import Fraction, Positive, TomlRecord
 from windup.hal.config import NotNegative as Gain
-from windup.hal.config import Part, Positive, Record
 
 
-class Stride(Record, frozen=True, kw_only=True):
+class Stride(TomlRecord, frozen=True, kw_only=True):
     """Parameters of walking with a pendulum plan, for a robot with position servos.
 
     Attributes:
@@ -46,7 +46,7 @@ class Stride(Record, frozen=True, kw_only=True):
     single: Positive
     double: Positive
     lift: Positive
-    early: Part
+    early: Fraction
     width: Positive
     lead: Gain
     quicken: Positive
@@ -58,7 +58,7 @@ class Stride(Record, frozen=True, kw_only=True):
     turn: Positive
     yielding: Gain
     adjust: Gain
-    update: Part
+    update: Fraction
     most: Positive
     keep: Positive
     feel: Positive

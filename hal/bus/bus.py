@@ -12,7 +12,7 @@ from windup.hal.errors import HardwareError, NoAnswerError, UsageError
 from windup.hal.families import DYNAMIXEL_X, Family
 from windup.hal.heartbeat import Heartbeat
 from windup.hal.joints import Mask
-from windup.hal.port.adapter import get_to_know
+from windup.hal.port.adapter import measure_adapter
 from windup.hal.port.port import Port
 from windup.hal.protocols.cyclic import CyclicRead
 from windup.hal.protocols.protocol2 import Span, Status
@@ -30,7 +30,7 @@ EEPROM_TIME = 20e-3
 """Time that a Feetech servo needs to write its EEPROM after its status packet, s."""
 
 
-class Found(NamedTuple):
+class ScannedServo(NamedTuple):
     """A servo that answered a scan."""
 
     baud: int
@@ -67,7 +67,7 @@ class Bus:
         The latency and echo measured on the old port are assumed for the new one.
         """
         before = self.port
-        port.echoes, port.known = before.echoes, before.known
+        port.echoes, port.is_measured = before.echoes, before.is_measured
         port.latency = max(port.latency, before.latency)
         self.port = port
         self.exchange.move_to(port)
@@ -83,14 +83,14 @@ class Bus:
     def heartbeat(self, heartbeat: Heartbeat) -> None:
         self._configurator.heartbeat = heartbeat
 
-    def get_to_know_adapter(self, ids: Iterable[int]) -> None:
+    def measure_adapter(self, ids: Iterable[int]) -> None:
         """Measure the latency of the adapter, and whether it echoes requests.
 
         Args:
             ids: Ids of servos that may be present; the first that answers is probed several times.
         """
         probes = (self.family.protocol.probe(id) for id in ids)
-        get_to_know(self.port, probes, self.heartbeat)
+        measure_adapter(self.port, probes, self.heartbeat)
 
     def ping(self, id: int) -> int:
         """Return the model number of servo `id`.
@@ -100,7 +100,7 @@ class Bus:
         """
         return self._configurator.ping(id)
 
-    def scan(self, bauds: Iterable[int] | None = None) -> list[Found]:
+    def scan(self, bauds: Iterable[int] | None = None) -> list[ScannedServo]:
         """Return every servo that answers at any of `bauds` (by default all of the family).
 
         The baud rate of the port is restored afterwards.
@@ -156,9 +156,9 @@ class Bus:
 
         One transaction in protocol 2 and on MX that passed `probe_fast`, else one per servo.
         """
-        return {id: status.params for id, status in self.statuses(spans).items()}
+        return {id: status.params for id, status in self.read_statuses(spans).items()}
 
-    def statuses(self, spans: Sequence[Span], rest: bool = False) -> dict[int, Status]:
+    def read_statuses(self, spans: Sequence[Span], rest: bool = False) -> dict[int, Status]:
         """Return the status packets of a `bulk_read`; for `rest` see `BusTransactions.request`."""
         self.heartbeat()
         read = self.family.protocol.read(spans, self.fast([span.id for span in spans]))
@@ -197,9 +197,9 @@ class Bus:
         the plain read.
         """
         spans = [Span(id, self.family.registers["id"].address, 1) for id in ids]
-        if self._everybody(self.family.protocol.read(spans, fast=True)):
+        if self._with_all_servos(self.family.protocol.read(spans, fast=True)):
             self._fast[tuple(ids)] = True
-        elif self._everybody(self.family.protocol.read(spans)):
+        elif self._with_all_servos(self.family.protocol.read(spans)):
             self._fast[tuple(ids)] = False
         return self.fast(ids)
 
@@ -217,9 +217,11 @@ class Bus:
         """
         last = self.family.protocol.last_id
         if not 0 <= new <= last:
-            raise UsageError(f"id {new} cannot be; ids go from 0 to {last}")
+            raise UsageError(f"id {new} is invalid; ids are 0 to {last}")
         if self._answers(new):
-            raise UsageError(f"id {new} on {self.port.url} is taken; two servos cannot share it")
+            raise UsageError(
+                f"id {new} on {self.port.url} belongs to another servo; give it a free id"
+            )
         register = self.family.registers["id"]
         with self._unlocked(id, after=new):
             self._configurator.write(id, register.address, bytes([new]))
@@ -242,11 +244,11 @@ class Bus:
         self._configurator.factory_reset(id, keep)
         self.wait(REBOOT_TIME)
 
-    def _scan(self, baud: int) -> list[Found]:
+    def _scan(self, baud: int) -> list[ScannedServo]:
         self.port.baud = baud
-        self.get_to_know_adapter(FIRST)
+        self.measure_adapter(FIRST)
         return [
-            Found(baud, *answered, self.family.model_name(answered.model_number))
+            ScannedServo(baud, *answered, self.family.model_name(answered.model_number))
             for answered in self.family.protocol.scan(self.port, self._configurator)
         ]
 
@@ -264,7 +266,7 @@ class Bus:
         finally:
             self._configurator.write(id if after is None else after, lock.address, bytes([1]))
 
-    def _everybody(self, read: CyclicRead) -> bool:
+    def _with_all_servos(self, read: CyclicRead) -> bool:
         for _ in range(2):
             self.exchange.request(read)
             if self.exchange.collect().all():

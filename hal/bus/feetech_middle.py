@@ -21,15 +21,17 @@ def set_middle(bus: Bus, id: int) -> int:
     registers = bus.family.registers
     if "homing_offset" not in registers or "lock" not in registers:
         raise UsageError(
-            f"a {bus.family.name} servo cannot be told its middle; calibrate in a file"
+            f"a {bus.family.name} servo has no homing offset; set `zero` of its joint in robot.toml"
         )
     if bus.read(id, registers["torque_enable"]) != 0:
-        raise HardwareError(f"id {id} on {bus.port.url}: torque is on; `windup stop` first")
+        raise HardwareError(
+            f"id {id} on {bus.port.url}: torque is on; switch it off with `windup stop` first"
+        )
     bus.command(id, registers["torque_enable"], MIDDLE, unlock=True)
     position = bus.read(id, registers["present_position"])
     if abs(position - CENTRE) > TOLERANCE:
         raise HardwareError(
-            f"id {id} on {bus.port.url} reads {position} after it was told its middle, "
+            f"id {id} on {bus.port.url} reads {position} after its middle was set, "
             f"not {CENTRE}; hold it still and try again"
         )
     return bus.read(id, registers["homing_offset"])

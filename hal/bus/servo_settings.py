@@ -8,7 +8,7 @@ from windup.hal.registers import Register
 from windup.hal.servos.servo_model import ServoModel, ServoMount
 
 
-class Setting(NamedTuple):
+class SettingDifference(NamedTuple):
     """A register whose present value differs from the wanted one, counts."""
 
     register: Register
@@ -19,7 +19,7 @@ class Setting(NamedTuple):
         return f"{self.register.name} {self.present} instead of {self.wanted}"
 
 
-def differences(bus: Bus, mount: ServoMount) -> list[Setting]:
+def differences(bus: Bus, mount: ServoMount) -> list[SettingDifference]:
     """Return the required settings of a servo that differ. Nothing is written."""
     table = bus.family.table(mount.model.name)
     found = []
@@ -29,7 +29,7 @@ def differences(bus: Bus, mount: ServoMount) -> list[Setting]:
         present = bus.read(mount.id, table[name])
         wanted = value if mask is None else present & ~mask | value
         if present != wanted:
-            found.append(Setting(table[name], present, wanted))
+            found.append(SettingDifference(table[name], present, wanted))
     return found
 
 
@@ -42,7 +42,7 @@ def required_settings(family: Family, mount: ServoMount) -> list[RequiredSetting
     ]
 
 
-def limits(bus: Bus, id: int, model: ServoModel) -> list[Setting]:
+def limits(bus: Bus, id: int, model: ServoModel) -> list[SettingDifference]:
     """Return the unusual protection registers of servo `id`; `wanted` is the factory default."""
     table = bus.family.table(model.name)
     found = []
@@ -51,11 +51,11 @@ def limits(bus: Bus, id: int, model: ServoModel) -> list[Setting]:
             continue
         present = bus.read(id, table[default.name])
         if default.is_unusual(present):
-            found.append(Setting(table[default.name], present, default.value))
+            found.append(SettingDifference(table[default.name], present, default.value))
     return found
 
 
-def assert_settings(bus: Bus, id: int, settings: list[Setting]) -> None:
+def assert_settings(bus: Bus, id: int, settings: list[SettingDifference]) -> None:
     """Write `settings` and read each one back.
 
     Raises:

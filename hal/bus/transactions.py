@@ -17,17 +17,17 @@ TURNAROUND = 20e-6
 """Time that a servo with a return delay of 0 takes to answer, s."""
 UNSET_TURNAROUND = 550e-6
 """Time that a servo with the factory default return delay takes to answer, s."""
-STRANGE = 256
+MAX_EXTRA_BYTES = 256
 """Maximum number of extra bytes before an answer (noise, or an echo of the adapter)."""
-STILL_COMING = 0.03
+LATE_ANSWER_TIME = 0.03
 """Time after an unanswered request in which a late answer may still come, s."""
 JITTER = 1e-4
 """Jitter of the answer time of a servo, s."""
-GRACE = 3e-3
+LATE_SERVO_PAUSE = 3e-3
 """Pause after an incomplete answer, for late servos to finish before the next request, s."""
-LATE = 6
+MAX_LATE = 6
 """Number of unanswered requests after which a servo counts as missing, not late."""
-DOUBTS = 2
+MAX_DOUBTED = 2
 """Number of consecutive doubtful answers after which requests pause until the line is quiet."""
 
 
@@ -109,8 +109,8 @@ class BusTransactions:
             return self._collect_chain(read)
         read.owed = self._owed
         stream = self._answer(read)
-        if not read.confusable and self.port.clock.now() < self._whole_owed:
-            self._alone(read, stream)
+        if not read.echo_is_confusable and self.port.clock.now() < self._whole_owed:
+            self._decode_if_alone(read, stream)
         else:
             if self._owed:
                 stream = self._newest(read, stream)
@@ -146,7 +146,7 @@ class BusTransactions:
         last = now + len(read.spans) * self.turnaround + self.port.latency + JITTER
         return stream + self.port.read(PLENTY, last)
 
-    def _alone(self, read: CyclicRead, stream: bytes) -> None:
+    def _decode_if_alone(self, read: CyclicRead, stream: bytes) -> None:
         """Decode an answer only if it is complete and alone: a late one may still arrive."""
         stream = self._newest(read, stream)
         read.decode(stream if len(stream) == read.length else b"")
@@ -156,28 +156,28 @@ class BusTransactions:
     def _note_owed(self, read: CyclicRead) -> None:
         """Record which servos still owe an answer, including those whose reply was doubtful.
 
-        If a servo is late, so are all after it: the next request waits for them, at most `LATE`
-        times. A single silent servo is not waited for. After `DOUBTS` doubtful answers in a row,
-        requests pause until the line is quiet.
+        If a servo is late, so are all after it: the next request waits for them, at most `MAX_LATE`
+        times. A single silent servo is not waited for. After `MAX_DOUBTED` doubtful answers in a
+        row, requests pause until the line is quiet.
         """
         now = self.port.clock.now()
         self._doubts = self._doubts + 1 if read.doubted else 0
-        if self._doubts == DOUBTS:
-            self._owed, self._doubts, self._quiet = {}, 0, now + STILL_COMING
+        if self._doubts == MAX_DOUBTED:
+            self._owed, self._doubts, self._quiet = {}, 0, now + LATE_ANSWER_TIME
             return
         if read.complete:
             self._owed, self._whole_owed = {}, -inf
             return
-        if not read.confusable:
-            self._whole_owed = now + STILL_COMING
+        if not read.echo_is_confusable:
+            self._whole_owed = now + LATE_ANSWER_TIME
             return
         silent = [span.id for span, came in zip(read.spans, read.valid, strict=True) if not came]
         answered = {span.id for span in read.spans}.difference(silent)
         still = {id: count for id, count in self._owed.items() if id not in answered}
         self._owed = still | {id: still.get(id, 0) + 1 for id in silent}
         late = self._owed.get(read.spans[-1].id, 0)
-        if len(silent) > 1 and 0 < late <= LATE:
-            self._silence = self._deadline + GRACE
+        if len(silent) > 1 and 0 < late <= MAX_LATE:
+            self._silence = self._deadline + LATE_SERVO_PAUSE
 
     def _collect_chain(self, chain: ChainRead) -> Mask:
         """Collect the first answer of a chain, then request and collect the others one by one."""
@@ -193,7 +193,7 @@ class BusTransactions:
         id = part.spans[0].id
         stream, now = self._answer(part), self.port.clock.now()
         if id in self._owed or now < self._parts_owed.get(id, -inf):
-            self._alone(part, stream)
+            self._decode_if_alone(part, stream)
         else:
             part.decode(stream)
             if not part.complete:
@@ -201,7 +201,7 @@ class BusTransactions:
         if part.complete:
             self._owed.pop(id, None)
         elif now >= self._parts_owed.get(id, -inf):
-            self._parts_owed[id] = now + STILL_COMING
+            self._parts_owed[id] = now + LATE_ANSWER_TIME
 
     def answer_time(self, read: CyclicRead) -> float:
         """Return the maximum time from the end of the request of `read` to its full answer, s."""
@@ -224,7 +224,7 @@ class BusTransactions:
             if not more:
                 break
             stream += more
-            if len(stream) > 2 * read.longest + STRANGE:
+            if len(stream) > 2 * read.longest + MAX_EXTRA_BYTES:
                 break
             read.decode(stream)
         if read.complete:
@@ -235,7 +235,7 @@ class BusTransactions:
     def _count_lost(self, read: CyclicRead, stream: bytes) -> None:
         """Count the replies that are missing in an answer."""
         self.errors["resynchronised"] += 1
-        kind = "corrupt" if len(stream) > read.answered() else "no answer"
+        kind = "corrupt" if len(stream) > read.answered_bytes() else "no answer"
         self.errors[kind] += int((~read.valid).sum())
 
     def _occupy(self, count: int) -> None:

@@ -16,7 +16,7 @@ from dynamixel_sdk import COMM_RX_CORRUPT, COMM_RX_TIMEOUT, COMM_SUCCESS
 from dynamixel_sdk.port_handler import PortHandler
 from dynamixel_sdk.protocol2_packet_handler import Protocol2PacketHandler
 
-from windup.hal.errors import CorruptAnswerError, NoAnswerError, RefusedError
+from windup.hal.errors import CorruptAnswerError, NoAnswerError, ServoRejectionError
 from windup.hal.heartbeat import no_heartbeat
 from windup.hal.port.port import BITS, Port
 from windup.hal.protocols import protocol2
@@ -30,9 +30,9 @@ SLACK = 10e-3
 ATTEMPTS = 3
 
 REFUSALS = {
-    1: "could not process it",
+    1: "could not process the instruction",
     2: "does not know the instruction",
-    3: "saw a wrong checksum",
+    3: "received a wrong checksum",
     4: "says the value is out of range",
     5: "says the length is wrong",
     6: "says the value is beyond its limit",
@@ -141,7 +141,7 @@ def keep_received(packets: Any) -> deque[Sequence[int]]:
 class ServoConfigurator(ABC):
     """Verified access to one servo at a time, with retries; slow, for configuration only.
 
-    All methods raise `NoAnswerError`, `CorruptAnswerError`, `RefusedError` or `PortError`.
+    All methods raise `NoAnswerError`, `CorruptAnswerError`, `ServoRejectionError` or `PortError`.
 
     Attributes:
         heartbeat: Called before each attempt, because a silent servo takes several.
@@ -158,7 +158,7 @@ class ServoConfigurator(ABC):
 
     def settle(self) -> None:
         """Wait until no late answer to an earlier request can arrive."""
-        self._port.port.settle(QUIET + self._port.port.latency, NOISY)
+        self._port.port.drain_input(QUIET + self._port.port.latency, NOISY)
         self._unsettled = False
 
     @abstractmethod
@@ -217,12 +217,14 @@ class ServoConfigurator(ABC):
         where = f"id {id} on {self._port.port.url} at {self._port.port.baud} baud"
         if result == self.timed_out and (came := self._port.port.received - before):
             raise NoAnswerError(
-                f"no answer from {where}, but {came} bytes that are none; run `windup scan`", came
+                f"no answer from {where}, but {came} bytes that do not belong to one; "
+                "run `windup scan`",
+                came,
             )
         if result == self.timed_out:
             raise NoAnswerError(f"no answer from {where}; is it powered? run `windup scan`")
         raise CorruptAnswerError(
-            f"only broken answers from {where}; a wrong baud rate, or two servos with this id?"
+            f"only corrupt answers from {where}; a wrong baud rate, or two servos with this id?"
         )
 
     @abstractmethod
@@ -274,4 +276,4 @@ class DynamixelConfigurator(ServoConfigurator):
     def _check(self, id: int, error: int) -> None:
         if code := error & ~protocol2.ALERT:
             what = REFUSALS.get(code, f"answers with error {code}")
-            raise RefusedError(f"id {id} on {self._port.port.url} {what}")
+            raise ServoRejectionError(f"id {id} on {self._port.port.url} {what}")

@@ -15,7 +15,7 @@ from dynamixel_sdk.protocol1_packet_handler import Protocol1PacketHandler
 from scservo_sdk import COMM_RX_TIMEOUT
 from scservo_sdk.protocol_packet_handler import protocol_packet_handler
 
-from windup.hal.errors import RefusedError, UsageError
+from windup.hal.errors import ServoRejectionError, UsageError
 from windup.hal.families.configurator import ATTEMPTS, ServoConfigurator
 from windup.hal.port.port import Port
 from windup.hal.protocols.protocol1 import Instruction
@@ -24,7 +24,7 @@ from windup.hal.registers import Register
 REFUSALS = {
     1: "says the goal is beyond its angle limits",
     3: "says the value is out of range",
-    4: "saw a wrong checksum",
+    4: "received a wrong checksum",
     6: "does not know the instruction",
 }
 """Bits of a Dynamixel's error byte that reject an instruction; the others report its health."""
@@ -101,7 +101,7 @@ class Dynamixel1Configurator(Protocol1Configurator):
 
     def _check(self, id: int, error: int) -> None:
         if no := [what for bit, what in REFUSALS.items() if error >> bit & 1]:
-            raise RefusedError(f"id {id} on {self._port.port.url} {' and '.join(no)}")
+            raise ServoRejectionError(f"id {id} on {self._port.port.url} {' and '.join(no)}")
 
 
 class FeetechConfigurator(Protocol1Configurator):

@@ -177,7 +177,7 @@ class Family:
         """
         if baud not in self.bauds:
             rates = ", ".join(str(rate) for rate in self.bauds)
-            raise UsageError(f"baud rate {baud} cannot be; there are {rates}")
+            raise UsageError(f"baud rate {baud} is not supported; use one of {rates}")
         return self.bauds[baud]
 
     def torque_span(self, id: int) -> Span:

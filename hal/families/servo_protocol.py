@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from windup.hal.errors import CorruptAnswerError, HardwareError, NoAnswerError, RefusedError
+from windup.hal.errors import CorruptAnswerError, HardwareError, NoAnswerError, ServoRejectionError
 from windup.hal.port.adapter import MARGIN, Probe
 from windup.hal.port.port import BITS, Port
 from windup.hal.protocols import protocol1, protocol2
@@ -72,7 +72,7 @@ class ServoProtocol(ABC):
         """Return the frame that pings one servo."""
 
     @abstractmethod
-    def salvage(self, data: bytes) -> list[Status]:
+    def find_packets(self, data: bytes) -> list[Status]:
         """Return the valid status packets in received bytes."""
 
     @abstractmethod
@@ -116,9 +116,9 @@ class Protocol2(ServoProtocol):
         """Return the frame that pings one servo."""
         return protocol2.ping(id)
 
-    def salvage(self, data: bytes) -> list[Status]:
+    def find_packets(self, data: bytes) -> list[Status]:
         """Return the valid status packets in received bytes."""
-        return list(protocol2.salvage(data))
+        return list(protocol2.find_packets(data))
 
     def probe(self, id: int) -> Probe:
         """Return a ping: its answer differs from its echo by the instruction byte."""
@@ -132,7 +132,7 @@ class Protocol2(ServoProtocol):
         slots = PING_SLOT * protocol2.LAST_ID + 2.0 * port.latency
         longest = (protocol2.LAST_ID + 1) * (protocol2.OVERHEAD + 3)
         stream = port.read(longest, port.clock.now() + slots + longest * 10.0 / port.baud)
-        answers = {item.id: item.params for item in protocol2.salvage(stream)}
+        answers = {item.id: item.params for item in protocol2.find_packets(stream)}
         return [
             Answered(id, int.from_bytes(params[:2], "little"), params[2])
             for id, params in sorted(answers.items())
@@ -143,7 +143,7 @@ class Protocol2(ServoProtocol):
         """Return the model number of a servo that answers in protocol 1 instead, or None."""
         from windup.hal.families.configurator1 import Dynamixel1Configurator
 
-        with contextlib.suppress(NoAnswerError, CorruptAnswerError, RefusedError):
+        with contextlib.suppress(NoAnswerError, CorruptAnswerError, ServoRejectionError):
             return Dynamixel1Configurator(port, MODEL_NUMBER).ping(id, attempts=1)
         return None
 
@@ -181,9 +181,9 @@ class Protocol1(ServoProtocol):
         """Return the frame that pings one servo."""
         return protocol1.ping(id)
 
-    def salvage(self, data: bytes) -> list[Status]:
+    def find_packets(self, data: bytes) -> list[Status]:
         """Return the valid status packets in received bytes."""
-        return list(protocol1.salvage(data))
+        return list(protocol1.find_packets(data))
 
     def probe(self, id: int) -> Probe:
         """Return a read of one byte: its answer differs in length from its echo, a ping's not."""
@@ -277,4 +277,4 @@ def _pongs(port: Port, id: int) -> set[int]:
     wire = (len(request) + protocol1.OVERHEAD) * BITS / port.baud
     deadline = port.clock.now() + wire + 2.0 * port.latency + PING_TIME
     stream = port.read(protocol1.OVERHEAD, deadline)
-    return {item.id for item in protocol1.salvage(stream, {}, (0,))}
+    return {item.id for item in protocol1.find_packets(stream, {}, (0,))}

@@ -55,7 +55,7 @@ def roll_pitch_yaw(orientation: Array) -> tuple[float, float, float]:
     )
 
 
-def between(before: Array, after: Array) -> Array:
+def rotation_between(before: Array, after: Array) -> Array:
     """Return the rotation vector (3,) rad, in the body, from one orientation to the next."""
     turn = multiply(conjugate(before), after)
     size = float(np.linalg.norm(turn[1:]))

@@ -23,11 +23,11 @@ def check_health(backend: Backend, watch: HealthWatch | None, max_age: float) ->
     for _ in range(2):
         backend.read_health()
         seen.append(backend.read())
-    if (unwell := watch.refuse(seen, max_age)) is not None:
+    if (unwell := watch.error_before_arming(seen, max_age)) is not None:
         raise unwell
 
 
-def read_afresh(backend: Backend, max_age: float) -> None:
+def read_fresh(backend: Backend, max_age: float) -> None:
     """Read until all joints have a recent state: arming takes time, and answers may be lost."""
     for _ in range(ATTEMPTS):
         if backend.read().joints.age.max() < 0.5 * max_age:

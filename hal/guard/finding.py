@@ -4,9 +4,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from windup.hal.guard.levels import Kind
+from windup.hal.guard.levels import HealthKind
 
-FEW = 3
+MAX_NAMED = 3
 """Maximum number of joints that a message names; more are counted."""
 
 
@@ -14,58 +14,58 @@ CHECK, AGAIN = "check its cable and power", "switch it off and on"
 """Remedies for a part that is silent, and for one that sends wrong values."""
 
 
-class Saying(NamedTuple):
+class FindingText(NamedTuple):
     """Texts of one kind of finding.
 
     Attributes:
         name: Name of the kind, for programs.
         state: Format of the state, with the worst value.
         level: Format of the limit.
-        do: Remedy.
+        remedy: Remedy.
         scale: Factor from the value to the printed number.
-        who: The part concerned if it is not a joint.
+        subject: The part concerned if it is not a joint.
         low: Whether lower values are worse.
     """
 
     name: str
     state: str
     level: str
-    do: str
+    remedy: str
     scale: float = 1.0
-    who: str = ""
+    subject: str = ""
     low: bool = False
 
 
-SAYINGS = {
-    Kind.SUPPLY_LOW: Saying(
+FINDING_TEXTS = {
+    HealthKind.SUPPLY_LOW: FindingText(
         "supply low", "on {:.1f} V", "below {:.1f}", "charge the battery, or check its connector",
         low=True,
     ),
-    Kind.SUPPLY_HIGH: Saying(
+    HealthKind.SUPPLY_HIGH: FindingText(
         "supply high", "on {:.1f} V", "above {:.1f}", "switch the power off: it is the wrong supply"
     ),
-    Kind.TEMPERATURE: Saying(
+    HealthKind.TEMPERATURE: FindingText(
         "temperature", "at {:.0f} degrees C", "at {:.0f}",
         "let it cool; a pose with less load helps",
     ),
-    Kind.LOAD: Saying(
+    HealthKind.LOAD: FindingText(
         "load", "at {:.0f} % of stall torque for a second", "at {:.0f} %",
         "take a pose with less load, or carry less", 100.0,
     ),
-    Kind.STALL: Saying(
-        "stall", "blocked at full torque for {:.1f} s", "at {:.1f} s", "free what holds it"
+    HealthKind.STALL: FindingText(
+        "stall", "blocked at full torque for {:.1f} s", "at {:.1f} s", "remove what blocks it"
     ),
 }  # fmt: skip
 
 
-def named(joints: Iterable[str]) -> str:
-    """Return up to `FEW` names as text, or the number of joints.
+def format_names(joints: Iterable[str]) -> str:
+    """Return up to `MAX_NAMED` names as text, or the number of joints.
 
-    >>> named(["l_knee", "r_knee"]), named("abcd")
+    >>> format_names(["l_knee", "r_knee"]), format_names("abcd")
     ('l_knee and r_knee', '4 joints')
     """
     names = list(joints)
-    if len(names) > FEW:
+    if len(names) > MAX_NAMED:
         return f"{len(names)} joints"
     return " and ".join(filter(None, [", ".join(names[:-1]), *names[-1:]]))
 
@@ -75,7 +75,7 @@ class Finding:
     """One cause of a warning or a stop, with all joints it was found at.
 
     Attributes:
-        saying: Texts of its kind.
+        text: Texts of its kind.
         value: The worst value.
         limit: The level that was exceeded, at the joint with the worst value.
         since: Time when it was first found, s on the backend's clock.
@@ -84,7 +84,7 @@ class Finding:
         count: Number of times that it began at one of the joints.
     """
 
-    saying: Saying
+    text: FindingText
     value: float
     limit: float
     since: float
@@ -93,22 +93,22 @@ class Finding:
     count: int = 0
 
     @property
-    def what(self) -> str:
+    def description(self) -> str:
         """Text of the state and of the level that was exceeded."""
-        saying = self.saying
-        state = saying.state.format(self.value * saying.scale)
-        level = saying.level.format(self.limit * saying.scale)
+        text = self.text
+        state = text.state.format(self.value * text.scale)
+        level = text.level.format(self.limit * text.scale)
         word = "stop" if self.stop else "warning"
         return f"{state} ({word} {level})" if level else state
 
     def __str__(self) -> str:
         one = len(self.joints) <= 1
         verb = ("is" if one else "are") if self.stop else ("was" if one else "were")
-        return f"{named(self.joints) or self.saying.who} {verb} {self.what}"
+        return f"{format_names(self.joints) or self.text.subject} {verb} {self.description}"
 
     def merge(self, other: "Finding") -> None:
         """Merge another finding of the same kind, from another run or a later check."""
-        worse = other.value < self.value if self.saying.low else other.value > self.value
+        worse = other.value < self.value if self.text.low else other.value > self.value
         if worse:
             self.value, self.limit = other.value, other.limit
         self.joints += [name for name in other.joints if name not in self.joints]
@@ -117,7 +117,7 @@ class Finding:
     def record(self) -> dict[str, Any]:
         """Return the finding as a dict for machine-readable output."""
         return {
-            "kind": self.saying.name,
+            "kind": self.text.name,
             "joints": list(self.joints),
             "value": self.value,
             "limit": self.limit,

@@ -12,10 +12,10 @@ from windup.hal.backend import Backend, Clock, Rearmable
 from windup.hal.command import FIELDS, JointCommand
 from windup.hal.errors import GuardianError, PortError, UnsafeCommandError
 from windup.hal.geometry.smooth_step import smooth_step
-from windup.hal.guard.arming import check_health, read_afresh
-from windup.hal.guard.ending import check_off
+from windup.hal.guard.arming import check_health, read_fresh
 from windup.hal.guard.limits import SafetyLimits, StopPolicy
-from windup.hal.guard.presence import Presence
+from windup.hal.guard.presence_check import PresenceCheck
+from windup.hal.guard.torque_off_check import check_torque_off
 from windup.hal.guard.watch import HealthWatch
 from windup.hal.heartbeat import no_heartbeat
 from windup.hal.joints import Array, Flags, Joints
@@ -59,7 +59,7 @@ class GuardedBackend:
     heartbeat: Callable[[], None] = field(init=False, repr=False)
     lock: RLock = field(default_factory=RLock, init=False, repr=False)
     _last: Observation | None = field(default=None, init=False, repr=False)
-    _obeyed: JointCommand | None = field(default=None, init=False, repr=False)
+    _applied: JointCommand | None = field(default=None, init=False, repr=False)
     _driven: bool = field(default=False, init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -68,7 +68,7 @@ class GuardedBackend:
         self._buffer = np.empty_like(self.limits.lower)
         # An infinite value is not clamped where the limit is infinite, so it is checked for.
         self._unlimited = not np.isfinite([self.limits.lower, self.limits.upper]).all()
-        self._presence = Presence(self.backend)
+        self._presence = PresenceCheck(self.backend)
         # Bound methods, looked up once: they are called on every tick.
         self._send: Callable[[JointCommand], JointCommand] = self.backend.write
         self._collect: Callable[[], Observation] = self.backend.collect
@@ -86,7 +86,7 @@ class GuardedBackend:
     @property
     def last(self) -> tuple[Observation, JointCommand] | None:
         """The last observation and the command in effect, or None while no command is."""
-        return (self._last, self._obeyed) if self._last and self._obeyed else None
+        return (self._last, self._applied) if self._last and self._applied else None
 
     def connect(self) -> None:
         """Open the backend."""
@@ -109,11 +109,11 @@ class GuardedBackend:
         """
         with self.lock:
             if on:
-                self.admit()
-            self._driven, self._obeyed = on, None
+                self.check_before_arming()
+            self._driven, self._applied = on, None
             state = self.backend.set_torque(on)
             if on:
-                read_afresh(self.backend, self.limits.max_age)
+                read_fresh(self.backend, self.limits.max_age)
             return state
 
     def rearm(self) -> TorqueState:
@@ -130,15 +130,15 @@ class GuardedBackend:
             return self._rearm(self.backend)
 
     def _rearm(self, backend: Rearmable) -> TorqueState:
-        self._last = self._obeyed = None
+        self._last = self._applied = None
         until = self.clock.now() + REPLUG_TIME
         while True:
             self.backend.read()  # also reopens ports that have come back
             try:
-                self.admit()
+                self.check_before_arming()
                 self._driven = True
                 state = backend.rearm()
-                read_afresh(self.backend, self.limits.max_age)
+                read_fresh(self.backend, self.limits.max_age)
                 return state
             except PortError:
                 if self.clock.now() >= until:
@@ -173,8 +173,8 @@ class GuardedBackend:
         self._last = observation
         self._presence.check(observation.joints.age, self.limits.max_age)
         if self.watch is not None:
-            unwell = self.watch.update(observation, self._obeyed)
-            if unwell is not None and (self._driven or self._obeyed is not None):
+            unwell = self.watch.update(observation, self._applied)
+            if unwell is not None and (self._driven or self._applied is not None):
                 raise self.watch.error(unwell)
         return observation
 
@@ -190,21 +190,21 @@ class GuardedBackend:
         if block.shape != self._buffer.shape:
             raise UnsafeCommandError(
                 f"a command of shape {block.shape} for {len(self.joints)} joints; "
-                f"it has to be {self._buffer.shape}"
+                f"its shape has to be {self._buffer.shape}"
             )
         if self._unlimited and not isfinite(block.sum()):
-            self._refuse(block)
+            self._check_finite(block)
         np.maximum(block, self.limits.lower, out=self._buffer)
         np.minimum(self._buffer, self.limits.upper, out=self._buffer)
         self.clamp_bits = None
         if not (self._buffer == block).all():
-            self._count(block)
+            self._count_clamps(block)
             command = JointCommand(self._buffer.copy())
-        self._obeyed = real = self._write(command)
+        self._applied = real = self._write(command)
         return real
 
     def stop(
-        self, policy: StopPolicy | None = None, hurry: Callable[[], bool] = lambda: False
+        self, policy: StopPolicy | None = None, skip_crouch: Callable[[], bool] = lambda: False
     ) -> TorqueState:
         """Carry out the stop policy and return the torque state that was read back.
 
@@ -213,28 +213,28 @@ class GuardedBackend:
 
         Args:
             policy: Stop policy to use instead of the robot's own.
-            hurry: Polled during a crouch; if it returns true, torque goes off at once.
+            skip_crouch: Polled during a crouch; if it returns true, torque goes off at once.
 
         Raises:
             TorqueOnError: Torque was switched off, but a joint read back as on.
             TorqueUnknownError: Torque was switched off, but a joint could not be read back.
         """
         with self.lock:
-            return self._stop(policy or self.stop_policy, hurry)
+            return self._stop(policy or self.stop_policy, skip_crouch)
 
-    def _stop(self, policy: StopPolicy, hurry: Callable[[], bool]) -> TorqueState:
-        if policy != "limp" and self._presence.crippled():
+    def _stop(self, policy: StopPolicy, skip_crouch: Callable[[], bool]) -> TorqueState:
+        if policy != "limp" and self._presence.has_lost_torque():
             policy = "limp"
         if policy == "hold":
             self._send(JointCommand.hold(self.joints, self._pose()))
             return TorqueState.known(np.ones(len(self.joints), dtype=bool))
         if policy == "crouch" and self.crouch is not None:
-            self._glide(self._pose(), self.crouch, CROUCH_SECONDS, hurry)
+            self._move_smoothly(self._pose(), self.crouch, CROUCH_SECONDS, skip_crouch)
         state = self.set_torque(False)
-        check_off(state, self.joints)
+        check_torque_off(state, self.joints)
         return state
 
-    def admit(self) -> None:
+    def check_before_arming(self) -> None:
         """Check the health of every joint before torque enable.
 
         Raises:
@@ -247,10 +247,12 @@ class GuardedBackend:
         last = self._last or self.read()
         return np.clip(last.joints.position, self.limits.lower[0], self.limits.upper[0])
 
-    def _glide(self, start: Array, end: Array, seconds: float, hurry: Callable[[], bool]) -> None:
+    def _move_smoothly(
+        self, start: Array, end: Array, seconds: float, skip_crouch: Callable[[], bool]
+    ) -> None:
         """Move the targets from `start` to `end` (n,) rad along a smoothstep profile."""
         began = self.clock.now()
-        while (now := self.clock.now()) < began + seconds and not hurry():
+        while (now := self.clock.now()) < began + seconds and not skip_crouch():
             with suppress(GuardianError):  # the stop continues without a guardian
                 self.heartbeat()
             pose = start + (end - start) * smooth_step((now - began) / seconds)
@@ -261,19 +263,19 @@ class GuardedBackend:
         with self.lock:
             return self._send(command)
 
-    def _refuse(self, block: Array) -> None:
+    def _check_finite(self, block: Array) -> None:
         """Raise if a value of `block` is not finite; a sum may overflow with finite values."""
         bad = np.argwhere(~np.isfinite(block))
         if bad.size:
             row, joint = bad[0]
             raise UnsafeCommandError(
-                f"the controller asked joint {self.joints.names[joint]!r} for "
-                f"{FIELDS[row]} {block[row, joint]}; refused"
+                f"the controller commanded {FIELDS[row]} {block[row, joint]} for joint "
+                f"{self.joints.names[joint]!r}; give finite values"
             )
 
-    def _count(self, block: Array) -> None:
+    def _count_clamps(self, block: Array) -> None:
         """Count the clamps of `block`; raise if a value is not finite."""
-        self._refuse(block)
+        self._check_finite(block)
         changed = self._buffer != block
         for row in np.flatnonzero(changed.any(axis=1)):
             self.clamps[FIELDS[row]] += 1

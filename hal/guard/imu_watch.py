@@ -11,27 +11,29 @@ from math import isfinite, nan
 
 import numpy as np
 
-from windup.hal.guard.finding import AGAIN, CHECK, Finding, Saying
-from windup.hal.guard.gyro_watch import LONGEST, NEXT, SPIN, GyroWatch, Verdict
+from windup.hal.guard.finding import AGAIN, CHECK, Finding, FindingText
+from windup.hal.guard.gyro_watch import MAX_SAMPLE_GAP, MAX_STEP, SPINNING, GyroWatch, Verdict
 from windup.hal.guard.stuck_axis import StuckAxis
 from windup.hal.joints import Array
 from windup.hal.observation import ImuState, Observation
 
-SILENT = 0.25
+MAX_SILENCE = 0.25
 """Maximum age of the newest sample, s."""
-FROZEN = 0.5
+MAX_FROZEN = 0.5
 """Maximum time with the same sample while joints move, s."""
-RIGID = 1.0
+MAX_RIGID = 1.0
 """Maximum time with the same sample while no joint moves, s; longer causes a warning only."""
-MOVED = 0.03
+MIN_MOTION = 0.03
 """Minimum motion of a joint that counts as moved, rad."""
 
-SILENCE = Saying("imu silent", "silent for {:.2f} s", "at {:.2f} s", CHECK, who="the IMU")
-STUCK = Saying(
-    "imu frozen", "stuck at one sample for {:.1f} s", "at {:.1f} s", AGAIN, who="the IMU"
+SILENCE = FindingText("imu silent", "silent for {:.2f} s", "at {:.2f} s", CHECK, subject="the IMU")
+STUCK = FindingText(
+    "imu frozen", "repeating one sample for {:.1f} s", "at {:.1f} s", AGAIN, subject="the IMU"
 )
-NO_NUMBER = Saying("imu not a number", "not a number", "", AGAIN, who="a reading of the IMU")
-IMU_KINDS = tuple(saying.name for saying in (SILENCE, STUCK, NO_NUMBER, SPIN))
+NO_NUMBER = FindingText(
+    "imu not a number", "not a number", "", AGAIN, subject="a reading of the IMU"
+)
+IMU_KINDS = tuple(text.name for text in (SILENCE, STUCK, NO_NUMBER, SPINNING))
 """Names of all kinds of finding."""
 
 
@@ -62,11 +64,11 @@ class ImuWatch:
         """Judge an observation; return the present fault of the IMU, or None."""
         now = observation.time
         passed = now - self._time
-        if not 0.0 <= passed < FROZEN:  # another run, or a gap between calls
+        if not 0.0 <= passed < MAX_FROZEN:  # another run, or a gap between calls
             self._restart(now)
             passed = 0.0
         self._time = now
-        verdict, stop = self._judge(observation, observation.imu, min(passed, LONGEST))
+        verdict, stop = self._judge(observation, observation.imu, min(passed, MAX_STEP))
         if verdict is None:
             self._present = ""
             return None
@@ -76,7 +78,7 @@ class ImuWatch:
 
     def _restart(self, now: float) -> None:
         self._sample: Sequence[float] = ()
-        self._changed = self._heard = self._taken = now
+        self._changed = self._sampled_at = self._taken = now
         self._pose: Array = np.zeros(0)
         self.gyro.restart()
         self._axis.restart()
@@ -87,9 +89,9 @@ class ImuWatch:
     ) -> tuple[Verdict | None, bool]:
         """Return the fault or None, and whether it is a reason to stop."""
         now, joints = observation.time, observation.joints
-        self._heard = self._heard if imu is None else now - imu.age
-        if (silence := now - self._heard) > SILENT:
-            return (SILENCE, silence, SILENT), True
+        self._sampled_at = self._sampled_at if imu is None else now - imu.age
+        if (silence := now - self._sampled_at) > MAX_SILENCE:
+            return (SILENCE, silence, MAX_SILENCE), True
         if imu is None:
             return None, False
         sample = (*imu.angular_velocity.tolist(), *imu.acceleration.tolist())
@@ -97,23 +99,25 @@ class ImuWatch:
             return (NO_NUMBER, nan, nan), True
         same = now - self._changed
         if sample != self._sample:
-            if self._sample and (self._heard - self._taken < NEXT or self.gyro.doubted):
+            if self._sample and (
+                self._sampled_at - self._taken < MAX_SAMPLE_GAP or self.gyro.doubted
+            ):
                 self.gyro.compare(sample, self._sample, now)
-            self._sample, self._taken = sample, self._heard
+            self._sample, self._taken = sample, self._sampled_at
             self._changed, self._pose = now, joints.position
             self._stuck = self._axis.update(sample, now)
-        elif same > FROZEN and np.abs(joints.position - self._pose).max() > MOVED:
-            return (STUCK, same, FROZEN), True
-        elif same > RIGID:
-            return (STUCK, same, RIGID), False
+        elif same > MAX_FROZEN and np.abs(joints.position - self._pose).max() > MIN_MOTION:
+            return (STUCK, same, MAX_FROZEN), True
+        elif same > MAX_RIGID:
+            return (STUCK, same, MAX_RIGID), False
         if self._stuck is not None:
             return self._stuck, True
         return self.gyro.judge(sample, now, dt, joints.velocity), True
 
     def _note(self, found: Finding) -> None:
         """Record a finding, its worst value, and how many times it began."""
-        name = found.saying.name
-        fresh = Finding(found.saying, found.value, found.limit, found.since)
+        name = found.text.name
+        fresh = Finding(found.text, found.value, found.limit, found.since)
         known = self._warnings.setdefault(name, fresh)
         if found.value > known.value:
             known.value, known.limit = found.value, found.limit

@@ -7,7 +7,7 @@ from enum import IntEnum
 import numpy as np
 
 from windup.hal.joints import Array
-from windup.hal.servos.servo_model import OwnLimits, ServoModel, ServoMount
+from windup.hal.servos.servo_model import ProtectionLimits, ServoModel, ServoMount
 
 COOLER = (15.0, 8.0)
 """Margins of warning and stop below the temperature at which a servo switches off, degrees C. An
@@ -30,7 +30,7 @@ STALL = (0.3, 0.8)
 2 s."""
 
 
-class Kind(IntEnum):
+class HealthKind(IntEnum):
     """Monitored quantity; its value is the row in `HealthLevels`."""
 
     SUPPLY_LOW = 0
@@ -42,7 +42,7 @@ class Kind(IntEnum):
 
 @dataclass(frozen=True)
 class HealthLevels:
-    """Levels in the order of `Kind`: V, V, degrees C, fraction of stall torque, s.
+    """Levels in the order of `HealthKind`: V, V, degrees C, fraction of stall torque, s.
 
     Attributes:
         warn: (5, n) warning levels; NaN where nothing is monitored.
@@ -59,39 +59,39 @@ class HealthLevels:
         cls,
         servos: Sequence[ServoMount | None],
         supply: float,
-        given: Mapping[Kind, tuple[float, float]] | None = None,
+        configured: Mapping[HealthKind, tuple[float, float]] | None = None,
     ) -> "HealthLevels":
         """Return the levels of a robot.
 
         Args:
             servos: The servo of each joint; an ideal joint (None) is not monitored.
             supply: Nominal supply voltage of the servos, V.
-            given: Warning and stop levels from the robot's file, for the kinds it states.
+            configured: Warning and stop levels from the robot's file, for the kinds it states.
         """
-        table = np.full((2, len(Kind), len(servos)), np.nan)
+        table = np.full((2, len(HealthKind), len(servos)), np.nan)
         torque = np.full(len(servos), np.inf)
         for joint, servo in enumerate(servos):
             if servo is not None:
-                levels = defaults(servo.model, supply) | dict(given or {})
-                table[:, :, joint] = np.transpose([levels[kind] for kind in Kind])
+                levels = defaults(servo.model, supply) | dict(configured or {})
+                table[:, :, joint] = np.transpose([levels[kind] for kind in HealthKind])
                 torque[joint] = servo.model.motor(supply).stall_torque * servo.ratio
         table.setflags(write=False)
         return cls(table[0], table[1], torque)
 
 
-def defaults(servo: ServoModel, supply: float) -> dict[Kind, tuple[float, float]]:
+def defaults(servo: ServoModel, supply: float) -> dict[HealthKind, tuple[float, float]]:
     """Return the default warning and stop levels of each kind for a servo.
 
     >>> from windup.hal.families import servo_model
-    >>> defaults(servo_model("XM430-W350"), 12.0)[Kind.TEMPERATURE]
+    >>> defaults(servo_model("XM430-W350"), 12.0)[HealthKind.TEMPERATURE]
     (65.0, 72.0)
     """
-    own = servo.limits or OwnLimits(UNKNOWN_HEAT, 0.0, np.inf)
+    own = servo.limits or ProtectionLimits(UNKNOWN_HEAT, 0.0, np.inf)
     low = max(LOW[1] * supply, ABOVE_MINIMUM * own.low)
     return {
-        Kind.SUPPLY_LOW: (max(LOW[0] * supply, low), low),
-        Kind.SUPPLY_HIGH: (min(HIGH * supply, own.high), own.high),
-        Kind.TEMPERATURE: (own.temperature - COOLER[0], own.temperature - COOLER[1]),
-        Kind.LOAD: LOAD,
-        Kind.STALL: STALL,
+        HealthKind.SUPPLY_LOW: (max(LOW[0] * supply, low), low),
+        HealthKind.SUPPLY_HIGH: (min(HIGH * supply, own.high), own.high),
+        HealthKind.TEMPERATURE: (own.temperature - COOLER[0], own.temperature - COOLER[1]),
+        HealthKind.LOAD: LOAD,
+        HealthKind.STALL: STALL,
     }

@@ -9,11 +9,13 @@ only, such as from a bad connector, causes a warning but no stop.
 
 import numpy as np
 
-from windup.hal.guard.levels import HealthLevels, Kind
+from windup.hal.guard.levels import HealthKind, HealthLevels
 from windup.hal.joints import Array, Mask
 
-DWELL = ({Kind.TEMPERATURE: 1.0, Kind.SUPPLY_LOW: 5.0, Kind.SUPPLY_HIGH: 5.0},
-         {Kind.TEMPERATURE: 1.0, Kind.SUPPLY_LOW: np.inf, Kind.SUPPLY_HIGH: np.inf})  # fmt: skip
+DWELL = (
+    {HealthKind.TEMPERATURE: 1.0, HealthKind.SUPPLY_LOW: 5.0, HealthKind.SUPPLY_HIGH: 5.0},
+    {HealthKind.TEMPERATURE: 1.0, HealthKind.SUPPLY_LOW: np.inf, HealthKind.SUPPLY_HIGH: np.inf},
+)
 """Minimum time from a joint's first reading beyond the warning, and the stop, until it takes
 effect, s; load and stall need none, as they are averaged or timed already."""
 TOGETHER = 0.5
@@ -22,8 +24,8 @@ SAME = 1e-6
 """Rounding tolerance when timestamps of one reading are compared, s."""
 FINE = 0.01
 """Margin by which the supply has to pass its level, V; servos report it in steps of 0.1 V."""
-SUPPLY = slice(Kind.SUPPLY_LOW, Kind.SUPPLY_HIGH + 1)
-SIGNS = np.where(np.arange(len(Kind)) == Kind.SUPPLY_LOW, -1.0, 1.0)[:, None]
+SUPPLY = slice(HealthKind.SUPPLY_LOW, HealthKind.SUPPLY_HIGH + 1)
+SIGNS = np.where(np.arange(len(HealthKind)) == HealthKind.SUPPLY_LOW, -1.0, 1.0)[:, None]
 """Sign of each kind: values are multiplied by it so that larger is worse."""
 
 
@@ -37,7 +39,7 @@ class Persistence:
     def __init__(self, levels: HealthLevels) -> None:
         self._levels = SIGNS * np.stack((levels.warn, levels.stop))
         self._levels[:, SUPPLY] += FINE
-        self._dwell = np.array([[dwell.get(kind, 0.0) for kind in Kind] for dwell in DWELL])[
+        self._dwell = np.array([[dwell.get(kind, 0.0) for kind in HealthKind] for dwell in DWELL])[
             ..., None
         ]
         self.reset()
@@ -57,7 +59,7 @@ class Persistence:
         Returns None if there are none.
 
         Args:
-            values: (5, n) in the order of `Kind`, signed.
+            values: (5, n) in the order of `HealthKind`, signed.
             now: Present time, s.
             age: (n,) age of the supply and temperature readings, s; None for 0.
         """
@@ -67,7 +69,7 @@ class Persistence:
             return None
         beyond = values >= self._levels
         at = np.full_like(values, now)
-        at[: Kind.LOAD] = self._measured
+        at[: HealthKind.LOAD] = self._measured
         self._since = np.where(beyond, np.minimum(self._since, at), np.inf)
         self.quiet = not beyond[0].any()
         due = at - self._since >= self._dwell
@@ -76,7 +78,7 @@ class Persistence:
         due[:, SUPPLY] |= beyond[:, SUPPLY] & together
         return due
 
-    def beyond(self, values: Array) -> Mask:
+    def beyond_stop(self, values: Array) -> Mask:
         """Return (5, n) bool: values that are beyond their stop level now."""
         return values >= self._levels[1]
 

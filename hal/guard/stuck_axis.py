@@ -7,17 +7,23 @@ range.
 
 from collections.abc import Sequence
 
-from windup.hal.guard.finding import AGAIN, Saying
+from windup.hal.guard.finding import AGAIN, FindingText
 
 FAST = 0.7
 """Minimum rate that counts as stuck, rad/s: a body at rest repeats zero."""
-PERSIST = 0.1
+MIN_DURATION = 0.1
 """Minimum time for which a rate is repeated, s."""
-SAMPLES = 8
-"""Minimum number of samples that repeat a rate: on a loaded host few arrive within `PERSIST`."""
+MIN_SAMPLES = 8
+"""Minimum number of samples that repeat a rate: few arrive within `MIN_DURATION` if the host
+is busy."""
 
-ONE_AXIS = Saying(
-    "imu spinning", "stuck about one axis, at {:.1f} rad/s", "above {:.1f}", AGAIN, 1.0, "the IMU"
+ONE_AXIS = FindingText(
+    "imu spinning",
+    "repeating a rate of {:.1f} rad/s about one axis",
+    "above {:.1f}",
+    AGAIN,
+    1.0,
+    "the IMU",
 )
 
 
@@ -32,8 +38,10 @@ class StuckAxis:
         self._last: Sequence[float] = ()
         self._since, self._count = [0.0] * 3, [0] * 3
 
-    def update(self, sample: Sequence[float], now: float) -> tuple[Saying, float, float] | None:
-        """Return (saying, rate, limit) if an axis is stuck in a new (6,) sample, else None.
+    def update(
+        self, sample: Sequence[float], now: float
+    ) -> tuple[FindingText, float, float] | None:
+        """Return (text, rate, limit) if an axis is stuck in a new (6,) sample, else None.
 
         The first three values are the angular rates, rad/s.
         """
@@ -44,7 +52,7 @@ class StuckAxis:
                 self._since[axis], self._count[axis] = now, 0
                 continue
             self._count[axis] += 1
-            if self._count[axis] >= SAMPLES and now - self._since[axis] >= PERSIST:
+            if self._count[axis] >= MIN_SAMPLES and now - self._since[axis] >= MIN_DURATION:
                 stuck = ONE_AXIS, abs(rate), FAST
         self._last = sample
         return stuck

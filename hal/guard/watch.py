@@ -10,16 +10,16 @@ import numpy as np
 
 from windup.hal.command import JointCommand
 from windup.hal.errors import UnhealthyError
-from windup.hal.guard.finding import SAYINGS, Finding
-from windup.hal.guard.levels import HealthLevels, Kind
+from windup.hal.guard.finding import FINDING_TEXTS, Finding
+from windup.hal.guard.levels import HealthKind, HealthLevels
+from windup.hal.guard.load_monitor import LoadMonitor
 from windup.hal.guard.persistence import SIGNS, Persistence
-from windup.hal.guard.strain import Strain
 from windup.hal.joints import Array, Joints, Mask
 from windup.hal.observation import JointState, Observation
 
 PERIOD = 0.03
 """Period of the checks, s: no monitored quantity changes faster, and a check takes some 30 us."""
-LONGEST = 0.1
+MAX_STEP = 0.1
 """Maximum time step of one check, s: a program may not call for a while between runs."""
 
 
@@ -38,16 +38,18 @@ class HealthWatch:
 
     def __init__(self, joints: Joints, levels: HealthLevels, look: str = "") -> None:
         self.levels, self._names, self._look = levels, joints.names, look
-        # Rows in the order of `Kind`, signed so that more is worse.
-        self._values: Array = np.full((len(Kind), len(joints)), np.nan)
-        self._strain = Strain(levels.torque, self._values[Kind.LOAD], self._values[Kind.STALL])
+        # Rows in the order of `HealthKind`, signed so that more is worse.
+        self._values: Array = np.full((len(HealthKind), len(joints)), np.nan)
+        self._load_monitor = LoadMonitor(
+            levels.torque, self._values[HealthKind.LOAD], self._values[HealthKind.STALL]
+        )
         self._persistence = Persistence(levels)
         self._time = -np.inf
         self.present: Mask | None = None
         # Warnings so far: by kind their number and first time, s; and the worst values.
         self._warned: Mask = np.zeros_like(self._values, dtype=bool)
-        self._counts = np.zeros(len(Kind), dtype=np.int64)
-        self._first = np.full(len(Kind), np.nan)
+        self._counts = np.zeros(len(HealthKind), dtype=np.int64)
+        self._first = np.full(len(HealthKind), np.nan)
         self._worst: Array = np.full_like(self._values, np.nan)
 
     def update(
@@ -64,11 +66,11 @@ class HealthWatch:
         if 0.0 <= passed < PERIOD:
             return None
         if passed < 0.0:  # the clock was reset
-            self._strain.reset()
+            self._load_monitor.reset()
             self._persistence.reset()
         self._time = now
         _health(joints, self._values)
-        self._strain.update(joints, command, min(abs(passed), LONGEST))
+        self._load_monitor.update(joints, command, min(abs(passed), MAX_STEP))
         due = self._persistence.due(self._values, now, joints.health_age)
         self.present = None
         if due is None:
@@ -82,9 +84,11 @@ class HealthWatch:
 
     def error(self, found: Finding) -> UnhealthyError:
         """Return the error to raise for a finding of `update`."""
-        return UnhealthyError(f"{found}: {found.saying.do}{self._look}", found.saying.name)
+        return UnhealthyError(f"{found}: {found.text.remedy}{self._look}", found.text.name)
 
-    def refuse(self, observations: Sequence[Observation], max_age: float) -> UnhealthyError | None:
+    def error_before_arming(
+        self, observations: Sequence[Observation], max_age: float
+    ) -> UnhealthyError | None:
         """Return an error if a joint is beyond a stop level in all `observations`, else None.
 
         States older than `max_age` s are not judged.
@@ -92,12 +96,12 @@ class HealthWatch:
         due, values = np.ones_like(self._warned), np.full_like(self._values, np.nan)
         for observation in observations:
             _health(observation.joints, values)
-            due &= self._persistence.beyond(values) & (observation.joints.age <= max_age)
+            due &= self._persistence.beyond_stop(values) & (observation.joints.age <= max_age)
         if not due.any():
             return None
         found = self._reason(due, values)
-        said = f"{found}: nothing has moved; {found.saying.do}"
-        return UnhealthyError(said, found.saying.name)
+        said = f"{found}: nothing has moved; {found.text.remedy}"
+        return UnhealthyError(said, found.text.name)
 
     @property
     def warnings(self) -> list[Finding]:
@@ -105,7 +109,7 @@ class HealthWatch:
         found = []
         for row in np.flatnonzero(self._counts).tolist():
             worst = self._worst[row]
-            finding = self._finding(Kind(row), worst, np.isfinite(worst), self.levels.warn)
+            finding = self._finding(HealthKind(row), worst, np.isfinite(worst), self.levels.warn)
             finding.since, finding.count = float(self._first[row]), int(self._counts[row])
             found.append(finding)
         return found
@@ -122,17 +126,17 @@ class HealthWatch:
 
     def _reason(self, due: Mask, values: Array) -> Finding:
         """Return the finding for the first kind in `due` (5, n), the reasons to stop."""
-        kind = Kind(int(np.argmax(due.any(axis=1))))
+        kind = HealthKind(int(np.argmax(due.any(axis=1))))
         found = self._finding(kind, values[kind], due[kind], self.levels.stop)
         found.stop = True
         return found
 
-    def _finding(self, kind: Kind, values: Array, which: Mask, levels: Array) -> Finding:
+    def _finding(self, kind: HealthKind, values: Array, which: Mask, levels: Array) -> Finding:
         """Return the finding for the joints `which` (n,) bool; `values` (n,) are signed."""
         rows = np.flatnonzero(which)
         worst = int(rows[int(np.argmax(values[rows]))])
         return Finding(
-            SAYINGS[kind],
+            FINDING_TEXTS[kind],
             float(SIGNS[kind, 0] * values[worst]),
             float(levels[kind, worst]),
             self._time,
@@ -142,6 +146,6 @@ class HealthWatch:
 
 def _health(joints: JointState, values: Array) -> None:
     """Write supply and temperature into their rows of `values` (5, n), signed."""
-    np.negative(joints.voltage, out=values[Kind.SUPPLY_LOW])
-    values[Kind.SUPPLY_HIGH] = joints.voltage
-    values[Kind.TEMPERATURE] = joints.temperature
+    np.negative(joints.voltage, out=values[HealthKind.SUPPLY_LOW])
+    values[HealthKind.SUPPLY_HIGH] = joints.voltage
+    values[HealthKind.TEMPERATURE] = joints.temperature

@@ -19,8 +19,8 @@ def crouch(buses: Sequence[RemoteBus]) -> None:
     Raises:
         HardwareError: A servo cannot be read or has lost its torque, before or during the motion.
     """
-    starts = [bus.stay() for bus in buses]
-    ends = [np.array([bus.charge.crouch[id] for id in bus.charge.servos]) for bus in buses]
+    starts = [bus.hold_position() for bus in buses]
+    ends = [np.array([bus.record.crouch[id] for id in bus.record.servos]) for bus in buses]
     began = time.monotonic()
     s = 0.0
     while s < 1.0:

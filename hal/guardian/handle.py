@@ -14,21 +14,31 @@ from typing import IO
 import msgspec
 
 from windup.hal.backend import Backend
+from windup.hal.error_text import error_text
 from windup.hal.errors import GuardianError, HardwareError
 from windup.hal.guard.levels import HealthLevels
 from windup.hal.guard.limits import StopPolicy
-from windup.hal.guardian.charges import charges_of
+from windup.hal.guardian.guarded_buses import guarded_buses
 from windup.hal.guardian.launch import launch
-from windup.hal.guardian.order import FIRST, HAND_OVER, IDLE, READY, RELEASE, TICK, Charge, Order
-from windup.hal.guardian.signals import held_back
+from windup.hal.guardian.order import (
+    FIRST,
+    HAND_OVER,
+    IDLE,
+    READY,
+    RELEASE,
+    TICK,
+    GuardedBus,
+    GuardianOrder,
+)
+from windup.hal.guardian.signals import signals_blocked
 from windup.hal.guardian.traceback_signal import show_traceback_on_signal
-from windup.hal.in_words import in_words
 from windup.hal.joints import Array
 from windup.hal.port.lock import AdapterLock
 from windup.hal.servo_bus.servo_backend import ServoBackend
 
 NOT_STARTED = (
-    "the guardian that stops this robot when its program dies does not start{}; torque stays off"
+    "the guardian process, which stops this robot if its program dies, does not start{}; "
+    "torque stays off"
 )
 START_TIME = 20.0
 """Maximum time for the process to start, s."""
@@ -42,7 +52,7 @@ class Guardian:
     """Handle of the guardian process, which stops the robot if this process dies or hangs.
 
     Args:
-        charges: The robot's buses.
+        buses: The robot's buses.
         policy: Stop policy to carry out.
         hold: Duration of the policy "hold" before torque goes off, s.
 
@@ -51,23 +61,23 @@ class Guardian:
         HardwareError: The process does not start.
     """
 
-    def __init__(self, charges: Sequence[Charge], policy: StopPolicy, hold: float = 60.0) -> None:
+    def __init__(self, buses: Sequence[GuardedBus], policy: StopPolicy, hold: float = 60.0) -> None:
         self._locks: list[AdapterLock] = []
         try:
             with ExitStack() as undo:  # also on Ctrl-C, which the program may catch
-                told = tuple(self._lock(charge, undo) for charge in charges)
+                locked = tuple(self._lock(record, undo) for record in buses)
                 show_traceback_on_signal()
-                with held_back():
-                    self._process = launch([charge.lock for charge in told])
-                    undo.callback(self._give_up)
+                with signals_blocked():
+                    self._process = launch([record.lock for record in locked])
+                    undo.callback(self._kill)
                 assert self._process.stdin is not None
                 self._pipe: IO[bytes] = self._process.stdin
                 self._descriptor = self._pipe.fileno()
                 self._read_at = time.monotonic()
-                self._start(Order(host=os.getpid(), policy=policy, charges=told, hold=hold))
+                self._start(GuardianOrder(host=os.getpid(), policy=policy, buses=locked, hold=hold))
                 undo.pop_all()
         except OSError as error:
-            raise HardwareError(NOT_STARTED.format(f" ({in_words(error)})")) from error
+            raise HardwareError(NOT_STARTED.format(f" ({error_text(error)})")) from error
 
     @property
     def pid(self) -> int:
@@ -89,7 +99,7 @@ class Guardian:
         Raises:
             GuardianError: The guardian has died, or does not read its heartbeats.
         """
-        self._say(FIRST if first else TICK)
+        self._send(FIRST if first else TICK)
 
     def idle(self) -> None:
         """Send a heartbeat while no loop runs; the next one is due within 1 s.
@@ -97,7 +107,7 @@ class Guardian:
         Raises:
             GuardianError: The guardian has died, or does not read its heartbeats.
         """
-        self._say(IDLE)
+        self._send(IDLE)
 
     def release(self) -> None:
         """End the guardian after torque has been read back as off."""
@@ -115,18 +125,18 @@ class Guardian:
         self._end(HAND_OVER)
         self._unlock()
 
-    def _lock(self, charge: Charge, undo: ExitStack) -> Charge:
-        """Lock the adapter of a charge; return the charge with the lock's descriptor.
+    def _lock(self, record: GuardedBus, undo: ExitStack) -> GuardedBus:
+        """Lock the adapter of a bus; return the record of the bus with the lock's descriptor.
 
         Raises:
             PortError: Another armed run holds the lock.
         """
-        lock = AdapterLock(charge.url)
+        lock = AdapterLock(record.url)
         undo.callback(lock.close)
         self._locks.append(lock)
-        return msgspec.structs.replace(charge, lock=lock.take())
+        return msgspec.structs.replace(record, lock=lock.acquire())
 
-    def _start(self, order: Order) -> None:
+    def _start(self, order: GuardianOrder) -> None:
         """Send the order and a first heartbeat, and wait until the guardian confirms both."""
         with suppress(BrokenPipeError):
             self._pipe.write(msgspec.json.encode(order) + b"\n" + IDLE)
@@ -134,32 +144,34 @@ class Guardian:
         os.set_blocking(self._descriptor, False)
         answer = self._process.stdout
         assert answer is not None
-        heard = select.poll()
-        heard.register(answer, select.POLLIN)
-        ready = heard.poll(START_TIME * 1e3) and os.read(answer.fileno(), 1)
+        poller = select.poll()
+        poller.register(answer, select.POLLIN)
+        ready = poller.poll(START_TIME * 1e3) and os.read(answer.fileno(), 1)
         answer.close()
         if ready != READY:
             raise HardwareError(NOT_STARTED.format(""))
 
-    def _give_up(self) -> None:
+    def _kill(self) -> None:
         """Kill a guardian that has not begun to watch; torque is still off."""
-        with held_back():
+        with signals_blocked():
             self._process.kill()
             self._process.wait()
             for pipe in filter(None, (self._process.stdin, self._process.stdout)):
                 with suppress(OSError):
                     pipe.close()
 
-    def _say(self, byte: bytes) -> None:
+    def _send(self, byte: bytes) -> None:
         now = time.monotonic()
         if not self._unread():
             self._read_at = now
         elif now - self._read_at > UNREAD_TIME:
-            raise GuardianError(f"the guardian (process {self.pid}) does not react any more")
+            raise GuardianError(f"the guardian (process {self.pid}) no longer reads its heartbeats")
         try:
             os.write(self._descriptor, byte)
         except BlockingIOError:
-            raise GuardianError(f"the guardian (process {self.pid}) reads nothing") from None
+            raise GuardianError(
+                f"the guardian (process {self.pid}) does not read its heartbeats"
+            ) from None
         except (OSError, ValueError):
             raise GuardianError(f"the guardian (process {self.pid}) has died") from None
 
@@ -205,5 +217,5 @@ def guardian_for(
     """
     if not isinstance(backend, ServoBackend):
         return None
-    charges = charges_of(backend, crouch, levels)
-    return Guardian(charges, policy, hold) if charges else None
+    buses = guarded_buses(backend, crouch, levels)
+    return Guardian(buses, policy, hold) if buses else None

@@ -34,7 +34,7 @@ class Host:
             self._poll.register(descriptor, select.POLLIN)
 
     @property
-    def gone(self) -> bool:
+    def has_ended(self) -> bool:
         """True if the process has ended."""
         return self.wait(0.0)
 

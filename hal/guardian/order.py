@@ -11,12 +11,12 @@ TICK, FIRST, IDLE, RELEASE, HAND_OVER = b"t", b"f", b"i", b"x", b"h"
 enable; alive without a loop (between two runs, or switching torque); torque was read back as off;
 the host has closed its ports but torque could not be read back as off."""
 
-SILENCE = {TICK: 0.15, FIRST: 0.15, IDLE: 1.0}
+MAX_SILENCE = {TICK: 0.15, FIRST: 0.15, IDLE: 1.0}
 """Maximum time from each byte to the next one, s. It is longer while the robot only holds its
 pose: a program between two runs may load a file, or import a package."""
 
 
-class Charge(msgspec.Struct, frozen=True, kw_only=True):
+class GuardedBus(msgspec.Struct, frozen=True, kw_only=True):
     """One guarded bus.
 
     Attributes:
@@ -45,17 +45,17 @@ class Charge(msgspec.Struct, frozen=True, kw_only=True):
     lock: int = -1
 
 
-class Order(msgspec.Struct, frozen=True, kw_only=True):
+class GuardianOrder(msgspec.Struct, frozen=True, kw_only=True):
     """The guarded buses, and what to do when the host dies or is silent.
 
     Attributes:
         host: Process id of the host.
         policy: Stop policy of the robot.
-        charges: The guarded buses.
+        buses: The guarded buses.
         hold: Duration of the policy "hold" before torque goes off, s.
     """
 
     host: int
     policy: StopPolicy
-    charges: tuple[Charge, ...]
+    buses: tuple[GuardedBus, ...]
     hold: float = 60.0

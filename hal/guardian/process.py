@@ -17,84 +17,92 @@ from enum import Enum
 import msgspec
 
 from windup.hal.clock import PRIORITY
+from windup.hal.error_text import error_text
 from windup.hal.guardian.host import Host
-from windup.hal.guardian.order import HAND_OVER, IDLE, READY, RELEASE, SILENCE, TICK, Order
+from windup.hal.guardian.message_writer import MessageWriter, standard_error
+from windup.hal.guardian.order import (
+    HAND_OVER,
+    IDLE,
+    MAX_SILENCE,
+    READY,
+    RELEASE,
+    TICK,
+    GuardianOrder,
+)
 from windup.hal.guardian.signals import ignore_signals
 from windup.hal.guardian.takeover import Takeover
-from windup.hal.guardian.words import Words, standard_error
-from windup.hal.in_words import in_words
 
-ABOVE = 5
+PRIORITY_MARGIN = 5
 """Amount by which its real-time priority exceeds that of the loop."""
 NICENESS = -15
 """Niceness if real-time scheduling is not permitted."""
-OVERSLEPT = 0.02
+STALL_TIME = 0.02
 """Lateness of a wait that shows that the whole machine was stalled, s."""
-SECOND_CHANCE = 0.05
+STALL_GRACE = 0.05
 """Time granted to the host for its next heartbeat after such a stall, s."""
 
-LAST_WORDS = 0.2
+MESSAGE_TIME = 0.2
 """Maximum time to wait at the end until all messages are written, s."""
-DYING = 0.02
+EXIT_TIME = 0.02
 """Maximum time from a dying process closing its pipe to its end, s."""
 
 
-class Ending(Enum):
+class StopReason(Enum):
     """Why the guardian stops watching."""
 
     RELEASED = "released"
-    HANDED_OVER = "its program could not read its torque as off"
-    DIED = "its program died"
-    SILENT = "its program hangs"
-    CLOSED = "its program let go of its guardian"
-    DEAF = "its guardian cannot hear its program"
+    HANDED_OVER = "the program could not read torque back as off"
+    DIED = "the program died"
+    SILENT = "the program hangs"
+    CLOSED = "the program closed the pipe to its guardian"
+    WATCH_FAILED = "the guardian failed to read the heartbeats"
 
 
 def main() -> None:
     """Run the guardian: read the order from standard input, then heartbeats."""
     ignore_signals()
     _allow_files()
-    words, orders = Words(standard_error()), sys.stdin.fileno()
+    writer, orders = MessageWriter(standard_error()), sys.stdin.fileno()
     if (line := _first_line(orders)) is None:
-        words.say("its program died before it had said what to guard")
+        writer.write_line("the program died before it had sent the list of buses")
     else:
-        _guard(msgspec.json.decode(line, type=Order), orders, words)
-    words.finish(LAST_WORDS)
+        _guard(msgspec.json.decode(line, type=GuardianOrder), orders, writer)
+    writer.finish(MESSAGE_TIME)
 
 
-def _guard(order: Order, orders: int, words: Words) -> None:
+def _guard(order: GuardianOrder, orders: int, writer: MessageWriter) -> None:
     """Watch the host, and stop the robot unless the host has released the guardian."""
-    host, takeover = Host(order.host), Takeover(order, words.say)
-    _go_first()
+    host, takeover = Host(order.host), Takeover(order, writer.write_line)
+    _raise_priority()
     os.write(sys.stdout.fileno(), READY)
     os.close(sys.stdout.fileno())
     try:
         ending, moved = watch(orders, host)
     except Exception as error:  # only the guardian can stop the robot now
-        words.say(in_words(error))
-        ending, moved = Ending.DEAF, False
-    if ending is Ending.RELEASED:
+        writer.write_line(error_text(error))
+        ending, moved = StopReason.WATCH_FAILED, False
+    if ending is StopReason.RELEASED:
         return
     with suppress(Exception):
-        if ending in (Ending.SILENT, Ending.CLOSED, Ending.DEAF):
+        if ending in (StopReason.SILENT, StopReason.CLOSED, StopReason.WATCH_FAILED):
             host.kill()
     takeover.carry_out(ending.value, moved)
-    if ending is not Ending.HANDED_OVER:
+    if ending is not StopReason.HANDED_OVER:
         takeover.wait_for(host)
 
 
-def watch(orders: int, host: Host) -> tuple[Ending, bool]:
+def watch(orders: int, host: Host) -> tuple[StopReason, bool]:
     """Read heartbeats from a descriptor until there is a reason to stop watching.
 
     Returns:
         The reason, and whether the first motion was complete; before it, the pose is arbitrary.
     """
-    heard, patience, moved = time.monotonic(), SILENCE[IDLE], False
+    last_heartbeat, allowed, moved = time.monotonic(), MAX_SILENCE[IDLE], False
     poller = select.poll()
     for descriptor in (orders, *host.descriptors):
         poller.register(descriptor, select.POLLIN)
     while True:
-        due = heard + patience
+        due = last_heartbeat + allowed
         wait = max(due - time.monotonic(), 0.0)
         ready = [descriptor for descriptor, _ in poller.poll(wait * 1e3)]
         if orders in ready:
@@ -103,24 +111,24 @@ def watch(orders: int, host: Host) -> tuple[Ending, bool]:
                 return ending, moved
             if ticks := data.replace(IDLE, b""):
                 moved = ticks.endswith(TICK)
-            heard, patience = time.monotonic(), SILENCE[data[-1:]]
+            last_heartbeat, allowed = time.monotonic(), MAX_SILENCE[data[-1:]]
         elif ready:
-            return Ending.DIED, moved
-        elif time.monotonic() - due > OVERSLEPT:
-            heard, patience = time.monotonic(), SECOND_CHANCE
+            return StopReason.DIED, moved
+        elif time.monotonic() - due > STALL_TIME:
+            last_heartbeat, allowed = time.monotonic(), STALL_GRACE
         else:
-            return Ending.SILENT, moved
+            return StopReason.SILENT, moved
 
 
-def _ending(data: bytes, host: Host) -> Ending | None:
+def _ending(data: bytes, host: Host) -> StopReason | None:
     """Return the reason to stop watching that the host's bytes give, or None for heartbeats."""
     if RELEASE in data:
-        return Ending.RELEASED
+        return StopReason.RELEASED
     if HAND_OVER in data:
-        return Ending.HANDED_OVER
+        return StopReason.HANDED_OVER
     if data:
         return None
-    return Ending.DIED if host.wait(DYING) else Ending.CLOSED
+    return StopReason.DIED if host.wait(EXIT_TIME) else StopReason.CLOSED
 
 
 def _first_line(orders: int) -> bytes | None:
@@ -144,10 +152,10 @@ def _allow_files() -> None:
         resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
 
 
-def _go_first() -> None:
+def _raise_priority() -> None:
     """Set a higher priority than the loop: a loop that spins must not starve this process."""
     with suppress(OSError, AttributeError):
-        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(PRIORITY + ABOVE))
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(PRIORITY + PRIORITY_MARGIN))
         return
     with suppress(OSError):
         os.nice(NICENESS)

@@ -18,7 +18,7 @@ IGNORED = signal.valid_signals() - FAULTS - {signal.SIGKILL, signal.SIGSTOP, sig
 
 
 @contextmanager
-def held_back() -> Iterator[None]:
+def signals_blocked() -> Iterator[None]:
     """Block the signals in this thread, and in processes started inside the `with` block.
 
     In such a process they stay blocked until it unblocks them itself, also during its start.

@@ -25,7 +25,7 @@ from windup.hal.imu.i2c import I2cChip, I2cOpener, open_i2c
 from windup.hal.imu.kind import ImuKind
 from windup.hal.imu.mounting import Mounting
 from windup.hal.observation import ImuState
-from windup.hal.port.replug import RETRY, Opener
+from windup.hal.port.port_reopener import RETRY, Opener
 
 ADDRESS = 0x28
 """I2C address of the chip; 0x29 if its pin COM3 is high (section 4.6)."""
@@ -90,7 +90,7 @@ class Bno055:
         """
         return Bno055Link(self, self._opener(self.url, ADDRESS))
 
-    def take(self, data: bytes, now: float) -> None:
+    def decode(self, data: bytes, now: float) -> None:
         """Decode the registers from DATA on, read at `now` s.
 
         A new sample is half a period old on average. An unchanged one was read before: it ages.
@@ -104,7 +104,7 @@ class Bno055:
         if not 0.9 < size < 1.1 or np.linalg.norm(rates) > FASTEST:
             self.implausible += 1
             return
-        body = self._mounting.body
+        body = self._mounting.to_body
         self._state = ImuState(
             multiply(orientation / size, self._back),
             body(rates),
@@ -164,7 +164,7 @@ class Bno055Link:
         now = self.clock.now()
         try:
             if self._set_up(now):
-                self._imu.take(self._chip.read(DATA, LENGTH), self.clock.now())
+                self._imu.decode(self._chip.read(DATA, LENGTH), self.clock.now())
         except OSError:  # unplugged: the last sample ages until the IMU watch reports it as silent
             self._setting = _Setting(due=now + RETRY)
 
@@ -196,7 +196,9 @@ class Bno055Link:
             if self._set_up(self.clock.now()):
                 return
             self.clock.wait_until(self._setting.due)
-        raise PortError(f"{self._imu.url}: the BNO055 does not take its mode: power it off and on")
+        raise PortError(
+            f"{self._imu.url}: the BNO055 does not enter its IMU mode: switch its power off and on"
+        )
 
     def _identity(self) -> int | None:
         try:
@@ -241,6 +243,6 @@ BNO055 = ImuKind(
     cutoff=32.0,  # the gyroscope's; the accelerometer's is 62.5 Hz (table 3-4)
     noise=(radians(0.014), 150e-6 * STANDARD_GRAVITY),  # typical, table 0-2
     bias=(radians(0.3), 0.05),  # our guess of the residual after its continuous calibration
-    unit=(GYRO, ACCELERATION),
+    count_size=(GYRO, ACCELERATION),
     driver=Bno055,
 )

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from windup.hal.geometry.gravity import STANDARD_GRAVITY
-from windup.hal.geometry.quaternion import between, conjugate, euler_zxy, multiply, rotate
+from windup.hal.geometry.quaternion import conjugate, euler_zxy, multiply, rotate, rotation_between
 from windup.hal.imu.frame_clock import FrameClock
 from windup.hal.imu.kind import ImuKind
 from windup.hal.imu.mounting import Mounting
@@ -29,14 +29,14 @@ from windup.hal.imu.serial_link import SerialLink
 from windup.hal.joints import Array
 from windup.hal.observation import ImuState
 from windup.hal.port.port import Port
-from windup.hal.port.replug import Opener
+from windup.hal.port.port_reopener import Opener
 
 HEADER = b"\xaa\xaa"
 LENGTH = 19
 PERIOD = 0.01
 """Time from one frame to the next, s."""
 BAUD = 115_200
-ON_THE_WIRE = 10 * LENGTH / BAUD
+WIRE_TIME = 10 * LENGTH / BAUD
 """From a sample to the end of its frame, s."""
 DEGREE = 0.01 * np.pi / 180.0
 """rad of one count of an angle."""
@@ -147,7 +147,7 @@ class Bno08xRvc:
         """Take in what has come; waits for nothing.
 
         Raises:
-            PortError: The port went away.
+            PortError: The port was disconnected.
         """
         if self._port is None:
             return
@@ -177,7 +177,7 @@ class Bno08xRvc:
         self._state = ImuState(orientation, rates, acceleration, 0.0)
         self._before = orientation
         self._index, self._seen = frame.number, now
-        self._at = self._clock.date(frame.number, now) - ON_THE_WIRE
+        self._at = self._clock.timestamp(frame.number, now) - WIRE_TIME
 
     def _rates(self, index: int, orientation: Array, now: float) -> Array | None:
         """Return the body's rates (3,) rad/s since the last frame; None where that is too old."""
@@ -185,7 +185,7 @@ class Bno08xRvc:
         recent = now - self._seen < LONGEST_GAP * PERIOD and 0 < frames <= LONGEST_GAP
         if self._before is None:
             return np.zeros(3)
-        return between(self._before, orientation) / (frames * PERIOD) if recent else None
+        return rotation_between(self._before, orientation) / (frames * PERIOD) if recent else None
 
 
 def _mounted(url: str, mounting: Mounting) -> Bno08xRvc:
@@ -199,7 +199,7 @@ BNO08X_RVC = ImuKind(
     cutoff=CUTOFF,
     noise=(0.0, 0.0),  # below the resolution of a frame
     bias=(0.0, 0.05),  # our guess of the residual after calibration at rest
-    unit=(DEGREE / PERIOD, ACCELERATION),
+    count_size=(DEGREE / PERIOD, ACCELERATION),
     gyroscope=False,
     driver=_mounted,
 )

@@ -27,7 +27,7 @@ class FrameClock:
         """Forget the sender."""
         self._number, self._came = 0, -inf
 
-    def date(self, number: int, seen: float) -> float:
+    def timestamp(self, number: int, seen: float) -> float:
         """Return when the frame came, s, that was `seen` then."""
         due = self._came + (number - self._number) % self._turn * self._period
         self._came = seen if seen - due > LATEST else min(seen, due)

@@ -22,7 +22,7 @@ class ImuKind:
         cutoff: Cutoff frequency of its low-pass filter, modelled as first order, Hz.
         noise: Noise densities of gyroscope and accelerometer, rad/s/sqrt(Hz) and m/s2/sqrt(Hz).
         bias: Standard deviations of the biases on each axis, rad/s and m/s2.
-        unit: Size of one count, rad/s and m/s2.
+        count_size: Size of one count, rad/s and m/s2.
         gyroscope: It sends angular rates. An IMU without sends its orientation, and rates are
             differences of orientations.
         axes: Default mounting, see `Mounting`.
@@ -35,7 +35,7 @@ class ImuKind:
     cutoff: float
     noise: tuple[float, float]
     bias: tuple[float, float]
-    unit: tuple[float, float]
+    count_size: tuple[float, float]
     gyroscope: bool = True
     axes: Axes = STRAIGHT
     driver: Callable[[str, Mounting], ImuSource] | None = field(default=None, repr=False)

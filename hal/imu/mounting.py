@@ -9,7 +9,7 @@ from windup.hal.joints import Array
 
 Axes = tuple[str, str, str]
 STRAIGHT: Axes = ("x", "y", "z")
-WORDS = ("x", "y", "z", "-x", "-y", "-z")
+AXIS_NAMES = ("x", "y", "z", "-x", "-y", "-z")
 
 
 class Mounting:
@@ -28,8 +28,8 @@ class Mounting:
 
     def __init__(self, axes: Axes = STRAIGHT) -> None:
         for word in axes:
-            if word not in WORDS:
-                raise ConfigError(f"{word!r} is no axis; known: {', '.join(WORDS)}")
+            if word not in AXIS_NAMES:
+                raise ConfigError(f"{word!r} is no axis; known: {', '.join(AXIS_NAMES)}")
         self.axes = axes
         self._from = np.array(["xyz".index(word[-1]) for word in axes])
         self._signs = np.array([-1.0 if word[0] == "-" else 1.0 for word in axes])
@@ -40,11 +40,11 @@ class Mounting:
                 f"{', '.join(axes)} is left-handed, and no board is: change the sign of one axis"
             )
 
-    def body(self, vector: Array) -> Array:
+    def to_body(self, vector: Array) -> Array:
         """Return a vector (3,) of the IMU frame in the body frame."""
         return vector[self._from] * self._signs
 
-    def chip(self, vector: Array) -> Array:
+    def to_imu(self, vector: Array) -> Array:
         """Return a vector (3,) of the body frame in the IMU frame."""
         turned = np.empty(3)
         turned[self._from] = vector * self._signs

@@ -72,7 +72,7 @@ class OpenCr:
     def decode(self, data: bytes, age: float) -> ImuState:
         """Return the sample in the bytes of `span`, `age` s old, in the body frame."""
         counts = np.frombuffer(data, "<i2", count=6, offset=2).astype(np.float64)
-        body = self.mounting.body
+        body = self.mounting.to_body
         return ImuState(None, body(counts[:3]) * GYRO, body(counts[3:]) * ACCELERATION, age)
 
 
@@ -83,6 +83,6 @@ OPENCR = ImuKind(
     cutoff=CUTOFF,
     noise=(radians(0.01), 300e-6 * STANDARD_GRAVITY),  # data sheet of the MPU9250, tables 1 and 2
     bias=(radians(0.3), 0.05),  # our guess of the residual after calibration at rest
-    unit=(GYRO, ACCELERATION),
+    count_size=(GYRO, ACCELERATION),
     axes=IN_OP3.axes,
 )

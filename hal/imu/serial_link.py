@@ -4,7 +4,7 @@ from typing import Protocol
 
 from windup.hal.errors import PortError
 from windup.hal.port.port import Port
-from windup.hal.port.replug import Opener, Replug
+from windup.hal.port.port_reopener import Opener, PortReopener
 
 
 class SerialImu(Protocol):
@@ -33,7 +33,7 @@ class SerialImu(Protocol):
         """Take in what has come; waits for nothing.
 
         Raises:
-            PortError: The port went away.
+            PortError: The port was disconnected.
         """
         ...
 
@@ -43,23 +43,23 @@ class SerialLink:
 
     def __init__(self, imu: SerialImu, opener: Opener) -> None:
         self.imu = imu
-        self._replug = Replug(imu.url, imu.baud, opener)
-        imu.attach(self._replug.opened)
-        self.clock = self._replug.opened.clock
+        self._reopener = PortReopener(imu.url, imu.baud, opener)
+        imu.attach(self._reopener.opened)
+        self.clock = self._reopener.opened.clock
 
     def poll(self) -> None:
         """Take in what has come, if the port is there."""
         now = self.clock.now()
-        if self._replug.port is None:
-            port = self._replug.again(now)
+        if self._reopener.port is None:
+            port = self._reopener.try_reopen(now)
             if port is None:
                 return
             self.imu.attach(port)
         try:
             self.imu.poll()
         except PortError:
-            self._replug.lose(now)
+            self._reopener.lose(now)
 
     def close(self) -> None:
         """Give the port back."""
-        self._replug.close()
+        self._reopener.close()

@@ -4,7 +4,7 @@ from typing import Protocol
 
 from windup.hal.backend import Clock
 from windup.hal.observation import ImuState
-from windup.hal.port.replug import Opener
+from windup.hal.port.port_reopener import Opener
 
 
 class ImuConnection(Protocol):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from windup.hal.heartbeat import Heartbeat, no_heartbeat
 from windup.hal.port.port import BITS, LATENCY, Port
 
-PATIENCE = 0.06
+ANSWER_TIMEOUT = 0.06
 """Timeout of an answer while the latency of the adapter is unknown, s."""
 REQUESTS = 8
 """Number of requests to a servo that answers: the phase of the latency timer is arbitrary."""
@@ -38,14 +38,16 @@ class Probe(NamedTuple):
     head: bytes
 
 
-class Heard(NamedTuple):
+class ProbeResult(NamedTuple):
     """Result of a probe: whether it was echoed, and the time to its answer, s, or None."""
 
     echoed: bool
     seconds: float | None
 
 
-def get_to_know(port: Port, probes: Iterable[Probe], heartbeat: Heartbeat = no_heartbeat) -> None:
+def measure_adapter(
+    port: Port, probes: Iterable[Probe], heartbeat: Heartbeat = no_heartbeat
+) -> None:
     """Measure latency and echo of the adapter of a port, once, and store them in the port.
 
     Args:
@@ -54,19 +56,19 @@ def get_to_know(port: Port, probes: Iterable[Probe], heartbeat: Heartbeat = no_h
             unchanged.
         heartbeat: Called before each request.
     """
-    if port.known:
+    if port.is_measured:
         return
     echoed = 0
     for silent, probe in enumerate(probes, 1):
         times: list[float] = []
         for _ in range(REQUESTS):
             heartbeat()
-            heard = _ask(port, probe)
-            echoed = echoed + 1 if heard.echoed else 0
+            result = _ask(port, probe)
+            echoed = echoed + 1 if result.echoed else 0
             port.echoes |= echoed == ECHOES
-            if heard.seconds is None and not heard.echoed:
+            if result.seconds is None and not result.echoed:
                 break
-            times += [] if heard.seconds is None else [heard.seconds]
+            times += [] if result.seconds is None else [result.seconds]
         if times:
             _note(port, times)
             return
@@ -76,24 +78,24 @@ def get_to_know(port: Port, probes: Iterable[Probe], heartbeat: Heartbeat = no_h
 
 def _note(port: Port, times: list[float]) -> None:
     """Set the latency from the second longest time, so that one outlier is ignored."""
-    port.known = True
+    port.is_measured = True
     longest = sorted(times)[-2:][0]
     if longest > LATENCY + SETUP:
         port.latency = max(port.latency, MARGIN * longest)
 
 
-def _ask(port: Port, probe: Probe) -> Heard:
+def _ask(port: Port, probe: Probe) -> ProbeResult:
     """Send a probe and wait for its answer."""
     request, length, head = probe
     port.flush_input()
     began = port.clock.now()
     port.write(request)
     wire = (len(request) + length) * BITS / port.baud
-    deadline = began + wire + PATIENCE
+    deadline = began + wire + ANSWER_TIMEOUT
     stream = port.read(length, deadline)
     echoed = bool(stream) and request.startswith(stream[: len(request)])
     if echoed:
         stream = (stream + port.read(len(request), deadline))[len(request) :]
     if len(stream) == length and stream.startswith(head):
-        return Heard(echoed, max(port.clock.now() - began - wire, 0.0))
-    return Heard(echoed, None)
+        return ProbeResult(echoed, max(port.clock.now() - began - wire, 0.0))
+    return ProbeResult(echoed, None)

@@ -14,14 +14,14 @@ from pathlib import Path
 
 import msgspec
 
+from windup.hal.error_text import error_text
 from windup.hal.errors import PortError
-from windup.hal.in_words import in_words
 from windup.hal.port.open_port import stable_url
 from windup.hal.telemetry.runtime_folder import runtime_folder
 
-LOOK_AGAIN = 0.05
+POLL_PERIOD = 0.05
 """Time between two attempts to take a lock that is held, s."""
-SAY_AGAIN = 10.0
+MESSAGE_PERIOD = 10.0
 """Time between two log messages while waiting, s."""
 EMULATED = "twin://"
 """URL prefix of ports emulated in this process, which need no guardian."""
@@ -29,7 +29,7 @@ RESERVED = 3
 """First usable descriptor number; those below are reserved for standard input, output and error."""
 
 
-class Note(msgspec.Struct, frozen=True):
+class LockNote(msgspec.Struct, frozen=True):
     """Contents of a lock file.
 
     Attributes:
@@ -56,22 +56,23 @@ class AdapterLock:
         self._descriptor = -1
         self._descriptor = _open(url)
 
-    def take(self) -> int:
+    def acquire(self) -> int:
         """Take the lock and return its descriptor, for the guardian to inherit.
 
         Raises:
             PortError: Another process holds it.
         """
-        if not self.free():
+        if not self.try_acquire():
             note = self.note()
             self.close()
             raise PortError(
-                f"{self.url} belongs to another armed run (process {note.pid}); stop that first"
+                f"{self.url} is in use by another armed run (process {note.pid}); "
+                "stop that run first"
             )
-        write_note(self._descriptor, Note(os.getpid()))
+        write_note(self._descriptor, LockNote(os.getpid()))
         return self._descriptor
 
-    def free(self) -> bool:
+    def try_acquire(self) -> bool:
         """Take the lock if it is free, and return whether this process holds it now."""
         while True:
             try:
@@ -83,13 +84,13 @@ class AdapterLock:
             self.close()  # the file was removed as a leftover before it was locked
             self._descriptor = _open(self.url)
 
-    def note(self) -> Note:
+    def note(self) -> LockNote:
         """Return the note of its holder."""
         try:
             size = os.fstat(self._descriptor).st_size
-            return msgspec.json.decode(os.pread(self._descriptor, size, 0), type=Note)
+            return msgspec.json.decode(os.pread(self._descriptor, size, 0), type=LockNote)
         except msgspec.DecodeError:  # not written yet
-            return Note()
+            return LockNote()
 
     def close(self) -> None:
         """Close the descriptor, if it is open; a guardian that has inherited it keeps the lock."""
@@ -98,7 +99,7 @@ class AdapterLock:
             os.close(descriptor)
 
 
-def write_note(descriptor: int, note: Note) -> None:
+def write_note(descriptor: int, note: LockNote) -> None:
     """Write the note of the present holder into a lock file."""
     with suppress(OSError):
         text = msgspec.json.encode(note)
@@ -110,19 +111,19 @@ def wait_while_guarded(url: str) -> None:
     """Wait until no guardian is stopping the servos on a port; log what is waited for."""
     if url.startswith(EMULATED) or not _path(url).exists():
         return
-    lock, said = AdapterLock(url), -SAY_AGAIN
+    lock, said = AdapterLock(url), -MESSAGE_PERIOD
     try:
-        while not lock.free():
+        while not lock.try_acquire():
             note = lock.note()
             if not note.doing:
                 return  # an armed run; opening the port will report it
-            if (now := time.monotonic()) - said >= SAY_AGAIN:
+            if (now := time.monotonic()) - said >= MESSAGE_PERIOD:
                 said = now
                 logging.getLogger(__name__).warning(
                     "waiting for the guardian of an earlier run (process %d) on %s: %s",
                     note.pid, url, note.doing,
                 )  # fmt: skip
-            time.sleep(LOOK_AGAIN)
+            time.sleep(POLL_PERIOD)
     finally:
         lock.close()
 
@@ -141,7 +142,7 @@ def _open(url: str) -> int:
         finally:
             os.close(number)
     except OSError as error:
-        raise PortError(f"{url} cannot be locked for this run: {in_words(error)}") from error
+        raise PortError(f"{url} cannot be locked: {error_text(error)}") from error
 
 
 def _path(url: str) -> Path:

@@ -81,8 +81,8 @@ def _check_handler(url: str) -> None:
         return
     if scheme == "twin":
         raise UsageError(
-            f"{url}: nobody serves twin:// in this process; `import windup.sim_twin.wire` first, "
-            "or use the `windup` command, which does"
+            f"{url}: twin:// is not available in this process; `import windup.sim_twin.wire` "
+            "first, or use the `windup` command, which does"
         )
     raise UsageError(f"{url}: pyserial knows no {scheme}:// ports")
 
@@ -117,7 +117,7 @@ def _explain(device: str, url: str, error: Exception) -> str:
     if "://" in device:
         return f"{url} cannot be opened: {error}"
     if not os.path.exists(device):
-        return f"no port {url}; ports there are: {_ports()}"
+        return f"no port {url}; serial ports here: {_ports()}"
     if code == errno.EACCES or "ermission denied" in str(error):
         return f"no permission for {url}; {access_remedy(device)}"
     if code in (errno.EAGAIN, errno.EBUSY, errno.EWOULDBLOCK) or "lock port" in str(error):
@@ -128,9 +128,9 @@ def _explain(device: str, url: str, error: Exception) -> str:
 def _busy(url: str, held_by: dict[int, str]) -> str:
     """Return the message that names the processes that use a port, and how to end them."""
     if os.getpid() in held_by:
-        return f"port {url} is in use by this program; close what it has opened there first"
+        return f"port {url} is in use by this program; close that connection first"
     if not held_by:
-        return f"port {url} is in use by another process, which is not ours to see; end it first"
+        return f"port {url} is in use by a process of another user; end it first"
     who = ", ".join(f"{name} (pid {pid})" for pid, name in held_by.items())
     it, pids = "it" if len(held_by) == 1 else "them", " ".join(map(str, held_by))
     return f"port {url} is in use by {who}; end {it} first: Ctrl-C there, or `kill -INT {pids}`"
@@ -141,7 +141,7 @@ def _check_kind(device: str, url: str) -> None:
     with contextlib.suppress(OSError):  # missing or not accessible: opening reports it
         found = os.stat(device)
         if not stat.S_ISCHR(found.st_mode) or os.major(found.st_rdev) == MEMORY_DEVICES:
-            raise PortError(f"{url} is no serial port; those that are there: {_ports()}")
+            raise PortError(f"{url} is not a serial port; serial ports here: {_ports()}")
 
 
 def _ports() -> str:

@@ -58,11 +58,11 @@ class Port:
 
     Attributes:
         url: URL as the user wrote it.
-        place: The same URL, independent of the working folder.
+        absolute_url: The same URL, independent of the working folder.
         clock: Wall clock, or virtual clock of a simulated port.
         latency: Maximum time for which the adapter delays received bytes, s.
         echoes: Whether the adapter echoes all bytes sent; reads then remove the echo.
-        known: Whether latency and echo have been measured; see `windup.hal.port.adapter`.
+        is_measured: Whether latency and echo have been measured; see `windup.hal.port.adapter`.
         sent: Number of bytes written so far.
         received: Number of bytes read so far, without the echo.
         has_baud: Whether its baud rate applies to the wire; a raw TCP bridge sets its own.
@@ -71,12 +71,12 @@ class Port:
     has_baud = True
 
     def __init__(self, serial: SerialLike, url: str, latency: float | None = None) -> None:
-        self._serial, self.url, self.place = serial, url, url
+        self._serial, self.url, self.absolute_url = serial, url, url
         world: Any = getattr(serial, "clock", None)
         self.clock: Clock = world if world is not None else WallClock()
         self.latency: float = getattr(serial, "latency", LATENCY) if latency is None else latency
         self.sent = self.received = 0
-        self.echoes = self.known = False
+        self.echoes = self.is_measured = False
         self._echo = 0  # number of bytes sent whose echo has not been read
         self._echo_end = 0.0  # when the last of them has left the wire, s
 
@@ -91,7 +91,7 @@ class Port:
             try:
                 self._serial.baudrate = rate
             except (*GONE, ValueError) as error:
-                raise PortError(f"port {self.url} cannot run at {rate} baud: {error}") from None
+                raise PortError(f"port {self.url} does not support {rate} baud: {error}") from None
 
     def read(self, count: int, deadline: float) -> bytes:
         """Return `count` bytes, or those received when the clock reaches `deadline` s."""
@@ -122,7 +122,7 @@ class Port:
                 self._echo = 0  # an echo that has not come by now is lost
         self._discard()
 
-    def settle(self, silence: float, longest: float) -> None:
+    def drain_input(self, silence: float, longest: float) -> None:
         """Read and discard bytes until none has come for `silence` s.
 
         Gives up after `longest` s if the line is never quiet.
@@ -166,7 +166,7 @@ class Port:
 
     def _gone(self, error: Exception) -> PortError:
         return PortError(
-            f"port {self.url} went away ({error}); check cable and power, then open it again"
+            f"port {self.url} was disconnected ({error}); check cable and power, then open it again"
         )
 
 
@@ -188,7 +188,7 @@ class DevicePort(Port):
 
     def __init__(self, serial: Any, url: str, latency: float | None = None) -> None:
         super().__init__(serial, url, latency)
-        self.place = url if url.startswith("usb:") else os.path.abspath(url)
+        self.absolute_url = url if url.startswith("usb:") else os.path.abspath(url)
         self._fd: int = serial.fileno()
         self._readable = (_selected if self._fd < SELECTABLE else _polled)(self._fd)
 

@@ -11,7 +11,7 @@ READ_WRITE = 0o6
 RULE = 'SUBSYSTEM=="tty", GROUP="dialout", MODE="0660"'
 
 
-class Person(NamedTuple):
+class User(NamedTuple):
     """A user and the groups that count for access.
 
     Attributes:
@@ -38,10 +38,10 @@ class Person(NamedTuple):
 
 def access_remedy(device: str) -> str:
     """Return why this process may not read and write `device`, with the remedy."""
-    return remedy(os.stat(device), Person.present())
+    return permission_remedy(os.stat(device), User.present())
 
 
-def remedy(device: os.stat_result, person: Person) -> str:
+def permission_remedy(device: os.stat_result, person: User) -> str:
     """Return why `person` may not read and write a device with this `stat`, with the remedy."""
     mode, owner, group = device.st_mode, _user(device.st_uid), _group(device.st_gid)
     shown = f"it is {stat.filemode(mode)} {owner} {group}"
@@ -51,17 +51,17 @@ def remedy(device: os.stat_result, person: Person) -> str:
         return f"{shown}, and yours: chmod u+rw it"
     if device.st_gid == 0 or not _has(mode >> 3):
         return (
-            f"{shown}, and no group to join would help; is this the port of a servo adapter? "
+            f"{shown}, and joining a group would not help; is this the port of a servo adapter? "
             f"A udev rule can give it a group: {RULE}"
         )
     if device.st_gid in person.groups:
-        return f"{shown}, and an access list narrows it: getfacl shows it"
+        return f"{shown}, but an access control list restricts it: see getfacl"
     if device.st_gid in person.member:
         return f"you have joined its group {group} since you logged in: log in again"
     return f"join its group: sudo usermod -aG {group} $USER, then log in again"
 
 
-def _allowed(device: os.stat_result, person: Person) -> bool:
+def _allowed(device: os.stat_result, person: User) -> bool:
     """Return whether the mode bits allow a person to read and write."""
     if person.uid == device.st_uid:
         return _has(device.st_mode >> 6)

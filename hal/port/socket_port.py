@@ -61,4 +61,4 @@ class SocketPort(DevicePort):
 
     def __init__(self, connection: Connection, url: str) -> None:
         super().__init__(connection, url)
-        self.place = url
+        self.absolute_url = url

@@ -30,7 +30,7 @@ class BlockRead(CyclicRead):
     def __init__(self, spans: Sequence[Span], fast: bool = False) -> None:
         super().__init__(spans)
         self.fast = fast
-        self.confusable = not fast  # no other answer has this format
+        self.echo_is_confusable = not fast  # no other answer has this format
         uniform = len({(span.address, span.size) for span in self.spans}) == 1
         ids = [span.id for span in self.spans]
         if uniform:
@@ -40,7 +40,7 @@ class BlockRead(CyclicRead):
             self.request = protocol2.bulk_read(self.spans)
         self._lay_out(_fast_answer(self.spans) if fast else _answers(self.spans))
 
-    def answered(self) -> int:
+    def answered_bytes(self) -> int:
         """Return the number of bytes of the valid replies to the last request, unstuffed."""
         sizes = np.array([span.size for span in self.spans])
         each = sizes + (4 if self.fast else protocol2.OVERHEAD)
@@ -57,8 +57,8 @@ class BlockRead(CyclicRead):
         if self.fast:
             if stream.count(FAST_HEAD) > 1:
                 return []  # the stream contains an earlier answer
-            return list(protocol2.salvage_fast(stream, self.spans[0].size, self._rows))
-        return list(protocol2.salvage(stream, self.longest))
+            return list(protocol2.find_fast_packets(stream, self.spans[0].size, self._rows))
+        return list(protocol2.find_packets(stream, self.longest))
 
     def _lay_out(self, answer: bytes) -> None:
         """Compute the layout from an `answer` whose error bytes, parameters and CRCs are 0."""

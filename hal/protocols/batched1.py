@@ -45,7 +45,7 @@ class StatusRead(CyclicRead):
             protocol1.status(span.id, bytes(span.size))[:_ERROR] for span in self.spans
         )
 
-    def answered(self) -> int:
+    def answered_bytes(self) -> int:
         """Return the number of bytes of the valid replies to the last request."""
         return int(self._widths[self.valid].sum())
 
@@ -56,7 +56,7 @@ class StatusRead(CyclicRead):
         return bool((sums == FRAME_SUM).all())
 
     def _statuses(self, stream: bytes) -> list[Status]:
-        return list(protocol1.salvage(stream, self._sizes, self._others))
+        return list(protocol1.find_packets(stream, self._sizes, self._others))
 
 
 class ChainRead(CyclicRead):
@@ -87,9 +87,9 @@ class ChainRead(CyclicRead):
             self._take(row, Status(part.spans[0].id, int(part.error[0]), part.payload.tobytes()))
         self.complete = bool(self.valid.all())
 
-    def answered(self) -> int:
+    def answered_bytes(self) -> int:
         """Return the number of bytes of the valid replies to the last request."""
-        return sum(part.answered() for part in self.parts)
+        return sum(part.answered_bytes() for part in self.parts)
 
     def _sound(self, data: Bytes) -> bool:
         """Return False: only the parts are decoded by layout."""
@@ -97,7 +97,7 @@ class ChainRead(CyclicRead):
 
     def _statuses(self, stream: bytes) -> list[Status]:
         sizes = {span.id: span.size for span in self.spans}
-        return list(protocol1.salvage(stream, sizes))
+        return list(protocol1.find_packets(stream, sizes))
 
 
 def sync_read(spans: Sequence[Span]) -> StatusRead:

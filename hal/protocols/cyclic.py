@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from windup.hal.joints import Mask
 from windup.hal.protocols.protocol2 import Span, Status
-from windup.hal.protocols.turns import in_turn, newest
+from windup.hal.protocols.reply_order import current_replies, in_order
 
-NOBODY = -1
+NO_SERVO = -1
 """Id given to a reply that does not match any requested span."""
 
 Bytes = npt.NDArray[np.uint8]
@@ -34,7 +34,7 @@ class CyclicRead(ABC):
         owed: Maps id to the number of earlier requests that it may still answer; set by
             `BusTransactions`.
         doubted: Ids whose replies may belong to an earlier request.
-        confusable: Whether a late answer could be taken for the answer to another request.
+        echo_is_confusable: Whether a late answer could be taken for the answer to another request.
         error: (n,) error bytes of each servo's last valid reply.
         payload: Parameters of each servo's last valid reply, concatenated.
     """
@@ -42,7 +42,7 @@ class CyclicRead(ABC):
     request: bytes
     length: int
     longest: int
-    confusable = True
+    echo_is_confusable = True
     _payload_at: Index
     _error_at: Index
 
@@ -82,11 +82,11 @@ class CyclicRead(ABC):
                     self.valid.fill(True)
                     self.complete, self.doubted = True, frozenset()
                 return self.valid
-        self._salvage(stream)
+        self._decode_found(stream)
         return self.valid
 
     @abstractmethod
-    def answered(self) -> int:
+    def answered_bytes(self) -> int:
         """Return the number of bytes of the valid replies to the last request."""
 
     @abstractmethod
@@ -97,18 +97,18 @@ class CyclicRead(ABC):
     def _statuses(self, stream: bytes) -> Iterable[Status]:
         """Return the valid replies in a stream that may contain other bytes."""
 
-    def _salvage(self, stream: bytes) -> None:
+    def _decode_found(self, stream: bytes) -> None:
         """Decode the valid replies of a stream that may contain an echo of the request."""
         self.valid.fill(False)
         stream = stream.replace(self.request, b"")
         found = self._told_apart(self._statuses(stream))
         self.doubted = frozenset()
         if self.owed:
-            sure = newest(found, self._rows, self.owed)
+            sure = current_replies(found, self._rows, self.owed)
             if not sure:
                 self.doubted = frozenset(item.id for item in found if item.id in self._rows)
             found = sure
-        for item in in_turn(found, self._rows):
+        for item in in_order(found, self._rows):
             self._take(self._rows[item.id], item)
         self.complete = bool(self.valid.all())
 
@@ -119,7 +119,7 @@ class CyclicRead(ABC):
         self.valid[row] = True
 
     def _told_apart(self, items: Iterable[Status]) -> list[Status]:
-        """Return the replies; one with an unexpected id or length gets the id `NOBODY`.
+        """Return the replies; one with an unexpected id or length gets the id `NO_SERVO`.
 
         If only one servo was asked, such replies are dropped: they can only be late answers.
         """
@@ -129,7 +129,7 @@ class CyclicRead(ABC):
             if row is not None and len(item.params) == self.spans[row].size:
                 found.append(item)
             elif len(self.spans) > 1:
-                found.append(item._replace(id=NOBODY))
+                found.append(item._replace(id=NO_SERVO))
         return found
 
 

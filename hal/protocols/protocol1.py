@@ -122,7 +122,7 @@ def bulk_read(spans: Iterable[Span]) -> bytes:
     return frame(BROADCAST, Instruction.BULK_READ, b"\x00" + body)
 
 
-def salvage(
+def find_packets(
     stream: bytes, sizes: Mapping[int, int] | None = None, others: Collection[int] = ()
 ) -> Iterator[Status]:
     """Yield every valid status packet in `stream`, whatever bytes lie between them.

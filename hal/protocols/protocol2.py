@@ -143,7 +143,7 @@ def bulk_read(spans: Iterable[Span]) -> bytes:
     return frame(BROADCAST, Instruction.BULK_READ, body)
 
 
-def salvage(stream: bytes, longest: int = LONGEST) -> Iterator[Status]:
+def find_packets(stream: bytes, longest: int = LONGEST) -> Iterator[Status]:
     """Yield every valid status packet in `stream`, whatever bytes lie between them.
 
     Never raises. After an impossible length, a truncated frame or a wrong CRC the search continues
@@ -168,7 +168,7 @@ def _is_status(stream: bytes, at: int, end: int, longest: int) -> bool:
     )
 
 
-def salvage_fast(stream: bytes, size: int, ids: Iterable[int]) -> Iterator[Status]:
+def find_fast_packets(stream: bytes, size: int, ids: Iterable[int]) -> Iterator[Status]:
     """Yield the valid blocks of an answer to a fast sync read of `size` bytes per servo.
 
     All servos answer in one frame without stuffing; each block ends with the CRC of the frame so

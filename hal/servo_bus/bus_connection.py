@@ -11,7 +11,7 @@ from windup.hal.bus.bus import Bus
 from windup.hal.errors import PortError
 from windup.hal.joints import Array, Mask
 from windup.hal.port.port import Port
-from windup.hal.port.replug import RETRY, Opener, Replug
+from windup.hal.port.port_reopener import RETRY, Opener, PortReopener
 from windup.hal.protocols.cyclic import CyclicWrite
 from windup.hal.servo_bus.bus_readout import BusReadout
 from windup.hal.servo_bus.servo_torque import ServoTorque
@@ -32,38 +32,39 @@ class BusConnection:
     """The servos of a bus, their torque control and their port.
 
     While the port is lost, nothing raises and nothing is sent. When it is back, torque is switched
-    off until it is read back as off, and goals are withheld until `rearmed`.
+    off until it is read back as off, and goals are withheld until `end_withholding`.
 
     Attributes:
-        line: Readout of the servos.
+        readout: Readout of the servos.
         torque: Torque control of the servos.
         check: Finds servos that have lost their torque, while it should be on.
         lost: Description of the failure of the port, or None while it is open.
         losses: Number of times that the port was lost.
-        heard: Time when the last answers were collected, s.
-        calm: Whether the last `collect` found all servos well, so that nothing has to be handled.
-        barred: Whether goals are withheld because the port was lost and `rearmed` not yet called.
+        answered_at: Time when the last answers were collected, s.
+        all_well: Whether the last `collect` found all servos well: there is nothing to handle.
+        goals_withheld: Whether the port was lost and `end_withholding` has not been called yet.
     """
 
     def __init__(
-        self, where: BusPort, opener: Opener, line: Callable[[Port], BusReadout], watchdog: float
+        self, where: BusPort, opener: Opener, readout: Callable[[Port], BusReadout], watchdog: float
     ) -> None:
-        self._replug = Replug(where.url, where.baud, opener)
-        self.line = line(self._replug.opened)
-        self.torque = ServoTorque(self.line, watchdog)
-        self.check = TorqueCheck(self.line)
-        self._some = b"", self.line.goals
+        self._reopener = PortReopener(where.url, where.baud, opener)
+        self.readout = readout(self._reopener.opened)
+        self.torque = ServoTorque(self.readout, watchdog)
+        self.check = TorqueCheck(self.readout)
+        self._partial_goals = b"", self.readout.goals
         self.lost: str | None = None
         self.losses = 0
-        self.heard, self.calm = -np.inf, False
-        self.barred = self._unsure = self._dropped = False
+        self.answered_at, self.all_well = -np.inf, False
+        self.goals_withheld = self._torque_unconfirmed = self._lost_with_port = False
         self._look_again = 0.0
-        self._goal_enables_torque = self.line.bus.family.goal_enables_torque
+        # Goals to such servos may switch torque on.
+        self._goal_enables_torque = self.readout.bus.family.goal_enables_torque
 
     @property
     def bus(self) -> Bus:
         """The bus."""
-        return self.line.bus
+        return self.readout.bus
 
     @property
     def clock(self) -> Clock:
@@ -72,11 +73,11 @@ class BusConnection:
 
     def request(self) -> None:
         """Request the state of all servos; reopen a lost port if it has come back."""
-        if self.lost is not None or self._unsure:
-            self._revive()
+        if self.lost is not None or self._torque_unconfirmed:
+            self._recover()
         if self.lost is None:
             try:
-                self.line.request()
+                self.readout.request()
             except PortError as error:
                 self._lose(error)
 
@@ -84,23 +85,27 @@ class BusConnection:
         """Return (servos,) bool: valid and plausible answers; see `BusReadout.collect`."""
         if self.lost is None:
             try:
-                valid = self.line.collect(counts, health, error)
-                self.heard = self.clock.now()
+                valid = self.readout.collect(counts, health, error)
+                self.answered_at = self.clock.now()
                 if self.torque.powered:
                     watchdog = self.torque.watchdog if self.torque.armed else 0.0
-                    self.check.update(error, self.heard, watchdog)
-                self.calm = self.line.calm and self.check.calm and not self.check.woke
+                    self.check.update(error, self.answered_at, watchdog)
+                self.all_well = (
+                    self.readout.all_well
+                    and self.check.all_well
+                    and not self.check.watchdog_may_have_fired
+                )
                 return valid
             except PortError as gone:
                 self._lose(gone)
-        self.calm = False
-        return np.zeros(len(self.line.ids), dtype=bool)
+        self.all_well = False
+        return np.zeros(len(self.readout.ids), dtype=bool)
 
     def read_health(self, health: Array) -> None:
         """Read voltage and temperature of the servos into `health` (3, n), if the port is open."""
         if self.lost is None:
             try:
-                self.line.read_health(health)
+                self.readout.read_health(health)
             except PortError as error:
                 self._lose(error)
 
@@ -109,24 +114,27 @@ class BusConnection:
 
         Returns the name of the clamp that withheld some, or None.
         """
-        unarmed = self._goal_enables_torque and not self.torque.powered
-        if self.barred or self.lost is not None or unarmed:
+        if (
+            self.goals_withheld
+            or self.lost is not None
+            or (self._goal_enables_torque and not self.torque.powered)
+        ):
             return "unarmed"
         withheld = self.check.withheld
         if withheld is None:
-            self.line.goals.values[:] = counts
-            return None if self._send(self.line.goals.frames()) else "unarmed"
+            self.readout.goals.values[:] = counts
+            return None if self._send(self.readout.goals.frames()) else "unarmed"
         if not withheld.all():
-            goals = self._goals_but(withheld)
+            goals = self._goals_without(withheld)
             goals.values[:] = counts[~withheld]
             self._send(goals.frames())
         return "lost"
 
     def send_gains(self, registers: Array) -> None:
         """Send P registers, (servos,)."""
-        if self.barred or self.lost is not None:
+        if self.goals_withheld or self.lost is not None:
             return
-        for gain, rows, write in self.line.gains:
+        for gain, rows, write in self.readout.gains:
             write.values[:] = gain.counts(registers[rows])
             self._send(write.frames())
 
@@ -145,28 +153,28 @@ class BusConnection:
 
     def switch_off(self) -> TorqueState:
         """Switch torque off and return the state that was read back."""
-        self._dropped = False  # torque is switched off now, not lost
+        self._lost_with_port = False  # torque is switched off now, not lost
         if self.lost is None:
             try:
                 return self.torque.off()
             except PortError as error:
                 self._lose(error)
-        return TorqueState.unread(len(self.line.ids))
+        return TorqueState.unread(len(self.readout.ids))
 
     @property
-    def gone_for_good(self) -> bool:
+    def port_is_lost_for_good(self) -> bool:
         """Whether the port is lost and this process does not reopen it."""
-        return self.lost is not None and not self._replug.returns
+        return self.lost is not None and not self._reopener.can_reopen
 
-    def insist_off(self, state: TorqueState) -> TorqueState:
+    def retry_off(self, state: TorqueState) -> TorqueState:
         """Switch off again the servos not read back as off; first try to reopen a lost port."""
         if state.all_off:
             return state
         try:
             if self.lost is not None:
-                self._replug.hurry()
+                self._reopener.retry_now()
                 self._open(self.clock.now())
-            return state if self.lost is not None else self.torque.insist(state)
+            return state if self.lost is not None else self.torque.retry_off(state)
         except PortError as error:
             self._lose(error)
             return state
@@ -174,27 +182,27 @@ class BusConnection:
     def clear_watchdogs(self) -> int:
         """Clear Bus Watchdogs that have fired; return their number."""
         try:
-            return self.torque.revive() if self.lost is None else 0
+            return self.torque.clear_watchdogs() if self.lost is None else 0
         except PortError as error:
             self._lose(error)
             return 0
 
-    def rearmed(self) -> None:
+    def end_withholding(self) -> None:
         """Stop withholding goals after the robot was checked and configured again."""
-        self.barred = self._unsure = False
+        self.goals_withheld = self._torque_unconfirmed = False
         self.check.clear()
 
     def close(self) -> None:
         """Close the port."""
-        self._replug.close()
+        self._reopener.close()
 
-    def _goals_but(self, withheld: Mask) -> CyclicWrite:
+    def _goals_without(self, withheld: Mask) -> CyclicWrite:
         """Return the sync write of goals to all servos that are not `withheld` (servos,) bool."""
         key = withheld.tobytes()
-        if self._some[0] != key:
-            ids = [id for id, held in zip(self.line.ids, withheld, strict=True) if not held]
-            self._some = key, self.line.goals_of(ids)
-        return self._some[1]
+        if self._partial_goals[0] != key:
+            ids = [id for id, held in zip(self.readout.ids, withheld, strict=True) if not held]
+            self._partial_goals = key, self.readout.goals_of(ids)
+        return self._partial_goals[1]
 
     def _send(self, frames: list[bytes]) -> bool:
         try:
@@ -207,33 +215,33 @@ class BusConnection:
     def _lose(self, error: PortError) -> None:
         self.lost = str(error)
         self.losses += 1
-        self.barred = self._unsure = True
-        self._dropped |= self.torque.powered
+        self.goals_withheld = self._torque_unconfirmed = True
+        self._lost_with_port |= self.torque.powered
         self.torque.armed = self.torque.powered = False
-        self.line.forget()
-        self._replug.lose(self.clock.now())
+        self.readout.reset()
+        self._reopener.lose(self.clock.now())
 
-    def _revive(self) -> None:
+    def _recover(self) -> None:
         """Reopen the port, if it is back, and switch torque off until it is read back as off."""
         now = self.clock.now()
         self._open(now)
         if self.lost is None and now >= self._look_again:
             self._look_again = now + RETRY
             try:
-                self._unsure = not self.torque.off(attempts=1).all_off
-                self._tell_dropped()
+                self._torque_unconfirmed = not self.torque.off(attempts=1).all_off
+                self._report_lost_with_port()
             except PortError as error:
                 self._lose(error)
 
     def _open(self, now: float) -> None:
         """Reopen the port if it was lost and has come back."""
-        port = self._replug.again(now) if self.lost is not None else None
+        port = self._reopener.try_reopen(now) if self.lost is not None else None
         if port is not None:
-            self.line.bus.move_to(port)
+            self.readout.bus.move_to(port)
             self.lost, self._look_again = None, now
 
-    def _tell_dropped(self) -> None:
+    def _report_lost_with_port(self) -> None:
         """Once torque is read back as off, report that it was lost with the port."""
-        if self._dropped and not self._unsure:
-            self._dropped = False
+        if self._lost_with_port and not self._torque_unconfirmed:
+            self._lost_with_port = False
             self.check.lose_all(UNPLUGGED)

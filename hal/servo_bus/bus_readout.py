@@ -10,7 +10,7 @@ from windup.hal.bus.bus import Bus
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.joints import Array, Mask
 from windup.hal.protocols.cyclic import CyclicWrite
-from windup.hal.servo_bus.line_reads import Asked, LineReads, Longer
+from windup.hal.servo_bus.bus_reads import BusReads, CycleRead, ExtraViews
 from windup.hal.servo_bus.plausibility import Plausibility
 from windup.hal.servo_bus.units import gain_groups
 from windup.hal.servos.servo_model import ServoMount
@@ -30,7 +30,7 @@ class BusReadout:
         bus: The bus.
         ids: Ids of the servos.
         rows: Indices of their joints in the robot.
-        where: The same as an index, a slice if possible.
+        row_index: The same as an index, a slice if possible.
         mounts: Mounts of the servos.
         names: Names of their joints; () if unknown.
         reads: Selects the read of each cycle.
@@ -38,9 +38,9 @@ class BusReadout:
         imu: The last bytes read from the OpenCR, or None before any.
         imu_fresh: Whether they came with the last answers.
         answered: (servos,) bool: servos that answered the last cycle, plausibly or not.
-        calm: Whether all servos answered plausibly, and none signals an error or lacks torque.
-        slack: (servos,) bool: servos whose registers showed no torque, or a restart; cleared by
-            `TorqueCheck`.
+        all_well: Whether all servos answered plausibly, and none signals an error or lacks torque.
+        without_torque: (servos,) bool: servos whose registers showed no torque, or a restart;
+            cleared by `TorqueCheck`.
         goals: Sync write of goal positions, counts.
         gains: Gain register, rows of its servos, and the sync write, for each gain register.
     """
@@ -59,12 +59,12 @@ class BusReadout:
         self.rows: npt.NDArray[np.intp] = np.array(rows, dtype=np.intp)
         # Usually there is one bus in joint order; a slice is faster than an index array.
         whole = self.rows.tolist() == list(range(len(self.ids)))
-        self.where: Rows = slice(len(self.ids)) if whole else self.rows
+        self.row_index: Rows = slice(len(self.ids)) if whole else self.rows
         self.names, self.board = tuple(names), board
         self.imu: bytes | None = None
-        self.imu_fresh = self.calm = False
+        self.imu_fresh = self.all_well = False
         self.answered: Mask = np.zeros(len(self.ids), dtype=bool)
-        self.slack: Mask = np.zeros(len(self.ids), dtype=bool)
+        self.without_torque: Mask = np.zeros(len(self.ids), dtype=bool)
         self._volt = bus.family.registers["present_voltage"].unit
         self._volts: deque[tuple[float, float]] = deque(maxlen=100)
         family = bus.family
@@ -73,10 +73,10 @@ class BusReadout:
             (gain, at, family.protocol.write([self.ids[row] for row in at], gain.register))
             for gain, at in gain_groups(mounts)
         ]
-        self.reads = LineReads(bus, self.ids, [mount.model for mount in mounts], board)
+        self.reads = BusReads(bus, self.ids, [mount.model for mount in mounts], board)
         self._asked = self.reads.next()
 
-    def who(self, rows: Iterable[int]) -> str:
+    def names_at(self, rows: Iterable[int]) -> str:
         """Return the names of the servos at `rows`, such as "l_knee (id 13)" or "id 13"."""
         if not self.names:
             return ", ".join(f"id {self.ids[row]}" for row in rows)
@@ -102,7 +102,7 @@ class BusReadout:
         """
         asked, servos = self._asked, len(self.ids)
         answered = self.bus.exchange.collect()
-        self.calm = False
+        self.all_well = False
         if not answered.size:
             self.imu_fresh = False
             self.answered = np.zeros(servos, dtype=bool)
@@ -113,14 +113,14 @@ class BusReadout:
             self.imu = asked.read.params(servos)
         self.reads.broken_chain = not asked.read.complete
         believed = self._put(asked, valid, counts, error)
-        if asked.longer is not None and (fresh := believed[asked.longer.rows]).any():
-            self._take_health(asked.longer, fresh, health)
-            self._look_at_torque(asked.longer, fresh)
+        if asked.extra is not None and (fresh := believed[asked.extra.rows]).any():
+            self._take_health(asked.extra, fresh, health)
+            self._look_at_torque(asked.extra, fresh)
         return believed
 
     def errors(self, error: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint8]:
         """Return the (servos,) error bytes of this bus from those of all joints (n,)."""
-        return error[self.where]
+        return error[self.row_index]
 
     def lowest_supply(self) -> float:
         """Return the lowest supply read in the last `LOWEST_OF` s, V; NaN without a reading."""
@@ -133,19 +133,21 @@ class BusReadout:
         for _ in range(ATTEMPTS):
             self.bus.exchange.request(asked.read)
             fresh = self.bus.exchange.collect()[: len(self.ids)]
-            if asked.longer is not None and fresh.any():
-                self._take_health(asked.longer, fresh, health)
+            if asked.extra is not None and fresh.any():
+                self._take_health(asked.extra, fresh, health)
             if fresh.all():
                 break
 
-    def forget(self) -> None:
+    def reset(self) -> None:
         """Reset the plausibility check and the fast read: servos may have moved, or be missing."""
         self.reads.broken_chain = True
-        self.calm = self.imu_fresh = False
+        self.all_well = self.imu_fresh = False
         if self.check is not None:
-            self.check.forget()
+            self.check.reset()
 
-    def _put(self, asked: Asked, valid: Mask, counts: Array, error: npt.NDArray[np.uint8]) -> Mask:
+    def _put(
+        self, asked: CycleRead, valid: Mask, counts: Array, error: npt.NDArray[np.uint8]
+    ) -> Mask:
         read, block = asked.read, asked.block
         records = self._records(asked)
         position, velocity, effort = block.counts(records)
@@ -155,38 +157,38 @@ class BusReadout:
             valid = self.check.accept(position, velocity, valid, self.bus.port.clock.now())
             complete = bool(valid.all())
             self.bus.exchange.errors["implausible"] = self.check.rejected
-        rows: Rows = self.where
+        rows: Rows = self.row_index
         if not complete:
             rows = self.rows[valid]
             position, velocity, effort = position[valid], velocity[valid], effort[valid]
             errors = errors[valid]
-        self.calm = complete and not errors.any()
+        self.all_well = complete and not errors.any()
         counts[0, rows] = position
         counts[1, rows] = velocity
         counts[2, rows] = effort
         error[rows] = errors
         return valid
 
-    def _records(self, asked: Asked) -> npt.NDArray[np.void]:
+    def _records(self, asked: CycleRead) -> npt.NDArray[np.void]:
         """Return the (servos,) records of the block in the last answers."""
         payload, block = asked.read.payload, asked.block
         if asked.state_at is not None:
             payload = payload.take(asked.state_at)
         return payload[: len(self.ids) * block.size].view(block.dtype)
 
-    def _take_health(self, longer: Longer, fresh: Mask, health: Array) -> None:
+    def _take_health(self, extra: ExtraViews, fresh: Mask, health: Array) -> None:
         """Store voltage and temperature of the servos that are `fresh`."""
-        rows = self.rows[longer.rows][fresh]
-        volts = longer.volts[fresh] * self._volt
+        rows = self.rows[extra.rows][fresh]
+        volts = extra.volts[fresh] * self._volt
         health[0, rows] = volts
-        health[1, rows] = longer.degrees[fresh]
+        health[1, rows] = extra.degrees[fresh]
         health[2, rows] = now = self.bus.port.clock.now()
         self._volts.append((now, float(volts.min())))
 
-    def _look_at_torque(self, longer: Longer, fresh: Mask) -> None:
+    def _look_at_torque(self, extra: ExtraViews, fresh: Mask) -> None:
         """Mark servos as slack whose torque registers show no torque, or a restart."""
-        for counts, restarted in longer.torque:
+        for counts, restarted in extra.torque:
             gone = fresh & ((counts == 0) | (counts == restarted))
             if gone.any():
-                self.slack[longer.rows] |= gone
-                self.calm = False
+                self.without_torque[extra.rows] |= gone
+                self.all_well = False

@@ -102,7 +102,7 @@ class Couplings:
             result[rows] = servos[rows].any()
         return result
 
-    def extent(self, lower: Array, upper: Array) -> tuple[Array, Array]:
+    def servo_range(self, lower: Array, upper: Array) -> tuple[Array, Array]:
         """Return the smallest and largest servo angles (n,) for joint limits (n,), rad."""
         low, high = lower.copy(), upper.copy()
         for rows, matrix, *_ in self._parts:

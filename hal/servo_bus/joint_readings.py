@@ -40,10 +40,12 @@ class JointReadings:
     def collect(self, link: BusConnection, error: npt.NDArray[np.uint8]) -> None:
         """Collect and timestamp the answers on one bus; error bytes are stored in `error` (n,)."""
         valid: Mask = link.collect(self._counts, self._health, error)
-        line = link.line
-        self.answered[line.where if line.calm else line.rows[valid]] = link.heard
-        if line.imu_fresh:
-            self._imu_at = link.heard
+        readout = link.readout
+        self.answered[readout.row_index if readout.all_well else readout.rows[valid]] = (
+            link.answered_at
+        )
+        if readout.imu_fresh:
+            self._imu_at = link.answered_at
 
     def read_health(self, links: Sequence[BusConnection]) -> None:
         """Read voltage and temperature of all servos now; later the cycle refreshes them."""
@@ -52,7 +54,7 @@ class JointReadings:
 
     def observe(self, now: float, links: Sequence[BusConnection]) -> Observation:
         """Return the observation for the time `now`, s."""
-        position, velocity, torque = self._units.si(self._counts)
+        position, velocity, torque = self._units.to_si(self._counts)
         voltage, temperature, measured = self._health.copy()
         answered = self.answered
         if self._couplings:
@@ -68,7 +70,7 @@ class JointReadings:
         if self._imu is not None:
             return self._imu.state(now)
         for link in links:
-            line = link.line
-            if line.board is not None and line.imu is not None:
-                return line.board.decode(line.imu, now - self._imu_at)
+            readout = link.readout
+            if readout.board is not None and readout.imu is not None:
+                return readout.board.decode(readout.imu, now - self._imu_at)
         return None

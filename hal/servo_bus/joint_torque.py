@@ -39,7 +39,7 @@ class JointTorque:
         """
         try:
             self._check_armable(links)
-            return self._joined(links, [link.switch_on(gains[link.line.rows]) for link in links])
+            return self._joined(links, [link.switch_on(gains[link.readout.rows]) for link in links])
         except HardwareError as error:
             state = self.off(links, heartbeat)
             where = state.names(self._joints, ~state.off)
@@ -59,17 +59,17 @@ class JointTorque:
         while _worth_waiting(links, states) and links[0].clock.now() < until:
             heartbeat()
             links[0].clock.wait_until(links[0].clock.now() + PAUSE)
-            states = [link.insist_off(s) for link, s in zip(links, states, strict=True)]
+            states = [link.retry_off(s) for link, s in zip(links, states, strict=True)]
         return self._joined(links, states)
 
     def _check_armable(self, links: Sequence[BusConnection]) -> None:
-        if barred := [link.bus.port.url for link in links if link.barred]:
+        if lost_ports := [link.bus.port.url for link in links if link.goals_withheld]:
             raise HardwareError(
-                f"{', '.join(barred)} went away since the robot was armed; arm it again by `rearm`"
+                f"{', '.join(lost_ports)} was disconnected after arming; arm again with `rearm`"
             )
         if lost := self.losses(links):
             raise HardwareError(
-                f"{', '.join(lost)} lost torque since the robot was armed; arm it again by `rearm`"
+                f"{', '.join(lost)} lost torque after arming; arm again with `rearm`"
             )
 
     def losses(self, links: Sequence[BusConnection]) -> dict[str, Loss]:
@@ -80,12 +80,12 @@ class JointTorque:
                 lost |= dict.fromkeys(self._moved_by(link, [row]), loss)
         return lost
 
-    def doubts(self, links: Sequence[BusConnection]) -> dict[str, str]:
+    def torque_unknown(self, links: Sequence[BusConnection]) -> dict[str, str]:
         """Map joint name to the remedy, for joints whose torque state is unknown."""
         doubts: dict[str, str] = {}
         for link in links:
             if link.lost is not None:
-                every = range(len(link.line.ids))
+                every = range(len(link.readout.ids))
                 doubts |= dict.fromkeys(self._moved_by(link, every), link.lost)
             elif link.check.suspects.any():
                 rows = np.flatnonzero(link.check.suspects).tolist()
@@ -95,7 +95,7 @@ class JointTorque:
     def _moved_by(self, link: BusConnection, rows: Sequence[int]) -> list[str]:
         """Return the names of the joints that are driven by the servos at `rows` of a bus."""
         servos: Mask = np.zeros(len(self._joints), dtype=bool)
-        servos[link.line.rows[list(rows)]] = True
+        servos[link.readout.rows[list(rows)]] = True
         return np.array(self._joints.names)[self._couplings.any(servos)].tolist()
 
     def _joined(self, links: Sequence[BusConnection], states: Sequence[TorqueState]) -> TorqueState:
@@ -106,7 +106,7 @@ class JointTorque:
         on: Mask = np.zeros(len(self._joints), dtype=bool)
         unknown: Mask = np.zeros_like(on)
         for link, state in zip(links, states, strict=True):
-            on[link.line.rows], unknown[link.line.rows] = state.on, state.unknown
+            on[link.readout.rows], unknown[link.readout.rows] = state.on, state.unknown
         on, unknown = self._couplings.any(on), self._couplings.any(unknown)
         return TorqueState(on, unknown & ~on)
 
@@ -114,4 +114,4 @@ class JointTorque:
 def _worth_waiting(links: Sequence[BusConnection], states: Sequence[TorqueState]) -> bool:
     """Return whether a servo that is not read back as off may still answer this process."""
     pairs = zip(links, states, strict=True)
-    return any(not state.all_off and not link.gone_for_good for link, state in pairs)
+    return any(not state.all_off and not link.port_is_lost_for_good for link, state in pairs)

@@ -84,7 +84,7 @@ class Plausibility:
         np.copyto(self._when, now, where=taken)
         return good
 
-    def forget(self) -> None:
+    def reset(self) -> None:
         """Reset: accept new first readings, as after a loss of power."""
         self._seen.fill(False)
         self._known.fill(False)

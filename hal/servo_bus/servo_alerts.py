@@ -37,10 +37,10 @@ class ServoAlerts:
         self._mask = np.zeros_like(self.errors)
         self.now: dict[str, tuple[str, ...]] = {}
 
-    def watch(self, lines: Sequence[BusReadout]) -> None:
+    def watch(self, readouts: Sequence[BusReadout]) -> None:
         """Set the bits of the error byte that mean an alert, for each bus."""
-        for line in lines:
-            self._mask[line.rows] = line.bus.family.alert
+        for readout in readouts:
+            self._mask[readout.rows] = readout.bus.family.alert
 
     def update(self, links: Sequence[BusConnection]) -> None:
         """Add alerts of servos that newly report an error, and remove those that have ended."""
@@ -48,26 +48,26 @@ class ServoAlerts:
             return
         alert = (self.errors & self._mask) != 0
         self.now = {n: said for n, said in self.now.items() if alert[self._joints.index(n)]}
-        for line in [link.line for link in links if link.lost is None]:
-            rows = np.flatnonzero(alert[line.rows]).tolist()
-            if new := [row for row in rows if self._name(line, row) not in self.now]:
+        for readout in [link.readout for link in links if link.lost is None]:
+            rows = np.flatnonzero(alert[readout.rows]).tolist()
+            if new := [row for row in rows if self._name(readout, row) not in self.now]:
                 with suppress(PortError):  # the next request finds that too
-                    self._explain(line, new)
+                    self._explain(readout, new)
 
-    def _name(self, line: BusReadout, row: int) -> str:
-        return self._joints.names[line.rows[row]]
+    def _name(self, readout: BusReadout, row: int) -> str:
+        return self._joints.names[readout.rows[row]]
 
-    def _explain(self, line: BusReadout, rows: Sequence[int]) -> None:
+    def _explain(self, readout: BusReadout, rows: Sequence[int]) -> None:
         """Record the alerts of the servos at `rows`; one that cannot be read is retried later."""
-        family = line.bus.family
-        bits = self.errors[line.rows[rows]] & family.alert
+        family = readout.bus.family
+        bits = self.errors[readout.rows[rows]] & family.alert
         said = np.ones(len(rows), dtype=bool)
         if not family.errors_in_answers:
-            ids = [line.ids[row] for row in rows]
-            counts, said = line.bus.sync_read(ids, family.registers["hardware_error"])
+            ids = [readout.ids[row] for row in rows]
+            counts, said = readout.bus.sync_read(ids, family.registers["hardware_error"])
             bits = counts.astype(np.uint8)
         for row, code in zip(np.array(rows)[said], bits[said].tolist(), strict=True):
-            self.now[self._name(line, row)] = family.explain(code) or (UNKNOWN,)
+            self.now[self._name(readout, row)] = family.explain(code) or (UNKNOWN,)
 
 
 def count_errors(links: Sequence[BusConnection], watchdog_trips: int) -> dict[str, int]:

@@ -10,7 +10,7 @@ from windup.hal.bus.transactions import TURNAROUND
 from windup.hal.clock import WallClock
 from windup.hal.command import JointCommand, shifted_goal
 from windup.hal.errors import HardwareError, PortError
-from windup.hal.heartbeat import Heartbeat, beating, no_heartbeat
+from windup.hal.heartbeat import Heartbeat, no_heartbeat, with_heartbeat
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.imu.source import ImuConnection, ImuSource
 from windup.hal.joints import Array, Flags, Joints
@@ -24,7 +24,12 @@ from windup.hal.servo_bus.driver_clamps import DriverClamps
 from windup.hal.servo_bus.joint_readings import JointReadings
 from windup.hal.servo_bus.joint_torque import JointTorque
 from windup.hal.servo_bus.servo_alerts import ServoAlerts, count_errors
-from windup.hal.servo_bus.servo_setup import lines_of, open_links, set_up, silent_joints
+from windup.hal.servo_bus.servo_setup import (
+    build_readouts,
+    open_links,
+    set_up_servos,
+    silent_joints,
+)
 from windup.hal.servo_bus.stop_button import StopButton
 from windup.hal.servo_bus.units import Units
 from windup.hal.servo_bus.wiring import check_mounts
@@ -63,8 +68,7 @@ class ServoBackend:
         clamps: Maps clamp to the number of commands it changed: "goal" beyond the encoder's range,
             "gain" beyond that of the register; "unarmed" and "lost" are goals withheld from a bus,
             and from joints that may have lost their torque.
-        lost_joints: Maps joint name to how it lost its torque since the robot was armed. Such
-            joints get no goals until `rearm`.
+        lost_joints: Maps joint name to how its torque was lost; it gets no goals until `rearm`.
         watchdog_trips: Number of Bus Watchdogs that fired and were cleared.
         arming_stiffness: (n,) stiffness at torque enable, N m/rad.
         heartbeat: Called repeatedly while torque is switched, which takes a while.
@@ -108,9 +112,9 @@ class ServoBackend:
         self.heartbeat: Heartbeat = no_heartbeat
 
     @property
-    def lines(self) -> list[BusReadout]:
+    def readouts(self) -> list[BusReadout]:
         """The readout of each bus."""
-        return [link.line for link in self.links]
+        return [link.readout for link in self.links]
 
     @property
     def _buses(self) -> list[Bus]:
@@ -139,7 +143,7 @@ class ServoBackend:
     @property
     def doubtful_joints(self) -> Mapping[str, str]:
         """Maps joint name to the remedy, for joints whose torque state is unknown."""
-        return self._torque.doubts(self.links)
+        return self._torque.torque_unknown(self.links)
 
     def connect(self) -> None:
         """Open the ports. Nothing moves.
@@ -149,11 +153,11 @@ class ServoBackend:
             UsageError: The ports do not share one clock (wall clock, or one virtual clock).
         """
         self.disconnect()
-        build = lines_of(self.joints, self.mounts, self.units, self.board)
+        build = build_readouts(self.joints, self.mounts, self.units, self.board)
         self.links, self._imu_link, self.clock = open_links(
             build, self._ports, self.imu, self._watchdog, self._opener
         )
-        self._alerts.watch(self.lines)
+        self._alerts.watch(self.readouts)
 
     def configure(self) -> None:
         """Check every servo, then write the required settings that differ. Nothing moves.
@@ -162,12 +166,12 @@ class ServoBackend:
             HardwareError: The wiring differs from robot.toml, and nothing has been written; or a
                 servo does not answer cyclic reads.
         """
-        buses = {link.line.mounts[0].bus: link.bus for link in self.links}
-        with beating(self._buses, self.heartbeat):
-            set_up(self.joints, self.mounts, buses, self.board)
-        for line in self.lines:
-            line.bus.exchange.turnaround = TURNAROUND
-            line.reads.probe_fast()
+        buses = {link.readout.mounts[0].bus: link.bus for link in self.links}
+        with with_heartbeat(self._buses, self.heartbeat):
+            set_up_servos(self.joints, self.mounts, buses, self.board)
+        for readout in self.readouts:
+            readout.bus.exchange.turnaround = TURNAROUND
+            readout.reads.probe_fast()
         if silent := silent_joints(self.joints, self.readings, self.read, self.clock.now()):
             raise HardwareError(f"no answer to cyclic reads from {silent}; run `windup scan`")
         self.read_health()
@@ -183,11 +187,11 @@ class ServoBackend:
 
     def collect(self) -> Observation:
         """Wait for the state last requested and return it."""
-        calm = True
+        all_well = True
         for link in self.links:
             self.readings.collect(link, self._alerts.errors)
-            calm &= link.calm
-        if not calm or self._alerts.now:
+            all_well &= link.all_well
+        if not all_well or self._alerts.now:
             self._see_to(self.links)
         if self.board is not None:
             self.button.update(self.links)
@@ -218,7 +222,7 @@ class ServoBackend:
         real[0] = self._couplings.joints(angle) if self._couplings else angle
         real[3:] = self._realised
         for link in self.links:
-            rows = link.line.rows
+            rows = link.readout.rows
             if (clamp := link.send_goals(inside[rows])) is not None:
                 self._clamped.note_withheld(clamp, rows, link.check.withheld)
             if link.check.withheld is not None:
@@ -243,10 +247,10 @@ class ServoBackend:
                 of a joint was lost since the robot was armed; torque is switched off everywhere.
         """
         self._gains = b""
-        with beating(self._buses, self.heartbeat):
+        with with_heartbeat(self._buses, self.heartbeat):
             if not on:
                 return self._torque.off(self.links, self.heartbeat)
-            self.button.forget()
+            self.button.reset()
             wanted = self._couplings.servo_gains(self.arming_stiffness)
             gains, _ = self.units.p_registers(wanted)
             return self._torque.on(self.links, gains, self.heartbeat)
@@ -267,7 +271,7 @@ class ServoBackend:
         self.set_torque(False)
         self.configure()
         for link in self.links:
-            link.rearmed()
+            link.end_withholding()
         self.lost_joints = {}
         return self.set_torque(True)
 
@@ -282,7 +286,7 @@ class ServoBackend:
     def _see_to(self, links: Sequence[BusConnection]) -> None:
         """Update losses, watchdogs and alerts after silence, an error or a loss of torque."""
         self.lost_joints = self._torque.losses(links)
-        if any(link.check.woke for link in links):
+        if any(link.check.watchdog_may_have_fired for link in links):
             self.watchdog_trips += sum(link.clear_watchdogs() for link in links)
         self._alerts.update(links)
 
@@ -291,6 +295,6 @@ class ServoBackend:
         registers, beyond = self.units.p_registers(wanted)
         self._clamped.note_gains(beyond)
         for link in self.links:
-            link.send_gains(registers[link.line.rows])
+            link.send_gains(registers[link.readout.rows])
         self._realised[0] = self._couplings.joint_gains(registers * self.units.stiffness)
         self._gains = stiffness.tobytes()

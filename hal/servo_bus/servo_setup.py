@@ -8,7 +8,7 @@ import numpy as np
 from windup.hal.backend import Clock
 from windup.hal.bus.bus import Bus
 from windup.hal.bus.servo_settings import assert_settings
-from windup.hal.bus.setting_words import in_words
+from windup.hal.bus.setting_text import format_settings
 from windup.hal.clock import WallClock
 from windup.hal.errors import UsageError
 from windup.hal.families import family_of
@@ -17,7 +17,7 @@ from windup.hal.imu.source import ImuConnection, ImuSource
 from windup.hal.joints import Joints, Mask
 from windup.hal.port.lock import EMULATED, wait_while_guarded
 from windup.hal.port.port import Port
-from windup.hal.port.replug import Opener
+from windup.hal.port.port_reopener import Opener
 from windup.hal.servo_bus.bus_connection import BusConnection, BusPort
 from windup.hal.servo_bus.bus_readout import BusReadout
 from windup.hal.servo_bus.joint_readings import JointReadings
@@ -28,10 +28,10 @@ from windup.hal.servos.servo_model import ServoMount
 
 ATTEMPTS = 30
 """Maximum number of cyclic reads until every joint has answered."""
-BuildLine = Callable[[Port], BusReadout]
+BuildReadout = Callable[[Port], BusReadout]
 
 
-def one_clock(clocks: Sequence[Clock]) -> Clock:
+def common_clock(clocks: Sequence[Clock]) -> Clock:
     """Return the clock that all ports of a robot share.
 
     Raises:
@@ -41,16 +41,18 @@ def one_clock(clocks: Sequence[Clock]) -> Clock:
     wall = isinstance(first, WallClock)
     for clock in clocks[1:]:
         if clock is not first and not (wall and isinstance(clock, WallClock)):
-            raise UsageError("the buses of one robot have to live in one world, on one clock")
+            raise UsageError(
+                "the buses of one robot must share one clock: one twin:// world, or real ports only"
+            )
     return first
 
 
-def lines_of(
+def build_readouts(
     joints: Joints, mounts: Sequence[ServoMount], units: Units, board: OpenCr | None
-) -> dict[str, BuildLine]:
+) -> dict[str, BuildReadout]:
     """Return, by bus name, a function that builds the readout of the bus from its port."""
 
-    def build(name: str, rows: list[int]) -> BuildLine:
+    def build(name: str, rows: list[int]) -> BuildReadout:
         here = [mounts[row] for row in rows]
         family = family_of(here[0].model.name)
         bounds = units.last[rows], units.speed[rows], units.speed_unit[rows]
@@ -63,7 +65,7 @@ def lines_of(
 
 
 def open_links(
-    lines: Mapping[str, BuildLine],
+    readouts: Mapping[str, BuildReadout],
     ports: Mapping[str, BusPort],
     imu: ImuSource | None,
     watchdog: float,
@@ -78,13 +80,13 @@ def open_links(
     links: list[BusConnection] = []
     beside: ImuConnection | None = None
     try:
-        for name, build in lines.items():
+        for name, build in readouts.items():
             wait_while_guarded(ports[name].url)
             links.append(BusConnection(ports[name], opener, build, watchdog))
         if imu is not None:
             beside = imu.connect(opener)
         clocks = [link.clock for link in (*links, beside) if link is not None]
-        return links, beside, one_clock(clocks)
+        return links, beside, common_clock(clocks)
     except BaseException:
         for link in (*links, beside):
             if link is not None:
@@ -92,7 +94,7 @@ def open_links(
         raise
 
 
-def set_up(
+def set_up_servos(
     joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, Bus], board: OpenCr | None
 ) -> None:
     """Measure the adapters, switch servo power on, check all servos, log and write what differs.
@@ -105,18 +107,18 @@ def set_up(
     """
     for name, bus in buses.items():
         ours = [board.id] if board is not None and board.bus == name else []
-        bus.get_to_know_adapter([*ours, *(mount.id for mount in mounts if mount.bus == name)])
+        bus.measure_adapter([*ours, *(mount.id for mount in mounts if mount.bus == name)])
     if board is not None:
-        power_up(buses[board.bus], board)
+        switch_servo_power_on(buses[board.bus], board)
     found = check_servos(joints, mounts, buses, board)
-    real = [differs for differs in found if not differs.bus.port.url.startswith(EMULATED)]
-    for line in in_words(real):
+    real = [servo for servo in found if not servo.bus.port.url.startswith(EMULATED)]
+    for line in format_settings(real):
         logging.getLogger(__name__).warning("%s", line)
-    for differs in found:
-        assert_settings(differs.bus, differs.id, differs.settings)
+    for servo in found:
+        assert_settings(servo.bus, servo.id, servo.settings)
 
 
-def power_up(bus: Bus, board: OpenCr) -> None:
+def switch_servo_power_on(bus: Bus, board: OpenCr) -> None:
     """Switch on the servo power of an OpenCR, and wait until the servos have started."""
     if bus.read(board.id, POWER) != 1:
         bus.write(board.id, POWER, 1)

@@ -23,14 +23,14 @@ class StopButton:
     def update(self, links: Iterable[BusConnection]) -> None:
         """Evaluate the last answer of the board, if it is new."""
         for link in links:
-            line = link.line
-            if line.imu_fresh and line.board is not None and line.imu is not None:
-                down = line.board.buttons(line.imu)
+            readout = link.readout
+            if readout.imu_fresh and readout.board is not None and readout.imu is not None:
+                down = readout.board.buttons(readout.imu)
                 if down != self.held:
                     new = [name for name in down if name not in self.held]
                     self.pressed = self.pressed or next(iter(new), None)
                     self.held = down
 
-    def forget(self) -> None:
+    def reset(self) -> None:
         """Forget earlier presses before torque enable; a button already down is not a new press."""
         self.pressed = None

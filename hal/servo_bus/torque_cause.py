@@ -6,9 +6,16 @@ from typing import NamedTuple
 from windup.hal.bus.bus import Bus
 from windup.hal.families import Family
 from windup.hal.servo_bus.bus_readout import BusReadout
-from windup.hal.torque_loss import SWITCHED_OFF, UNEXPLAINED, Loss, restarted, shut_down, weakened
+from windup.hal.torque_loss import (
+    SWITCHED_OFF,
+    UNEXPLAINED,
+    Loss,
+    reduced_torque_loss,
+    restart_loss,
+    shutdown_loss,
+)
 
-UNNAMED = "an error that its manual does not name"
+UNNAMED = "an error without a documented name"
 
 Values = dict[int, int]
 """Maps id to the value of a register, for the servos that answered."""
@@ -38,7 +45,7 @@ class Readback(NamedTuple):
     bits: int
 
     @property
-    def drives(self) -> bool:
+    def torque_on(self) -> bool:
         """Whether torque is on."""
         return all(self.values.values())
 
@@ -47,51 +54,53 @@ class Evidence(NamedTuple):
     """Evidence for judging whether a servo has lost its torque.
 
     Attributes:
-        drives: Whether its torque is on.
+        torque_on: Whether its torque is on.
         restarted: Whether it has restarted.
         errors: Bits of the errors that it reports.
         unloading: Bits of the errors that end its torque, or reduce it.
     """
 
-    drives: bool
+    torque_on: bool
     restarted: bool
     errors: int
     unloading: int
 
 
-def examine(line: BusReadout, suspects: Sequence[Suspect], watched: bool) -> dict[int, Loss | None]:
+def find_torque_losses(
+    readout: BusReadout, suspects: Sequence[Suspect], watched: bool
+) -> dict[int, Loss | None]:
     """Map id to how its torque was lost, or None if it has torque; silent servos are omitted.
 
     Args:
-        line: The bus of the servos.
+        readout: The bus of the servos.
         suspects: The servos.
         watched: Whether their Bus Watchdog is running.
     """
-    bus, family = line.bus, line.bus.family
+    bus, family = readout.bus, readout.bus.family
     back = _read_back(bus, [suspect.id for suspect in suspects])
-    slack = [id for id, seen in back.items() if _is_slack(family, seen)]
-    if slack and family.protocol.weak:  # one corrupt frame in 256 passes the checksum
-        again = _read_back(bus, slack)
-        back = {id: seen for id, seen in back.items() if id not in slack} | again
+    without_torque = [id for id, seen in back.items() if _is_without_torque(family, seen)]
+    if without_torque and family.protocol.weak:  # one corrupt frame in 256 passes the checksum
+        again = _read_back(bus, without_torque)
+        back = {id: seen for id, seen in back.items() if id not in without_torque} | again
     unclear = [suspect for suspect in suspects if _is_unclear(family, back.get(suspect.id))]
     found: dict[int, Loss | None] = dict.fromkeys(back)
     for suspect in unclear:
         del found[suspect.id]
     for id, evidence in _evidence(bus, unclear, back, watched).items():
-        found[id] = judge(family, evidence, line.lowest_supply())
+        found[id] = torque_loss_of(family, evidence, readout.lowest_supply())
     return found
 
 
-def judge(family: Family, evidence: Evidence, volts: float) -> Loss | None:
+def torque_loss_of(family: Family, evidence: Evidence, volts: float) -> Loss | None:
     """Return how the torque was lost, or None if it is on; `volts` is the lowest supply, V."""
     signalled = evidence.errors & evidence.unloading
     weak, ended = signalled & family.weakening, signalled & ~family.weakening
     if evidence.restarted:
-        return restarted(volts)
-    if evidence.drives:
-        return weakened(family.explain(weak)) if weak else None
+        return restart_loss(volts)
+    if evidence.torque_on:
+        return reduced_torque_loss(family.explain(weak)) if weak else None
     if ended:
-        return shut_down(family.explain(ended) or (UNNAMED,))
+        return shutdown_loss(family.explain(ended) or (UNNAMED,))
     return SWITCHED_OFF if family.latching else UNEXPLAINED
 
 
@@ -102,7 +111,7 @@ def _read_back(bus: Bus, ids: Sequence[int]) -> dict[int, Readback]:
     begin = family.torque_span(0).address
     spans = [family.torque_span(id) for id in ids]
     found = {}
-    for id, status in bus.statuses(spans, rest=True).items():
+    for id, status in bus.read_statuses(spans, rest=True).items():
         values = {
             each.name: each.decode(status.params[each.address - begin :][: each.size])
             for each in registers
@@ -111,16 +120,18 @@ def _read_back(bus: Bus, ids: Sequence[int]) -> dict[int, Readback]:
     return found
 
 
-def _is_slack(family: Family, seen: Readback) -> bool:
+def _is_without_torque(family: Family, seen: Readback) -> bool:
     """Return whether a servo has no torque, or has restarted and may move to an old goal."""
     mark = family.restart_mark
     again = mark is not None and seen.values.get(mark.name) == mark.restarted
-    return again or not seen.drives
+    return again or not seen.torque_on
 
 
 def _is_unclear(family: Family, seen: Readback | None) -> bool:
     """Return whether more registers are needed to judge the torque of a servo that answered."""
-    return seen is not None and (_is_slack(family, seen) or bool(seen.bits & family.weakening))
+    return seen is not None and (
+        _is_without_torque(family, seen) or bool(seen.bits & family.weakening)
+    )
 
 
 def _evidence(
@@ -142,7 +153,7 @@ def _evidence(
     elif mark is not None and watched:
         again = {id: v == mark.restarted for id, v in _values(bus, ids, mark.name).items()}
     known = [id for id in ids if id in errors and id in unloading and id in again]
-    return {id: Evidence(back[id].drives, again[id], errors[id], unloading[id]) for id in known}
+    return {id: Evidence(back[id].torque_on, again[id], errors[id], unloading[id]) for id in known}
 
 
 def _values(bus: Bus, ids: Sequence[int], name: str) -> Values:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from windup.hal.joints import Array, Mask
 from windup.hal.servo_bus.bus_readout import BusReadout
-from windup.hal.servo_bus.torque_cause import Suspect, examine
+from windup.hal.servo_bus.torque_cause import Suspect, find_torque_losses
 from windup.hal.torque_loss import Loss
 
 MISSES = 4
@@ -34,29 +34,29 @@ class TorqueCheck:
         withheld: (servos,) bool, servos that get no goals; None if all get them.
         losses: Maps row within the bus to how the torque was lost.
         suspects: (servos,) bool, servos whose torque state is unknown.
-        calm: Whether all servos answered the last cycle, and none is suspect or without torque.
-        woke: Whether a servo answered the last cycle after a silence in which its Bus Watchdog
-            may have fired.
+        all_well: Whether all servos answered the last cycle, and none is suspect or without torque.
+        watchdog_may_have_fired: Whether a servo answered the last cycle after a silence in which
+            its Bus Watchdog may have fired.
     """
 
-    def __init__(self, line: BusReadout) -> None:
-        self.line = line
+    def __init__(self, readout: BusReadout) -> None:
+        self.readout = readout
         self.clear()
 
     def clear(self) -> None:
         """Reset: no servo is suspect or has lost its torque."""
-        servos = len(self.line.ids)
+        servos = len(self.readout.ids)
         self.withheld: Mask | None = None
         self.losses: dict[int, Loss] = {}
         self.suspects: Mask = np.zeros(servos, dtype=bool)
-        self.woke = False
+        self.watchdog_may_have_fired = False
         self._lost: Mask = np.zeros(servos, dtype=bool)
         self._silent: Mask = np.zeros(servos, dtype=bool)
         self._missed = np.zeros(servos, dtype=np.int64)
         self._heard: Array = np.full(servos, np.inf)
         self._bits: Bits = np.zeros(servos, dtype=np.uint8)
-        self.calm, self._then, self._waited = True, np.inf, 0
-        self.line.slack[:] = False
+        self.all_well, self._then, self._waited = True, np.inf, 0
+        self.readout.without_torque[:] = False
 
     def update(self, error: Bits, now: float, watchdog: float) -> None:
         """Evaluate the last cycle of the bus, and read back the suspects that answered it.
@@ -67,44 +67,46 @@ class TorqueCheck:
             watchdog: Silence after which the Bus Watchdogs fire, s; 0 if they do not run.
         """
         late = now - self._then > SILENCE
-        if self.calm and self.line.calm and not late:
-            self._then, self.woke = now, False
+        if self.all_well and self.readout.all_well and not late:
+            self._then, self.watchdog_may_have_fired = now, False
             return
-        self._look(self.line.errors(error), now, late, watchdog)
-        if (ask := self.suspects & self.line.answered).any() and self._is_time():
+        self._look(self.readout.errors(error), now, late, watchdog)
+        if (ask := self.suspects & self.readout.answered).any() and self._is_time():
             self._read_back(np.flatnonzero(ask).tolist(), watchdog > 0.0)
         self._settle()
 
     def lose_all(self, loss: Loss) -> None:
         """Record that all servos have lost their torque."""
-        self.losses = dict.fromkeys(range(len(self.line.ids)), loss) | self.losses
+        self.losses = dict.fromkeys(range(len(self.readout.ids)), loss) | self.losses
         self._lost[:] = True
         self._settle()
 
     def _look(self, errors: Bits, now: float, late: bool, watchdog: float) -> None:
         """Mark servos suspect that were silent, newly signal an error, or read without torque."""
-        answered = self.line.answered
-        if self.calm:
+        answered = self.readout.answered
+        if self.all_well:
             self._heard[:] = self._then
-        self.woke = watchdog > 0.0 and bool((now - self._heard[answered] > 0.9 * watchdog).any())
+        self.watchdog_may_have_fired = watchdog > 0.0 and bool(
+            (now - self._heard[answered] > 0.9 * watchdog).any()
+        )
         self._heard[answered], self._then = now, now
-        bits = np.where(answered, errors & self.line.bus.family.alert, self._bits)
+        bits = np.where(answered, errors & self.readout.bus.family.alert, self._bits)
         self._missed = np.where(answered, 0, self._missed + 1)
         self._silent |= late | (self._missed >= MISSES)
-        self.suspects |= self._silent | self.line.slack | ((bits & ~self._bits) != 0)
+        self.suspects |= self._silent | self.readout.without_torque | ((bits & ~self._bits) != 0)
         self.suspects &= ~self._lost
         self._bits = bits.astype(np.uint8)
-        self.line.slack[:] = False
+        self.readout.without_torque[:] = False
 
     def _is_time(self) -> bool:
         """Return whether to read back now: in a cycle that all answered, or after `PATIENCE`."""
         self._waited += 1
-        return self._waited >= PATIENCE or bool(self.line.answered.all())
+        return self._waited >= PATIENCE or bool(self.readout.answered.all())
 
     def _read_back(self, rows: list[int], watched: bool) -> None:
-        ids, self._waited = self.line.ids, 0
+        ids, self._waited = self.readout.ids, 0
         asked = [Suspect(ids[row], bool(self._silent[row])) for row in rows]
-        found = examine(self.line, asked, watched)
+        found = find_torque_losses(self.readout, asked, watched)
         for row in rows:
             if ids[row] in found:
                 self.suspects[row] = self._silent[row] = False
@@ -115,7 +117,7 @@ class TorqueCheck:
     def _settle(self) -> None:
         self.suspects &= ~self._lost
         self._silent &= self.suspects
-        enables = self.line.bus.family.goal_enables_torque
-        withheld = self.suspects | self._lost if enables else self._lost.copy()
+        wakes = self.readout.bus.family.goal_enables_torque
+        withheld = self.suspects | self._lost if wakes else self._lost.copy()
         self.withheld = withheld if withheld.any() else None
-        self.calm = not (self.suspects.any() or self._lost.any() or self._missed.any())
+        self.all_well = not (self.suspects.any() or self._lost.any() or self._missed.any())

@@ -60,7 +60,7 @@ class Units:
         self.damping: Array = ratio**2 * own
         self.gains: list[tuple[Gain, Rows]] = gain_groups(mounts)
 
-    def si(self, counts: Array) -> Array:
+    def to_si(self, counts: Array) -> Array:
         """Return position rad, velocity rad/s and torque N m (3, n) from counts (3, n)."""
         return np.asarray((counts - self.offset) * self.scale)
 

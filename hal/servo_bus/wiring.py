@@ -8,9 +8,9 @@ from shlex import quote
 import numpy as np
 
 from windup.hal.bus.bus import Bus
-from windup.hal.bus.differs import Differs
-from windup.hal.bus.servo_settings import Setting, differences, limits
-from windup.hal.bus.status_level import make_answer
+from windup.hal.bus.servo_differences import ServoDifferences
+from windup.hal.bus.servo_settings import SettingDifference, differences, limits
+from windup.hal.bus.status_return_level import enable_answers
 from windup.hal.errors import (
     ConfigError,
     CorruptAnswerError,
@@ -25,7 +25,7 @@ from windup.hal.servo_bus.coupling import Couplings
 from windup.hal.servo_bus.units import Units
 from windup.hal.servos.servo_model import ServoMount
 
-PROTOCOL_1 = "speaks protocol 1: set its Protocol Type (register 13) to 2 with DYNAMIXEL Wizard"
+PROTOCOL_1 = "uses protocol 1: set its Protocol Type (register 13) to 2 with DYNAMIXEL Wizard"
 """Message for an X series servo that answers in protocol 1."""
 
 
@@ -53,9 +53,9 @@ def check_mounts(
             raise ConfigError(
                 f"joints {first!r} and {second!r} both have id {one.id} on bus {one.bus!r}"
             )
-    extent = couplings.extent(joints.lower, joints.upper)
+    servo_range = couplings.servo_range(joints.lower, joints.upper)
     for row, (name, mount) in enumerate(named):
-        ends = sorted(float(units.counts(end)[row]) for end in extent)
+        ends = sorted(float(units.counts(end)[row]) for end in servo_range)
         bottom, top = mount.first_count, mount.last_count
         if ends[0] < bottom or ends[1] > top:
             raise ConfigError(
@@ -86,7 +86,7 @@ def _check_families(named: Sequence[tuple[str, ServoMount]]) -> None:
 
 def check_servos(
     joints: Joints, mounts: Sequence[ServoMount], buses: Mapping[str, Bus], board: OpenCr | None
-) -> list[Differs]:
+) -> list[ServoDifferences]:
     """Check every servo, and return the settings that have to be written to each.
 
     Nothing is written except the status return level of a servo that does not answer reads.
@@ -96,18 +96,18 @@ def check_servos(
             is on; one message lists all such servos, with the command to run next.
     """
     problems: dict[str, list[str]] = {}
-    found: list[Differs] = []
+    found: list[ServoDifferences] = []
     for name, mount in zip(joints.names, mounts, strict=True):
         bus = buses[mount.bus]
         try:
-            found.append(Differs(bus, mount.id, name, *_inspect(bus, mount)))
+            found.append(ServoDifferences(bus, mount.id, name, *_inspect(bus, mount)))
         except HardwareError as error:
             who = f"joint {name!r} id {mount.id}: {_short(error)}"
             problems.setdefault(bus.port.url, []).append(who)
     if board is not None:
         bus = buses[board.bus]
         if bus.family is not DYNAMIXEL_X:
-            raise ConfigError(f"an OpenCR cannot sit on bus {board.bus!r} of {bus.family.name}")
+            raise ConfigError(f"an OpenCR cannot be on bus {board.bus!r} of {bus.family.name}")
         try:
             bus.ping(board.id)
         except HardwareError as error:
@@ -118,7 +118,9 @@ def check_servos(
     return found
 
 
-def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting], str]:
+def _inspect(
+    bus: Bus, mount: ServoMount
+) -> tuple[list[SettingDifference], list[SettingDifference], str]:
     try:
         number = bus.ping(mount.id)
     except NoAnswerError:
@@ -133,19 +135,24 @@ def _inspect(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting],
         return _settings(bus, mount)
     except NoAnswerError as error:
         raise HardwareError(
-            f"answers a ping, but not every question after it{_strange(error)}; a loose cable, or "
-            "a weak supply?"
+            f"answers pings, but not all other requests{_extra_bytes(error)}; a loose cable, or a "
+            "weak supply?"
         ) from None
 
 
-def _settings(bus: Bus, mount: ServoMount) -> tuple[list[Setting], list[Setting], str]:
+def _settings(
+    bus: Bus, mount: ServoMount
+) -> tuple[list[SettingDifference], list[SettingDifference], str]:
     """Return the settings to write, the unusual protection limits, and what was repaired."""
-    repaired = make_answer(bus, mount.id, mount.model)
+    repaired = enable_answers(bus, mount.id, mount.model)
     _check_offset(bus, mount)
     settings = differences(bus, mount)
     locked = [str(setting) for setting in settings if setting.register.area == "eeprom"]
     if locked and bus.read(mount.id, bus.family.registers["torque_enable"]):
-        raise HardwareError(f"torque is on and {', '.join(locked)}; `windup stop` first")
+        raise HardwareError(
+            f"cannot correct {', '.join(locked)} while torque is on; "
+            "switch it off with `windup stop` first"
+        )
     return settings, limits(bus, mount.id, mount.model), repaired
 
 
@@ -171,19 +178,20 @@ def _check_offset(bus: Bus, mount: ServoMount) -> None:
 
 def _short(error: HardwareError) -> str:
     if isinstance(error, NoAnswerError):
-        return f"no answer{_strange(error)}"
+        return f"no answer{_extra_bytes(error)}"
     if isinstance(error, CorruptAnswerError):
-        return "only broken answers (two servos with this id?)"
+        return "only corrupt answers (two servos with this id?)"
     return str(error)
 
 
-def _strange(error: NoAnswerError) -> str:
-    return f", but {error.came} bytes that are none" if error.came else ""
+def _extra_bytes(error: NoAnswerError) -> str:
+    return f", but {error.extra_bytes} bytes that do not belong to one" if error.extra_bytes else ""
 
 
 def _sentence(url: str, problems: list[str]) -> str:
     count = f"{len(problems)} thing{'s' if len(problems) > 1 else ''}"
-    return f"{url}: {count} not as wired: {'; '.join(problems)}; run `windup scan {quote(url)}`"
+    listed = "; ".join(problems)
+    return f"{url}: {count} not as in robot.toml: {listed}; run `windup scan {quote(url)}`"
 
 
 def row_groups(mounts: Sequence[ServoMount]) -> dict[str, list[int]]:

@@ -14,7 +14,7 @@ armature and friction scaled by stall torque. Identify it before relying on a tw
 
 from math import pi
 
-from windup.hal.servos.servo_model import OwnLimits, Row, ServoModel
+from windup.hal.servos.servo_model import DatasheetRow, ProtectionLimits, ServoModel
 
 GAIN = 4096 / (2.0 * pi) / 4000
 """Duty per rad of error and unit of P: 0.16297."""
@@ -22,12 +22,12 @@ GAIN = 4096 / (2.0 * pi) / 4000
 GOAL_SPEED = 3400 * 2.0 * pi / 4096
 """Maximum speed of the internal goal of an STS at factory defaults (measured by bam), rad/s."""
 
-STS3215_7V4 = (Row.of(6.0, 1.6, 55 * 6.0 / 7.4), Row.of(7.4, 1.91, 55))
-STS3215_12V = (Row.of(12.0, 2.94, 45, 2.7),)
-STS3250_12V = (Row.of(12.0, 4.9, 75),)
-SCS0009_6V = (Row.of(6.0, 0.226, 100),)
+STS3215_7V4 = (DatasheetRow.of(6.0, 1.6, 55 * 6.0 / 7.4), DatasheetRow.of(7.4, 1.91, 55))
+STS3215_12V = (DatasheetRow.of(12.0, 2.94, 45, 2.7),)
+STS3250_12V = (DatasheetRow.of(12.0, 4.9, 75),)
+SCS0009_6V = (DatasheetRow.of(6.0, 0.226, 100),)
 SCS_COUNTS_PER_REV = 1024 * 360 / 300
-LIMITS_7V4, LIMITS_12V = OwnLimits(70.0, 4.0, 8.0), OwnLimits(70.0, 4.0, 14.0)
+LIMITS_7V4, LIMITS_12V = ProtectionLimits(70.0, 4.0, 8.0), ProtectionLimits(70.0, 4.0, 14.0)
 """Registers 13 to 15 of Feetech's memory tables; the maximum voltage depends on the winding."""
 
 # name, model number, rows, duty per rad and P, default P, armature kg m2, friction N m

@@ -11,7 +11,7 @@ published fit of AX-12A or MX-28: they use those of the MX-64, scaled by stall t
 
 from math import pi
 
-from windup.hal.servos.servo_model import OwnLimits, Row, ServoModel
+from windup.hal.servos.servo_model import DatasheetRow, ProtectionLimits, ServoModel
 
 GAIN = 4096 / (2.0 * pi) / 8 / 511
 """Duty per rad of error and unit of P: 0.1595."""
@@ -20,12 +20,24 @@ AX_GAIN = AX_COUNTS_PER_REV / (2.0 * pi) / 1024
 """Duty per rad of error and unit of 1024 / slope: 0.1910."""
 MAX_DUTY = 0.9625
 
-AX_12A = (Row.of(12.0, 1.5, 59, 1.5),)
-MX_28 = (Row.of(11.1, 2.3, 50, 1.3), Row.of(12.0, 2.5, 55, 1.4), Row.of(14.8, 3.1, 67, 1.7))
-MX_64 = (Row.of(11.1, 5.5, 58, 3.9), Row.of(12.0, 6.0, 63, 4.1), Row.of(14.8, 7.3, 78, 5.2))
-MX_106 = (Row.of(11.1, 8.0, 41, 4.8), Row.of(12.0, 8.4, 45, 5.2), Row.of(14.8, 10.0, 55, 6.3))
+AX_12A = (DatasheetRow.of(12.0, 1.5, 59, 1.5),)
+MX_28 = (
+    DatasheetRow.of(11.1, 2.3, 50, 1.3),
+    DatasheetRow.of(12.0, 2.5, 55, 1.4),
+    DatasheetRow.of(14.8, 3.1, 67, 1.7),
+)
+MX_64 = (
+    DatasheetRow.of(11.1, 5.5, 58, 3.9),
+    DatasheetRow.of(12.0, 6.0, 63, 4.1),
+    DatasheetRow.of(14.8, 7.3, 78, 5.2),
+)
+MX_106 = (
+    DatasheetRow.of(11.1, 8.0, 41, 4.8),
+    DatasheetRow.of(12.0, 8.4, 45, 5.2),
+    DatasheetRow.of(14.8, 10.0, 55, 6.3),
+)
 
-AX_LIMITS, MX_LIMITS = OwnLimits(70.0, 6.0, 14.0), OwnLimits(80.0, 6.0, 16.0)
+AX_LIMITS, MX_LIMITS = ProtectionLimits(70.0, 6.0, 14.0), ProtectionLimits(80.0, 6.0, 16.0)
 """Initial values of registers 11 to 13 in the e-Manual."""
 
 # name, model number, rows, duty per rad and P, default P, armature kg m2, friction N m

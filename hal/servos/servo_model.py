@@ -12,7 +12,7 @@ EXTENDED_COUNTS = 1_048_575
 """Largest goal in extended position mode, counts: 256 turns (e-Manual XM430, Goal Position)."""
 
 
-class OwnLimits(NamedTuple):
+class ProtectionLimits(NamedTuple):
     """Limits at which a servo protects itself: factory defaults of its limit registers.
 
     Attributes:
@@ -27,7 +27,7 @@ class OwnLimits(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class DatasheetRow:
     """One row of a data sheet, at the output shaft.
 
     Attributes:
@@ -43,7 +43,7 @@ class Row:
     stall_current: float | None = None
 
     @classmethod
-    def of(cls, volt: float, stall: float, rpm: float, amp: float | None = None) -> "Row":
+    def of(cls, volt: float, stall: float, rpm: float, amp: float | None = None) -> "DatasheetRow":
         """Return a row from data sheet units: V, N m, rpm, A."""
         return cls(volt, stall, rpm * RPM, amp)
 
@@ -102,7 +102,7 @@ class ServoModel:
 
     name: str
     model_number: int
-    rows: tuple[Row, ...]
+    rows: tuple[DatasheetRow, ...]
     error_gain: float
     p_default: int
     armature: float
@@ -111,7 +111,7 @@ class ServoModel:
     pwm_limit: float = 1.0
     encoder_counts: int = 4096
     goal_speed: float = np.inf
-    limits: OwnLimits | None = None
+    limits: ProtectionLimits | None = None
 
     def motor(self, voltage: float) -> Motor:
         """Return the motor at a supply of `voltage` V.

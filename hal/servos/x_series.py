@@ -16,46 +16,82 @@ scales with the square of the gear ratio, friction with the ratio.
 
 from math import pi
 
-from windup.hal.servos.servo_model import OwnLimits, Row, ServoModel
+from windup.hal.servos.servo_model import DatasheetRow, ProtectionLimits, ServoModel
 
 COUNTS_PER_RAD = 4096 / (2.0 * pi)
 FULL_SCALE = 885
 GAIN = COUNTS_PER_RAD / 128 / FULL_SCALE
 """Duty per rad of error and unit of P: 0.005755."""
 
-XM430_W350 = (Row.of(11.1, 3.8, 43, 2.1), Row.of(12.0, 4.1, 46, 2.3), Row.of(14.8, 4.8, 57, 2.7))
-XM430_W210 = (Row.of(11.1, 2.7, 70, 2.1), Row.of(12.0, 3.0, 77, 2.3), Row.of(14.8, 3.7, 95, 2.7))
-XL430_W250 = (Row.of(9.0, 1.0, 47, 1.0), Row.of(11.1, 1.4, 57, 1.3), Row.of(12.0, 1.5, 61, 1.4))
-XC430_W240 = (Row.of(9.0, 1.4, 52, 1.1), Row.of(11.1, 1.7, 65, 1.3), Row.of(12.0, 1.9, 70, 1.4))
-TWO_XC430 = (Row.of(9.0, 1.3, 48, 1.1), Row.of(11.1, 1.6, 59, 1.3), Row.of(12.0, 1.8, 64, 1.4))
+XM430_W350 = (
+    DatasheetRow.of(11.1, 3.8, 43, 2.1),
+    DatasheetRow.of(12.0, 4.1, 46, 2.3),
+    DatasheetRow.of(14.8, 4.8, 57, 2.7),
+)
+XM430_W210 = (
+    DatasheetRow.of(11.1, 2.7, 70, 2.1),
+    DatasheetRow.of(12.0, 3.0, 77, 2.3),
+    DatasheetRow.of(14.8, 3.7, 95, 2.7),
+)
+XL430_W250 = (
+    DatasheetRow.of(9.0, 1.0, 47, 1.0),
+    DatasheetRow.of(11.1, 1.4, 57, 1.3),
+    DatasheetRow.of(12.0, 1.5, 61, 1.4),
+)
+XC430_W240 = (
+    DatasheetRow.of(9.0, 1.4, 52, 1.1),
+    DatasheetRow.of(11.1, 1.7, 65, 1.3),
+    DatasheetRow.of(12.0, 1.9, 70, 1.4),
+)
+TWO_XC430 = (
+    DatasheetRow.of(9.0, 1.3, 48, 1.1),
+    DatasheetRow.of(11.1, 1.6, 59, 1.3),
+    DatasheetRow.of(12.0, 1.8, 64, 1.4),
+)
 XC330_T288 = (
-    Row.of(9.0, 0.76, 52, 0.61),
-    Row.of(11.1, 0.92, 65, 0.80),
-    Row.of(12.0, 1.0, 71, 0.88),
+    DatasheetRow.of(9.0, 0.76, 52, 0.61),
+    DatasheetRow.of(11.1, 0.92, 65, 0.80),
+    DatasheetRow.of(12.0, 1.0, 71, 0.88),
 )
-XC330_M288 = (Row.of(3.7, 0.69, 59, 1.34), Row.of(5, 0.93, 81, 1.8), Row.of(6, 1.1, 97, 2.15))
+XC330_M288 = (
+    DatasheetRow.of(3.7, 0.69, 59, 1.34),
+    DatasheetRow.of(5, 0.93, 81, 1.8),
+    DatasheetRow.of(6, 1.1, 97, 2.15),
+)
 XL330_M288 = (
-    Row.of(3.7, 0.42, 76, 1.11),
-    Row.of(5.0, 0.52, 103, 1.47),
-    Row.of(6.0, 0.6, 123, 1.74),
+    DatasheetRow.of(3.7, 0.42, 76, 1.11),
+    DatasheetRow.of(5.0, 0.52, 103, 1.47),
+    DatasheetRow.of(6.0, 0.6, 123, 1.74),
 )
-XC430_W150 = (Row.of(9.0, 1.2, 80, 1.1), Row.of(11.1, 1.4, 99, 1.3), Row.of(12.0, 1.6, 106, 1.4))
+XC430_W150 = (
+    DatasheetRow.of(9.0, 1.2, 80, 1.1),
+    DatasheetRow.of(11.1, 1.4, 99, 1.3),
+    DatasheetRow.of(12.0, 1.6, 106, 1.4),
+)
 XL330_M077 = (
-    Row.of(3.7, 0.18, 278, 1.11),
-    Row.of(5.0, 0.215, 383, 1.47),
-    Row.of(6.0, 0.228, 456, 1.74),
+    DatasheetRow.of(3.7, 0.18, 278, 1.11),
+    DatasheetRow.of(5.0, 0.215, 383, 1.47),
+    DatasheetRow.of(6.0, 0.228, 456, 1.74),
 )
-XM540_W150 = (Row.of(11.1, 6.9, 50, 4.2), Row.of(12.0, 7.3, 53, 4.4), Row.of(14.8, 8.9, 66, 5.5))
+XM540_W150 = (
+    DatasheetRow.of(11.1, 6.9, 50, 4.2),
+    DatasheetRow.of(12.0, 7.3, 53, 4.4),
+    DatasheetRow.of(14.8, 8.9, 66, 5.5),
+)
 XM540_W270 = (
-    Row.of(11.1, 10.0, 28, 4.2),
-    Row.of(12.0, 10.6, 30, 4.4),
-    Row.of(14.8, 12.9, 37, 5.5),
+    DatasheetRow.of(11.1, 10.0, 28, 4.2),
+    DatasheetRow.of(12.0, 10.6, 30, 4.4),
+    DatasheetRow.of(14.8, 12.9, 37, 5.5),
 )
-XH540_W270 = (Row.of(11.1, 9.2, 36, 4.5), Row.of(12.0, 9.9, 39, 4.9), Row.of(14.8, 11.7, 46, 5.9))
+XH540_W270 = (
+    DatasheetRow.of(11.1, 9.2, 36, 4.5),
+    DatasheetRow.of(12.0, 9.9, 39, 4.9),
+    DatasheetRow.of(14.8, 11.7, 46, 5.9),
+)
 
-XM, XC430 = OwnLimits(80.0, 9.5, 16.0), OwnLimits(80.0, 6.0, 16.0)
-XL430, XC330_T = OwnLimits(72.0, 6.0, 14.0), OwnLimits(70.0, 5.5, 14.0)
-X330_M = OwnLimits(70.0, 3.5, 7.0)
+XM, XC430 = ProtectionLimits(80.0, 9.5, 16.0), ProtectionLimits(80.0, 6.0, 16.0)
+XL430, XC330_T = ProtectionLimits(72.0, 6.0, 14.0), ProtectionLimits(70.0, 5.5, 14.0)
+X330_M = ProtectionLimits(70.0, 3.5, 7.0)
 
 # name, model number, rows, duty per rad and P, default P, armature kg m2, friction N m
 X_SERIES = (

@@ -8,15 +8,15 @@ import msgspec
 import numpy as np
 
 from windup.hal.command import FIELDS as ROWS
-from windup.hal.guard import Kind
-from windup.hal.guard.finding import SAYINGS
+from windup.hal.guard import HealthKind
+from windup.hal.guard.finding import FINDING_TEXTS
 from windup.hal.guard.imu_watch import IMU_KINDS
 from windup.hal.publishing.controller_block import MOST_VALUES
 from windup.hal.publishing.run_state import RunState
 from windup.hal.telemetry.fields import Field, fields_of
 
 STATES = tuple(state.words for state in RunState)
-WARNING_KINDS = (*(SAYINGS[kind].name for kind in Kind), *IMU_KINDS)
+WARNING_KINDS = (*(FINDING_TEXTS[kind].name for kind in HealthKind), *IMU_KINDS)
 
 
 class Header(msgspec.Struct, frozen=True, kw_only=True):

@@ -4,7 +4,7 @@ from math import nan
 
 import numpy as np
 
-from windup.hal.guard import GuardedBackend, Kind
+from windup.hal.guard import GuardedBackend, HealthKind
 from windup.hal.guard.imu_watch import IMU_KINDS, ImuWatch
 from windup.hal.joints import Mask
 from windup.hal.observation import JointState, Observation
@@ -12,7 +12,7 @@ from windup.hal.telemetry.record import Record
 
 PERIOD = 0.1
 """Time between two updates of supply and hottest joint, s: they change slowly."""
-POWERS = np.uint32(1) << np.arange(len(Kind), dtype=np.uint32)
+POWERS = np.uint32(1) << np.arange(len(HealthKind), dtype=np.uint32)
 
 
 class TickHealth:
@@ -49,7 +49,7 @@ class TickHealth:
             self._note_joints(watch.present)
         if self._imu is not None and self._imu.present != self._name:
             self._name = self._imu.present
-            self._of_imu = 1 << len(Kind) + IMU_KINDS.index(self._name) if self._name else 0
+            self._of_imu = 1 << len(HealthKind) + IMU_KINDS.index(self._name) if self._name else 0
         self.warnings = self._of_joints | self._of_imu
 
     def _look(self, joints: JointState) -> None:

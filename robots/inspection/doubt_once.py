@@ -6,7 +6,7 @@ from pathlib import Path
 
 from windup.robots import RobotDescription
 from windup.robots.folders import FOLDER
-from windup.robots.inspection.doubts import doubts
+from windup.robots.inspection.robot_warnings import robot_warnings
 
 _looked_at: set[Path] = set()
 
@@ -20,7 +20,7 @@ def doubt_once(robot: RobotDescription) -> None:
     if folder.parent == FOLDER.resolve() or folder in _looked_at:
         return
     _looked_at.add(folder)
-    if count := len(doubts(robot)):
+    if count := len(robot_warnings(robot)):
         what = "1 thing is" if count == 1 else f"{count} things are"
         logging.getLogger(__name__).warning(
             "%s doubtful about %s: run `windup check %s`",

@@ -9,13 +9,18 @@ from typing import Any, TypeVar
 import msgspec
 import mujoco
 
-from windup.hal.config import not_finite, read_toml
+from windup.hal.config import non_finite_numbers, read_toml
 from windup.hal.errors import ConfigError
 from windup.hal.key_mistakes import key_mistakes, without_unknown
 from windup.robots import mjcf
 from windup.robots.checks import Checks
 from windup.robots.completion import complete_for
-from windup.robots.description import RobotDescription, describe, filled_in, limited
+from windup.robots.description import (
+    RobotDescription,
+    describe,
+    with_drive_defaults,
+    with_mjcf_limits,
+)
 from windup.robots.folders import FILE
 from windup.robots.mjcf_numbers import wrong_numbers
 from windup.robots.records import RobotFile
@@ -25,7 +30,7 @@ MODEL = "model.xml"
 
 
 @dataclass(frozen=True)
-class Reading:
+class FolderContents:
     """The valid parts of a robot folder, and its mistakes.
 
     Attributes:
@@ -43,29 +48,29 @@ class Reading:
     unlimited: tuple[str, ...] = ()
 
 
-def read_folder(folder: Path) -> Reading:
+def read_folder(folder: Path) -> FolderContents:
     """Return the valid parts and all mistakes of the robot in `folder`."""
     try:
         data = read_toml(folder / FILE)
     except ConfigError as error:
         mistakes, model = _model(folder, MODEL, None)
-        return Reading((relative(folder, error), *mistakes), model=model)
+        return FolderContents((relative(folder, error), *mistakes), model=model)
     wrong, file = decode(FILE, data, RobotFile)
     if file is None:
         named = data.get("model", MODEL)
         mistakes, model = _model(folder, named, None) if isinstance(named, str) else ((), None)
-        return Reading((*wrong, *mistakes), model=model)
-    file = filled_in(file)
+        return FolderContents((*wrong, *mistakes), model=model)
+    file = with_drive_defaults(file)
     mistakes, model = _model(folder, file.model, file)
     if model is None:
-        return Reading((*wrong, *mistakes), file)
+        return FolderContents((*wrong, *mistakes), file)
     unlimited = tuple(joint.name for joint in file.joint if isnan(joint.lower + joint.upper))
-    file = limited(file, model)
+    file = with_mjcf_limits(file, model)
     found = dict.fromkeys(Checks(folder / FILE, file, model).mistakes())
     crossed = tuple(f"{FILE}: {key}: {mistake}" for key, mistake in found)
     sound = not (mistakes or crossed)
     robot = describe(folder, file, model) if sound else None
-    return Reading((*wrong, *mistakes, *crossed), file, model, robot, unlimited)
+    return FolderContents((*wrong, *mistakes, *crossed), file, model, robot, unlimited)
 
 
 def decode(name: str, data: Any, record: type[T]) -> tuple[tuple[str, ...], T | None]:
@@ -79,7 +84,7 @@ def decode(name: str, data: Any, record: type[T]) -> tuple[tuple[str, ...], T | 
     Returns:
         One line for each mistake; and the record, or None if it cannot be decoded.
     """
-    infinite = dict(not_finite(data))
+    infinite = dict(non_finite_numbers(data))
     found = list(key_mistakes(data, record))
     others = [mistake for mistake in found if mistake.key not in infinite]
     lines = [f"{name}: {key}: {why}" for key, why in infinite.items()]

@@ -2,7 +2,7 @@
 
 import mujoco
 
-from windup.robots.couplings import bring_in_step
+from windup.robots.couplings import satisfy_couplings
 from windup.robots.description import RobotDescription
 
 
@@ -12,7 +12,7 @@ def in_stance(robot: RobotDescription) -> tuple[mujoco.MjModel, mujoco.MjData]:
     data = mujoco.MjData(model)
     for name, angle in zip(robot.joints.names, robot.stance, strict=True):
         data.joint(name).qpos[0] = angle
-    bring_in_step(model, data.qpos, robot.joints.names)
+    satisfy_couplings(model, data.qpos, robot.joints.names)
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
     return model, data

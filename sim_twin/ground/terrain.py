@@ -89,7 +89,9 @@ class Ground:
             return
         floor = next((g for g in spec.geoms if g.type == mujoco.mjtGeom.mjGEOM_PLANE), None)
         if floor is None:
-            raise UsageError("the MJCF has no plane to make other ground of; add one as its floor")
+            raise UsageError(
+                "the MJCF has no plane that other ground could replace; add one as its floor"
+            )
         begin = self.start - BEHIND
         self._tile(spec, floor, begin, 0.0, BEHIND, 0.0)
         if self.rough:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from windup.sim_twin.wire.world.address import Address, parse_address
     from windup.sim_twin.wire.world.build import build_world
     from windup.sim_twin.wire.world.bus_world import BusWorld
-    from windup.sim_twin.wire.world.worlds import drop_world, find_world, put_world
+    from windup.sim_twin.wire.world.worlds import find_world, register_world, unregister_world
 
 HANDLERS = f"{__name__}.serve"
 if HANDLERS not in serial.protocol_handler_packages:
@@ -36,10 +36,10 @@ PLACES: Final = {
     "Address": "address",
     "BusWorld": "bus_world",
     "build_world": "build",
-    "drop_world": "worlds",
+    "unregister_world": "worlds",
     "find_world": "worlds",
     "parse_address": "address",
-    "put_world": "worlds",
+    "register_world": "worlds",
 }
 """Public name to its module in `windup.sim_twin.wire.world`."""
 
@@ -47,10 +47,10 @@ __all__ = [
     "Address",
     "BusWorld",
     "build_world",
-    "drop_world",
     "find_world",
     "parse_address",
-    "put_world",
+    "register_world",
+    "unregister_world",
 ]
 
 

@@ -20,7 +20,7 @@ class Device(Protocol):
         ...
 
     @property
-    def shadow(self) -> int:
+    def secondary_id(self) -> int:
         """Secondary id, whose instructions it executes without answering; 253 and up: none."""
         ...
 
@@ -120,8 +120,8 @@ class Device(Protocol):
         """Run one step of the control loop."""
         ...
 
-    def watch(self, now: float, dt: float, heard: float) -> None:
-        """Check protection and watchdog, periodically; `heard`: time of the last instruction, s."""
+    def watch(self, now: float, dt: float, last_instruction: float) -> None:
+        """Check protection and watchdog, periodically; `last_instruction` is a time, s."""
         ...
 
     def set_supply(self, volts: float, now: float) -> None:

@@ -22,7 +22,7 @@ class Schedule:
         """Time of the next action, s; infinity if there is none."""
         return self._queue[0][0] if self._queue else math.inf
 
-    def at(self, time: float, action: Callable[[], object]) -> None:
+    def add(self, time: float, action: Callable[[], object]) -> None:
         """Schedule `action` for `time`, s, or for now if that has passed."""
         self._count += 1
         heapq.heappush(self._queue, (max(time, self.now), self._count, action))

@@ -12,12 +12,12 @@ from windup.hal.joints import Joint, Joints
 from windup.hal.servo_bus.coupling import Coupling, Couplings
 from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
 from windup.hal.servos.servo_model import ServoMount
-from windup.sim_twin.wire import put_world
+from windup.sim_twin.wire import register_world
 from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
-from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
+from windup.sim_twin.wire.world.bus_world import BenchPhysics, BusWorld
 from windup.sim_twin.wire.world.families import make_protocol, make_servo
 from windup.sim_twin.wire.world.own_emulations import PROTOCOLS
 
@@ -74,7 +74,7 @@ ANKLE: Final = Coupling("ankle_pitch", "ankle_roll", ((1.0, 0.5), (1.0, -0.5)))
 def bench_robot(places: Sequence[Place], couplings: Sequence[Coupling] = ()) -> ServoBackend:
     """Return the driver of a robot, not yet connected, and put its world where it finds it."""
     name, supply = f"bench-robot-{next(_worlds)}", _supply(places)
-    put_world(name, _world(places, supply))
+    register_world(name, _world(places, supply))
     joints = _joints(places, couplings, supply)
     mounts = [place.mount for place in places]
     ports = {
@@ -114,7 +114,7 @@ def _world(places: Sequence[Place], supply: float) -> BusWorld:
         name: Bus(name, devices, make_protocol(protocols[name]), schedule, BAUD)
         for name, devices in hung.items()
     }
-    return BusWorld(Bench(shafts), schedule, buses, supply)
+    return BusWorld(BenchPhysics(shafts), schedule, buses, supply)
 
 
 Opener = Callable[[], ServoBackend]

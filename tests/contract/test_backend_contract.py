@@ -242,7 +242,7 @@ def test_a_guard_before_it_refuses_what_has_another_shape(backend: Backend, extr
     with pytest.raises(UnsafeCommandError) as error:
         guard.write(JointCommand(np.ones((5, n + extra))))
     assert str(error.value) == (
-        f"a command of shape (5, {n + extra}) for {n} joints; it has to be (5, {n})"
+        f"a command of shape (5, {n + extra}) for {n} joints; its shape has to be (5, {n})"
     )
     np.testing.assert_allclose(backend.read().joints.position, before, atol=0.01)
 

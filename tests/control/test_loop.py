@@ -187,7 +187,7 @@ def test_what_the_guard_refuses_ends_the_run() -> None:
             block[0, 3] = np.nan
             return JointCommand(block)
 
-    with pytest.raises(UnsafeCommandError, match="'r_hip' for position nan; refused"):
+    with pytest.raises(UnsafeCommandError, match="position nan for joint 'r_hip'"):
         run(guard(), Broken())
 
 

@@ -10,14 +10,14 @@ import pytest
 
 from tests.docs.pages import PAGES, read
 from windup.control.pose_graph.gait_file import GaitFile
-from windup.hal.config import Record
+from windup.hal.config import TomlRecord
 from windup.robots.levels import Level
-from windup.robots.records import RobotFile, Shares
+from windup.robots.records import RobotFile, StiffnessShares
 
 TABLE = re.compile(r"<!-- keys: ([\w.]+)\.(\w+) -->\n\n((?:\|.*\n)+)")
 ROW = re.compile(r"^\| `(\w+)` \| (.*?) \|", flags=re.MULTILINE)
 FIELDS = re.compile(r"<!-- fields: ([\w.]+)\.(\w+) -->\n\n\|.*\n\|.*\n((?:\|.*\n)+)")
-IN_A_ROW = {Shares, Level}
+IN_A_ROW = {StiffnessShares, Level}
 """Records that are so small that the row of their key explains them."""
 FOUND = {
     f"{module}.{name}": rows for page in PAGES for module, name, rows in TABLE.findall(read(page))
@@ -82,7 +82,7 @@ def nested(kind: Any, seen: set[Any]) -> set[Any]:
     """Return a record and all records inside it."""
     for inner in getattr(kind, "__args__", ()):
         nested(inner, seen)
-    if isinstance(kind, type) and issubclass(kind, Record) and kind not in seen:
+    if isinstance(kind, type) and issubclass(kind, TomlRecord) and kind not in seen:
         seen.add(kind)
         for field in msgspec.structs.fields(kind):
             nested(field.type, seen)

@@ -52,7 +52,7 @@ def test_a_command_has_what_it_is_made_of_and_cannot_be_changed() -> None:
 
 def test_the_same_command_at_another_position_leaves_the_first_alone() -> None:
     first = JointCommand.of(JOINTS, position=0.1, torque=0.3)
-    other = first.at(np.full(N, 0.7))
+    other = first.with_position(np.full(N, 0.7))
     np.testing.assert_array_equal(other.position, np.full(N, 0.7))
     np.testing.assert_array_equal(other.block[1:], first.block[1:])
     np.testing.assert_array_equal(first.position, np.full(N, 0.1))

@@ -81,7 +81,10 @@ def test_what_is_no_number_is_refused_and_not_sent(value: float) -> None:
     command = hold("torque", 4, value)
     with pytest.raises(UnsafeCommandError) as error:
         guard.write(command)
-    assert str(error.value) == f"the controller asked joint 'r_knee' for torque {value}; refused"
+    assert (
+        str(error.value)
+        == f"the controller commanded torque {value} for joint 'r_knee'; give finite values"
+    )
     assert fake(guard).written == []
 
 
@@ -90,7 +93,9 @@ def test_infinity_is_refused_at_a_joint_without_a_limit_too() -> None:
     backend = FakeBackend(joints=free)
     guard = GuardedBackend(backend, SafetyLimits.of(free))
     command = JointCommand.of(free, position=0.0, torque=np.inf)
-    with pytest.raises(UnsafeCommandError, match="asked joint 'hip' for torque inf; refused"):
+    with pytest.raises(
+        UnsafeCommandError, match="commanded torque inf for joint 'hip'; give finite values"
+    ):
         guard.write(command)
     assert backend.written == []
 
@@ -100,7 +105,9 @@ def test_a_command_of_another_shape_is_refused(shape: tuple[int, ...]) -> None:
     guard = guarded()
     with pytest.raises(UnsafeCommandError) as error:
         guard.write(JointCommand(np.zeros(shape)))
-    assert str(error.value) == (f"a command of shape {shape} for {N} joints; it has to be {(5, N)}")
+    assert str(error.value) == (
+        f"a command of shape {shape} for {N} joints; its shape has to be {(5, N)}"
+    )
     assert fake(guard).written == []
 
 
@@ -259,7 +266,7 @@ def test_an_answer_lost_after_a_long_arming_is_no_reason_to_stop() -> None:
         seen = servo_state.seen(servos.clock.now())
         return replace(seen, joints=replace(seen.joints, age=np.array([0.0, late, 0.0])))
 
-    guard.admit()
+    guard.check_before_arming()
     servos.collect = collect  # type: ignore[method-assign]
     guard.watch = None
     assert guard.set_torque(True).all_on

@@ -6,17 +6,17 @@ import msgspec
 import pytest
 from msgspec import Meta
 
-from windup.hal.config import Record
+from windup.hal.config import TomlRecord
 from windup.hal.key_mistakes import key_mistakes, without_unknown
 
 
-class Leg(Record, frozen=True):
+class Leg(TomlRecord, frozen=True):
     name: str
     length: Annotated[float, Meta(gt=0.0)] = 1.0
     lean: tuple[float, float] | None = None
 
 
-class Robot(Record, frozen=True):
+class Robot(TomlRecord, frozen=True):
     title: str
     leg: tuple[Leg, ...] = ()
     pose: dict[str, float] | list[float] = {}

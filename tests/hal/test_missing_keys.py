@@ -3,16 +3,16 @@ from typing import Annotated
 import pytest
 from msgspec import Meta
 
-from windup.hal.config import Record
+from windup.hal.config import TomlRecord
 from windup.hal.key_mistakes import key_mistakes
 
 
-class Wheel(Record, frozen=True):
+class Wheel(TomlRecord, frozen=True):
     radius: Annotated[float, Meta(gt=0.0)]
     spokes: int = 8
 
 
-class Cart(Record, frozen=True):
+class Cart(TomlRecord, frozen=True):
     name: str
     weight: float | None
     wheels: tuple[Wheel, ...]

@@ -114,7 +114,7 @@ def test_crouching_is_not_falling(op3: RobotDescription) -> None:
 def test_a_rate_must_be_a_whole_number_of_physics_steps(op3: RobotDescription) -> None:
     assert op3.physics_steps() == 2
     assert op3.physics_steps(125.0) == 4
-    with pytest.raises(UsageError, match="300 Hz is no whole number of physics steps of 2 ms"):
+    with pytest.raises(UsageError, match="300 Hz is not a whole number of physics steps of 2 ms"):
         op3.physics_steps(300.0)
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from tests.robots.test_robot_errors import MJCF, TOML
 from windup.hal.errors import ConfigError
-from windup.hal.guard import Kind
+from windup.hal.guard import HealthKind
 from windup.robots import load_robot
 
 
@@ -16,8 +16,8 @@ def hopper(folder: Path, safety: str) -> Path:
 
 def test_levels_of_the_file_are_those_of_its_joints(tmp_path: Path) -> None:
     robot = load_robot(hopper(tmp_path, "temperature = { warn = 50, stop = 60 }\nidle = 3.0"))
-    assert robot.health.stop[Kind.TEMPERATURE].tolist() == [60.0, 60.0]
-    assert robot.health.stop[Kind.LOAD].tolist() == [0.75, 0.75], "by default the servos' own"
+    assert robot.health.stop[HealthKind.TEMPERATURE].tolist() == [60.0, 60.0]
+    assert robot.health.stop[HealthKind.LOAD].tolist() == [0.75, 0.75], "by default the servos' own"
     assert robot.safety.idle == 3.0
 
 

@@ -8,7 +8,7 @@ import pytest
 from tests.shapes import ARM, QUADRUPED, THIRTY, Limb, Shape, write_shape
 from windup.hal.errors import ConfigError
 from windup.robots import load_robot
-from windup.robots.inspection.doubts import doubts
+from windup.robots.inspection.robot_warnings import robot_warnings
 
 TOE = '<body name="toe" pos="0 0 0.1"><joint name="toe" {}/><geom size="0.01" mass="0.01"/></body>'
 
@@ -38,7 +38,7 @@ MISTAKES = {
         "robot.toml",
         "dynamixel2",
         "feetech",
-        'a XM430-W350 speaks "dynamixel2", and bus \'body\' has protocol "feetech"',
+        'a XM430-W350 uses protocol "dynamixel2", and bus \'body\' has protocol "feetech"',
     ),
     "a rate that no servo has": (
         ARM,
@@ -88,7 +88,7 @@ def test_a_mistake_is_one_line(
 
 def test_no_joint_is_one_line(tmp_path: Path) -> None:
     folder = write_shape(tmp_path / "robot", Shape("stone", ()))
-    with pytest.raises(ConfigError, match=r"joint: is missing: a robot has at least one"):
+    with pytest.raises(ConfigError, match=r"joint: is missing: a robot needs at least one"):
         load_robot(folder)
 
 
@@ -146,14 +146,14 @@ def test_sensors_that_the_mjcf_lacks_are_added(tmp_path: Path) -> None:
 
 
 def test_robots_of_the_package_raise_no_doubts_about_feet_and_neighbours() -> None:
-    assert doubts(load_robot("op3")) == []
-    assert doubts(load_robot("so101")) == []
+    assert robot_warnings(load_robot("op3")) == []
+    assert robot_warnings(load_robot("so101")) == []
 
 
 def test_no_floor_is_doubted(tmp_path: Path) -> None:
     plane = '<geom type="plane" size="0 0 0.05" contype="1" conaffinity="0"/>'
     folder = changed(tmp_path, QUADRUPED, "model.xml", plane, "")
-    assert "no floor: the robot falls for ever" in doubts(load_robot(folder))[0]
+    assert "no floor: the robot falls without end" in robot_warnings(load_robot(folder))[0]
 
 
 def test_zero_armature_points_and_neighbours_are_doubted(tmp_path: Path) -> None:
@@ -162,7 +162,7 @@ def test_zero_armature_points_and_neighbours_are_doubted(tmp_path: Path) -> None
     text = path.read_text().replace('contype="0" conaffinity="1"', 'contype="1" conaffinity="1"')
     text = text.replace('size="0.01 0.01 0.02"', 'size="0.03 0.03 0.02"')
     path.write_text(text.replace('type="box" size="0.06 0.04 0.005"', 'size="0.01"'))
-    said = "; ".join(doubts(load_robot(folder)))
+    said = "; ".join(robot_warnings(load_robot(folder)))
     assert "armature 0 at left_0, left_1" in said
     assert "foot 'left' stands on points" in said
     assert "collide in the stance" in said

@@ -10,7 +10,7 @@ from tests.shapes import Limb, Shape, write_shape
 from windup import Robot
 from windup.control.motions.play import PoseHolder
 from windup.hal.backend import BusHealth
-from windup.hal.guardian.order import Charge
+from windup.hal.guardian.order import GuardedBus
 from windup.hal.guardian.remote_bus import RemoteBus
 from windup.robots import RobotDescription, load_robot
 from windup.sim_twin.twin import Twin
@@ -69,8 +69,8 @@ def test_a_guardian_holds_it_in_its_turn(wheel: RobotDescription) -> None:
     with ServoBus(str(wheel.folder)) as bus:
         robot = bus.robot()
         turn(robot, -FAR)
-        charge = Charge(url=bus.url, baud=1_000_000, servos={1: "XM430-W350"}, extended=(1,))
-        assert RemoteBus(charge).stay() == pytest.approx([2048 - FAR * COUNTS], abs=60)
+        record = GuardedBus(url=bus.url, baud=1_000_000, servos={1: "XM430-W350"}, extended=(1,))
+        assert RemoteBus(record).hold_position() == pytest.approx([2048 - FAR * COUNTS], abs=60)
 
 
 def test_a_graph_plays_on_it(wheel: RobotDescription) -> None:

@@ -18,7 +18,7 @@ def dropped(op3: RobotDescription, height: float, head: bool = False) -> tuple[I
         What it shows, and how high its head was above the floor, m.
     """
     twin = Twin(op3)
-    twin.lay(False, np.zeros(len(op3.joints)))
+    twin.lay_down(False, np.zeros(len(op3.joints)))
     if head:
         twin.data.qpos[3:7] = [0.0, 1.0, 0.0, 0.0]
     twin.data.qpos[2] = 1.0
@@ -36,7 +36,7 @@ def dropped(op3: RobotDescription, height: float, head: bool = False) -> tuple[I
 def test_a_back_that_falls_freely_hits_as_fast_as_free_fall(op3: RobotDescription) -> None:
     gauge, _ = dropped(op3, 0.1)
     assert gauge.torso == pytest.approx((2.0 * 9.81 * 0.1) ** 0.5, rel=0.1)
-    assert gauge.trunk == max(gauge.torso, gauge.head)
+    assert gauge.trunk_speed == max(gauge.torso, gauge.head)
 
 
 def test_a_head_is_told_from_a_torso(op3: RobotDescription) -> None:
@@ -47,7 +47,7 @@ def test_a_head_is_told_from_a_torso(op3: RobotDescription) -> None:
 
 def test_a_knock_is_what_the_torso_loses_whatever_hit_the_floor(op3: RobotDescription) -> None:
     gauge, _ = dropped(op3, 0.1)
-    assert gauge.knock > 0.7 * gauge.torso
+    assert gauge.velocity_jump > 0.7 * gauge.torso
 
 
 def test_a_robot_that_stands_hits_nothing(op3: RobotDescription) -> None:
@@ -67,6 +67,6 @@ def test_the_load_of_a_joint_thrown_back_is_beyond_stall(op3: RobotDescription) 
     twin.set_goals(goals)
     twin.data.qvel[6 + elbow] = -5.0
     twin.step(4)
-    assert gauge.busiest == "l_el"
+    assert gauge.most_loaded_joint == "l_el"
     assert gauge.load.max() > 1.2
     assert gauge.overload >= 2 * twin.timestep

@@ -25,7 +25,7 @@ def test_the_same_seed_gives_the_same_samples() -> None:
 
 
 def test_samples_are_whole_counts() -> None:
-    counts = ImuErrors(OPENCR, 0.002).sample(REST) / np.repeat(OPENCR.unit, 3)
+    counts = ImuErrors(OPENCR, 0.002).sample(REST) / np.repeat(OPENCR.count_size, 3)
     assert counts == pytest.approx(np.rint(counts), abs=1e-6)
 
 
@@ -39,12 +39,12 @@ def test_noise_and_bias_are_as_large_as_their_figures() -> None:
 
 def test_the_filter_passes_the_whole_of_an_impact_later() -> None:
     errors = ImuErrors(SILENT, 0.002)
-    errors.feel(REST)
+    errors.filter_motion(REST)
     hit = REST.copy()
     hit[3] = 50.0
     total = 0.0
     for step in range(50):
-        errors.feel(hit if step == 0 else REST)
+        errors.filter_motion(hit if step == 0 else REST)
         total += 0.002 * errors.sample(REST)[3]
     assert total == pytest.approx(0.002 * 50.0, rel=0.05)
 

@@ -9,7 +9,7 @@ from tests.shapes import Limb, Shape, write_shape
 from windup.hal.command import JointCommand
 from windup.robots import RobotDescription, load_robot
 from windup.sim_twin.backend import TwinBackend
-from windup.sim_twin.places import places
+from windup.sim_twin.joint_indices import as_index
 from windup.sim_twin.twin import Twin
 from windup.tools.testing.servo_bus import ServoBus
 
@@ -42,8 +42,8 @@ def coupled(folder: Path) -> Path:
 
 
 def test_places_that_follow_each_other_are_a_view() -> None:
-    assert places(np.array([7, 8, 9])) == slice(7, 10)
-    np.testing.assert_array_equal(places(np.array([0, 2])), [0, 2])
+    assert as_index(np.array([7, 8, 9])) == slice(7, 10)
+    np.testing.assert_array_equal(as_index(np.array([0, 2])), [0, 2])
 
 
 @pytest.mark.parametrize("ratio", [0.5, 1.0, 2.0])

@@ -9,7 +9,7 @@ import pytest
 from tests.shapes import SHAPES, Shape, write_shape
 from windup.robots import load_robot
 from windup.sim_twin.environment import Environment, build_model
-from windup.sim_twin.masses import keep_masses
+from windup.sim_twin.masses import set_explicit_masses
 from windup.sim_twin.plant import Plant
 
 
@@ -45,7 +45,7 @@ def test_what_the_compiler_decides_is_kept(geoms_win: str, total: str) -> None:
     <body name="a"><freejoint/><geom size="0.1" mass="0.3"/>
     <inertial mass="1" pos="0 0 0.1" diaginertia="1 1 1"/></body></worldbody></mujoco>"""
     wanted, spec = mujoco.MjSpec.from_string(text).compile(), mujoco.MjSpec.from_string(text)
-    keep_masses(spec)
+    set_explicit_masses(spec)
     for geom in list(spec.geoms):
         spec.delete(geom)
     found = spec.compile()

@@ -271,7 +271,7 @@ def test_waiting_steps_the_physics_to_that_time_and_not_beyond(robot: RobotDescr
 @pytest.mark.parametrize(("front", "x"), [(True, -1.0), (False, 1.0)])
 def test_a_robot_lies_where_it_was_laid(op3: RobotDescription, front: bool, x: float) -> None:
     twin = Twin(op3)
-    twin.lay(front, np.zeros(len(twin.robot.joints)), noise=1.0, seed=3)
+    twin.lay_down(front, np.zeros(len(twin.robot.joints)), noise=1.0, seed=3)
     assert twin.data.ncon == 0 or twin.data.contact.dist.min() > -0.002
     twin.step(500)
     assert twin.fallen
@@ -284,7 +284,7 @@ def test_it_lies_in_another_direction_for_another_seed(op3: RobotDescription) ->
     twin = Twin(op3)
     bases = []
     for seed in (1, 1, 2):
-        twin.lay(True, np.zeros(len(twin.robot.joints)), seed=seed)
+        twin.lay_down(True, np.zeros(len(twin.robot.joints)), seed=seed)
         bases.append(twin.data.qpos[:7].copy())
     np.testing.assert_array_equal(bases[0], bases[1])
     assert np.abs(bases[0] - bases[2]).max() > 0.1

@@ -33,15 +33,15 @@ def shaft() -> tuple[Twin, TwinShaft, InertiaShaft]:
 @pytest.mark.parametrize(
     ("way", "values"),
     [
-        ("drive", (0.3, 18.9, 12.0)),
-        ("drive", (3.0, 18.9, 6.0)),  # at its voltage limit
-        ("drive", (-3.0, 18.9, 12.0, 1.1)),  # at its current limit
-        ("push", (7.0,)),
-        ("push", (-12.0,)),
-        ("push", (0.0,)),
-        ("pull", (1.2, 12.0)),
-        ("pull", (-40.0, 9.0)),  # more than its voltage can
-        ("off", ()),
+        ("hold_goal", (0.3, 18.9, 12.0)),
+        ("hold_goal", (3.0, 18.9, 6.0)),  # at its voltage limit
+        ("hold_goal", (-3.0, 18.9, 12.0, 1.1)),  # at its current limit
+        ("apply_voltage", (7.0,)),
+        ("apply_voltage", (-12.0,)),
+        ("apply_voltage", (0.0,)),
+        ("apply_torque", (1.2, 12.0)),
+        ("apply_torque", (-40.0, 9.0)),  # more than its voltage can
+        ("release", ()),
     ],
 )
 def test_a_joint_of_the_twin_makes_the_torque_of_a_bench_motor(
@@ -64,8 +64,8 @@ def test_what_one_way_of_driving_sets_the_next_one_forgets(
     shaft: tuple[Twin, TwinShaft, InertiaShaft],
 ) -> None:
     twin, joint, _ = shaft
-    joint.drive(3.0, 18.9, 12.0, 0.5)
-    joint.push(12.0)
+    joint.hold_goal(3.0, 18.9, 12.0, 0.5)
+    joint.apply_voltage(12.0)
     mujoco.mj_forward(twin.model, twin.data)
     assert joint.torque == pytest.approx(4.1, rel=1e-6)
 
@@ -119,8 +119,8 @@ def test_a_robot_that_hangs_keeps_its_base_whatever_its_servos_do(op3: Host) -> 
     twin, physics = twin_of(op3), op3.world.physics
     assert isinstance(physics, TwinPhysics)
     twin.data.qpos[2] += 0.2
-    physics.grasp()
-    physics.hangs = True
+    physics.store_held_pose()
+    physics.stays_held = True
     before = twin.data.qpos[:7].copy()
     switch(op3, True)
     op3.wait(0.5)

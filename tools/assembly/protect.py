@@ -11,12 +11,12 @@ from windup.control.kinematics.soles import Soles
 from windup.hal.controller import Controller
 from windup.hal.joints import Array, Mask
 from windup.robots import RobotDescription
-from windup.robots.records import Shares
+from windup.robots.records import StiffnessShares
 from windup.tools.assembly.build import body_of
 
 if TYPE_CHECKING:
     from windup.control.falling.fall import FallPredictor
-    from windup.control.falling.protection import FallWay, Protected
+    from windup.control.falling.protection import Protected, ProtectiveFall
 
 
 @dataclass
@@ -50,13 +50,13 @@ class Protection:
         return FallPredictor(body, soles, robot.fall.reach)
 
     @cached_property
-    def _ways(self) -> "tuple[FallWay, ...]":
-        from windup.control.falling.protection import FallWay
+    def _ways(self) -> "tuple[ProtectiveFall, ...]":
+        from windup.control.falling.protection import ProtectiveFall
 
         robot = self.robot
         legs = leg_joints(robot, robot.model)
         return tuple(
-            FallWay(
+            ProtectiveFall(
                 way.toward,
                 robot.poses[way.pose],
                 spread(way.falling, legs),
@@ -78,6 +78,6 @@ def leg_joints(robot: RobotDescription, model: mujoco.MjModel) -> Mask:
     return np.array([int(model.joint(name).bodyid[0]) in bodies for name in robot.joints.names])
 
 
-def spread(shares: Shares, legs: Mask) -> Array:
+def spread(shares: StiffnessShares, legs: Mask) -> Array:
     """Return (n,) the share of each joint; `legs` (n,) bool are those between base and feet."""
     return np.where(legs, shares.legs, shares.others)

@@ -32,7 +32,7 @@ class Behaviour(ABC, Generic[T]):
         done: What a good run did, for "3 of 4 seeds ...".
         needs_imu: The controller balances with the IMU, so one that fails stops the robot.
         down: The robot may lie, so a fall does not end the run.
-        side_by_side: Several seeds run at once, in a process each.
+        run_parallel: Several seeds run at once, in a process each.
         plots: Whether `draw` draws a picture: the command has an option --plot.
     """
 
@@ -41,7 +41,7 @@ class Behaviour(ABC, Generic[T]):
     done: str = "did what was asked"
     needs_imu: bool = False
     down: bool = False
-    side_by_side: bool = False
+    run_parallel: bool = False
     plots: bool = False
 
     @property

@@ -134,7 +134,7 @@ def lay(robot: Robot, side: Side) -> None:
         physics.held = False  # nobody holds it: it lies
     joints = robot.description.joints
     pose = np.clip(np.zeros(len(joints)), joints.lower, joints.upper)
-    twin.lay(side == "front", pose, noise=robot.noise, seed=robot.seed)
+    twin.lay_down(side == "front", pose, noise=robot.noise, seed=robot.seed)
     robot.backend.clock.wait_until(robot.backend.clock.now() + SETTLE)
 
 

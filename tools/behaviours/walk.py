@@ -73,7 +73,7 @@ class Walk(Behaviour[WalkRunOptions]):
     """Walk a robot and say how it went."""
 
     name, Options = "walk", WalkRunOptions
-    side_by_side = plots = True
+    run_parallel = plots = True
 
     def build(
         self, robot: RobotDescription, options: WalkRunOptions, predictor: Predictor | None

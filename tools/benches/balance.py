@@ -19,7 +19,7 @@ ROUNDS = 20
 WARM_UP = 5
 
 
-class Lap(NamedTuple):
+class StepTimes(NamedTuple):
     """One step: its duration, and the time of all rollouts on one and two threads and of one, s."""
 
     duration: float
@@ -83,7 +83,7 @@ def measure_balance(name: str) -> dict[str, Any]:
         rounds = zip(recorder.requests[:steps], durations, strict=True)
         every = 1 + len(walker.perturbations) * (1 + recorder.planner.model.centred)
         laps = [
-            Lap(
+            StepTimes(
                 duration,
                 _time(recorder.planner, one, request, every),
                 _time(recorder.planner, two, request, every),

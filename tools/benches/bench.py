@@ -24,12 +24,12 @@ from windup.tools.benches.slow.bench import measure_slow
 from windup.tools.benches.soak_table import fault_table
 from windup.tools.benches.startup import measure_startup
 from windup.tools.benches.unplug import measure_unplugs
-from windup.tools.benches.wire import Maker, measure_bus
+from windup.tools.benches.wire import BenchFamily, measure_bus
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
 from windup.tools.terminal.quantities import Count, Seed
 
-What = Literal[
+BenchName = Literal[
     "tick",
     "twin",
     "balance",
@@ -47,7 +47,7 @@ What = Literal[
     "startup",
 ]
 
-USED: dict[What, tuple[str, ...]] = {
+USED: dict[BenchName, tuple[str, ...]] = {
     "tick": ("robot",),
     "twin": ("robot",),
     "balance": ("robot",),
@@ -71,7 +71,7 @@ USED: dict[What, tuple[str, ...]] = {
 class Bench(Command):
     """Measure the cost and the safety of the stack."""
 
-    what: Annotated[What, tyro.conf.Positional]
+    what: Annotated[BenchName, tyro.conf.Positional]
     """What to measure.
     tick: one iteration of the loop. twin: guarded stepping of the twin against bare physics.
     balance: the rollouts of one step. servo: the twin's servo against its data sheet.
@@ -89,7 +89,7 @@ class Bench(Command):
     that is more than 5 MB, or any file, thread or process."""
     robot: str | None = None
     """Name of the robot, or path of its folder; op3 by default, safety and slow: op3 and duck."""
-    vendor: Maker = "dynamixel2"
+    vendor: BenchFamily = "dynamixel2"
     """bus: the servos and their protocol: STS3215, MX-28 (protocol 1), or XM430 (protocol 2)."""
     moments: Count = 20
     """safety: number of random moments for each way to end, shared by the robots."""

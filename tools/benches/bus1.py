@@ -37,7 +37,7 @@ MX_MEMORY = bytes(24) + b"\x01".ljust(10, b"\0") + b"\xfe\x03" + STATE
 
 
 @dataclass(frozen=True)
-class Maker:
+class VendorCycle:
     """The subject of a measurement: one model of one family, and the maker's SDK."""
 
     model: str
@@ -117,7 +117,7 @@ def codec_cycle(port: Port, ids: list[int], family: Family) -> Cycle:
     return cycle
 
 
-def backend_cycle(port: Port, ids: list[int], maker: Maker) -> Cycle:
+def backend_cycle(port: Port, ids: list[int], maker: VendorCycle) -> Cycle:
     """Return a whole tick of `ServoBackend`: observation in SI, joint command, goals."""
     model = servo_model(maker.model)
     stiffness = model.stiffness(32, 12.0)
@@ -127,7 +127,7 @@ def backend_cycle(port: Port, ids: list[int], maker: Maker) -> Cycle:
         joints, mounts, {"body": BusPort("canned", BAUD)}, opener=lambda url, baud: port
     )
     backend.connect()
-    backend.lines[0].reads.probe_fast()
+    backend.readouts[0].reads.probe_fast()
     backend.links[0].torque.powered = True
     command = JointCommand.hold(joints, np.zeros(len(ids)))
 
@@ -181,7 +181,7 @@ def _sdk_cycle(read: Any, write: Any, ids: list[int], address: int) -> Cycle:
     return cycle
 
 
-def _rustypot_cycle(maker: Maker, path: str, ids: list[int]) -> Cycle | None:
+def _rustypot_cycle(maker: VendorCycle, path: str, ids: list[int]) -> Cycle | None:
     """Return rustypot's raw cycle, or None where it is missing or has no such servo."""
     try:
         import rustypot
@@ -237,13 +237,13 @@ def _over_canned(port: Any) -> Any:
     return port
 
 
-MAKERS: dict[Vendor, Maker] = {
-    "feetech": Maker(
+MAKERS: dict[Vendor, VendorCycle] = {
+    "feetech": VendorCycle(
         "STS3215-7.4V",
         FEETECH_STS,
         _feetech_cycle,
         scservo_sdk.PortHandler,
         "Sts3215PyController",
     ),
-    "dynamixel1": Maker("MX-28", DYNAMIXEL_1, _dynamixel_cycle, PortHandler, None),
+    "dynamixel1": VendorCycle("MX-28", DYNAMIXEL_1, _dynamixel_cycle, PortHandler, None),
 }

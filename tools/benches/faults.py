@@ -9,7 +9,7 @@ from windup.hal.errors import UsageError
 from windup.tools.benches.soak import Soak, Tally
 from windup.tools.benches.soak_rig import FAMILIES, SoakRig
 from windup.tools.benches.soak_verdict import KINDS, LATE_ADAPTER, MIX, MIXED, verdict
-from windup.tools.terminal.parallel import side_by_side
+from windup.tools.terminal.parallel import run_parallel
 
 RATES = (0.01, 0.05)
 """Shares of the answers that are hit; the mix uses the first only, as few survive the second."""
@@ -21,7 +21,7 @@ LATE = 16e-3
 """Latency of an FTDI adapter in its factory setting, s."""
 
 
-class Cell(NamedTuple):
+class FaultCase(NamedTuple):
     """A combination of servos and a fault."""
 
     family: str
@@ -29,10 +29,10 @@ class Cell(NamedTuple):
     rate: float
 
 
-class Item(NamedTuple):
+class WorkItem(NamedTuple):
     """One work item of a process."""
 
-    cell: Cell
+    cell: FaultCase
     reads: int
     seed: int
 
@@ -50,11 +50,13 @@ def measure_faults(reads: int = 10_000_000, seed: int = 0) -> dict[str, Any]:
     if reads < 1:
         raise UsageError(f"--reads {reads}: give 1 or more")
     began = time.monotonic()
-    cells = [Cell(*each) for each in product(FAMILIES, KINDS, RATES) if each[1:] != (MIX, RATES[1])]
+    cells = [
+        FaultCase(*each) for each in product(FAMILIES, KINDS, RATES) if each[1:] != (MIX, RATES[1])
+    ]
     tallies = {cell: Tally() for cell in cells}
     positions: dict[str, float] = {}
     items = [*_items(cells, -(-reads // len(cells)), seed)]
-    for item, (tally, position) in side_by_side(_soak, items, label="faults"):
+    for item, (tally, position) in run_parallel(_soak, items, label="faults"):
         tallies[item.cell].add(tally)
         positions[item.cell.family] = position
     rows = [verdict(*cell, tallies[cell], positions[cell.family]) for cell in cells]
@@ -66,14 +68,14 @@ def measure_faults(reads: int = 10_000_000, seed: int = 0) -> dict[str, Any]:
     }
 
 
-def _items(cells: list[Cell], reads: int, seed: int) -> Iterator[Item]:
+def _items(cells: list[FaultCase], reads: int, seed: int) -> Iterator[WorkItem]:
     """Yield the work items: `reads` readings per cell, in pieces."""
     pieces = max(1, round(reads / CHUNK))
     for piece, cell in product(range(pieces), cells):
-        yield Item(cell, -(-reads // pieces), seed + piece)
+        yield WorkItem(cell, -(-reads // pieces), seed + piece)
 
 
-def _soak(item: Item) -> tuple[Tally, float]:
+def _soak(item: WorkItem) -> tuple[Tally, float]:
     """Return the tally of the readings, and the share of the position bytes in an answer."""
     (family, kind, rate), reads, seed = item
     latency = LATE if kind == LATE_ADAPTER else 0.0

@@ -35,7 +35,7 @@ COUNTED: Final = ("descriptors", "threads", "processes", "files")
 
 
 @dataclass(frozen=True)
-class Traces:
+class Resources:
     """Resources of this process.
 
     Attributes:
@@ -53,7 +53,7 @@ class Traces:
     files: int
 
     @classmethod
-    def now(cls) -> "Traces":
+    def now(cls) -> "Resources":
         """Collect garbage, then count the resources."""
         gc.collect()
         tasks = list(Path("/proc/self/task").iterdir())
@@ -67,7 +67,7 @@ class Traces:
             files=len(list(runtime_folder().iterdir())),
         )
 
-    def since(self, before: "Traces") -> dict[str, float]:
+    def since(self, before: "Resources") -> dict[str, float]:
         """Return the growth since `before`."""
         counts = {name: getattr(self, name) - getattr(before, name) for name in COUNTED}
         return {"memory_grown_mb": round(self.memory - before.memory, 2), **counts}
@@ -100,16 +100,16 @@ def clean(row: dict[str, float]) -> bool:
 def leaks(name: str, port: str | None, times: int) -> dict[str, float]:
     """Return the growth of resources over `times` repetitions, after the first `WARM` of them."""
     warm = max(round(WARM * times), 1)
-    with _unsaid(), Progress(console=Console(stderr=True), transient=True) as progress:
+    with _without_messages(), Progress(console=Console(stderr=True), transient=True) as progress:
         bar = progress.add_task(f"opening {name} on {port or 'its twin'}", total=times)
         for _ in range(warm):
             open_once(name, port)
             progress.advance(bar)
-        before = Traces.now()
+        before = Resources.now()
         for _ in range(times - warm):
             open_once(name, port)
             progress.advance(bar)
-        return {"times": times, **Traces.now().since(before)}
+        return {"times": times, **Resources.now().since(before)}
 
 
 def open_once(name: str, port: str | None) -> None:
@@ -123,7 +123,7 @@ def open_once(name: str, port: str | None) -> None:
 
 
 @contextmanager
-def _unsaid() -> Iterator[None]:
+def _without_messages() -> Iterator[None]:
     """Suppress the messages that appear each time a robot is armed."""
     console.quiet = True
     try:

@@ -7,8 +7,8 @@ from typing import Any
 from windup.robots import load_robot
 from windup.tools.benches.starts.faults import FAULTS, Fault
 from windup.tools.benches.starts.postures import Kind, kinds_of
-from windup.tools.benches.starts.trial import CAUGHT_WITHIN, Start, try_start
-from windup.tools.terminal.parallel import side_by_side
+from windup.tools.benches.starts.trial import MAX_FAULT_MOTION, Start, try_start
+from windup.tools.terminal.parallel import run_parallel
 
 SHARE = 4
 """Factor by which there are fewer starts with each fault than without any."""
@@ -41,7 +41,7 @@ def measure_starts(name: str, starts: int = 100, seed: int = 0) -> dict[str, Any
     for fault in FAULTS:
         where, count = SHOWN[fault], range(max(starts // SHARE, 1))
         broken += [Start(name, where[n % len(where)], seed + n, fault) for n in count]
-    rows = [row for _, row in side_by_side(try_start, sound + broken, label="starts")]
+    rows = [row for _, row in run_parallel(try_start, sound + broken, label="starts")]
     result = _sound([row for row in rows if row["fault"] is None], "get_up_front" in robot.gaits())
     for fault in FAULTS:
         result[fault] = _broken([row for row in rows if row["fault"] == fault])
@@ -76,7 +76,7 @@ def _broken(rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
     """
     ends = ("refused", "first motion", "UnhealthyError")
     caught = [row for row in rows if row["outcome"] in ends]
-    early = [row for row in caught if row["moved"] <= CAUGHT_WITHIN]
+    early = [row for row in caught if row["moved"] <= MAX_FAULT_MOTION]
     unseen = [row for row in rows if row not in caught and not row["harm"]]
     late = [row for row in rows if row not in early and row not in unseen]
     return {

@@ -107,7 +107,7 @@ class Soak:
                 if kind == "dead":
                     self._dead[servo] = cycle + DEAD_FOR
                 seconds = OUTAGE.get(kind)
-                self.rig.faults.happen(make_rule(kind, at=0.0, ids=[servo], seconds=seconds))
+                self.rig.faults.apply_now(make_rule(kind, at=0.0, ids=[servo], seconds=seconds))
         for servo in [servo for servo, until in self._dead.items() if until <= cycle]:
             del self._dead[servo]
             self.rig.repair(servo)

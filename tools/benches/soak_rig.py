@@ -16,7 +16,7 @@ from windup.hal.servo_bus.servo_backend import BusPort, ServoBackend
 from windup.hal.servos.servo_model import ServoMount
 from windup.sim_twin.wire.faults.faults import Faults
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
-from windup.sim_twin.wire.world.bus_world import Bench
+from windup.sim_twin.wire.world.bus_world import BenchPhysics
 
 # Names of the families, with the servo that represents each.
 FAMILIES: Final = {
@@ -33,14 +33,14 @@ SWING = 0.3  # amplitude around the middle, as a share of the encoder's range
 _worlds = count()
 
 
-def open_untold(url: str, baud: int) -> Port:
+def open_without_latency(url: str, baud: int) -> Port:
     """Open a port whose driver does not report the adapter's latency."""
     port = open_port(url, baud)
     port.latency = LATENCY
     return port
 
 
-class Puppets:
+class PositionedShafts:
     """Physics in which the shafts move only when their positions are set."""
 
     def __init__(self, shafts: tuple[InertiaShaft, ...], timestep: float) -> None:
@@ -79,14 +79,14 @@ class SoakRig:
         joints = Joints(tuple(Joint(f"servo {id}", -2.0, 2.0, stiffness, 0.1) for id in ids))
         mounts = [ServoMount(model, "body", id, 1, model.middle, 1.0) for id in ids]
         ports = {"body": BusPort(self.url, BAUD)}
-        opener = open_untold if latency else open_port
+        opener = open_without_latency if latency else open_port
         self.backend = ServoBackend(joints, mounts, ports, supply=self._supply, opener=opener)
         self.backend.connect()
         self.world = wire.find_world(self.name)
         bench = self.world.physics
-        assert isinstance(bench, Bench)
+        assert isinstance(bench, BenchPhysics)
         self._shafts = bench.shafts
-        self.world.physics = Puppets(self._shafts, bench.timestep)
+        self.world.physics = PositionedShafts(self._shafts, bench.timestep)
         self._pace = 1 + rng.integers(0, FASTEST, servos)
         self._phase = rng.integers(0, model.encoder_counts, servos)
         self._reach = int(SWING * model.encoder_counts)
@@ -99,7 +99,7 @@ class SoakRig:
     @property
     def position_share(self) -> float:
         """Share of the position in the data bytes of a servo's answer."""
-        family = self.backend.lines[0].bus.family
+        family = self.backend.readouts[0].bus.family
         state = family.cycle([self._model]).state
         return family.registers["present_position"].size / state.size
 
@@ -141,7 +141,7 @@ class SoakRig:
     def close(self) -> None:
         """Close the port and remove the world."""
         self.backend.disconnect()
-        wire.drop_world(self.name)
+        wire.unregister_world(self.name)
 
     def __enter__(self) -> Self:
         return self

@@ -15,7 +15,7 @@ from windup.tools.testing import PLUGIN
 BASE: Final = "import numpy"
 
 
-class Way(NamedTuple):
+class StartCommand(NamedTuple):
     """A way to start.
 
     Attributes:
@@ -32,14 +32,14 @@ class Way(NamedTuple):
 WITHOUT: Final = "pytest without the plugin"
 CLI: Final = "from windup.tools.cli import main; main([{!r}])"
 PYTEST: Final = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "test_nothing.py")
-WAYS: Final[dict[str, Way]] = {
-    BASE: Way(("-c", "import numpy"), 1.0),
-    "windup --help": Way(("-c", CLI.format("--help")), 2.5),
-    "windup robots": Way(("-c", CLI.format("robots")), 4.0),
-    "import windup.hal": Way(("-c", "import windup.hal"), 1.5),
-    "from windup import Robot": Way(("-c", "from windup import Robot"), 2.0),
-    WITHOUT: Way((*PYTEST, "-p", f"no:{PLUGIN}"), 1.0, WITHOUT),
-    "pytest with the plugin": Way(PYTEST, 1.05, WITHOUT),
+WAYS: Final[dict[str, StartCommand]] = {
+    BASE: StartCommand(("-c", "import numpy"), 1.0),
+    "windup --help": StartCommand(("-c", CLI.format("--help")), 2.5),
+    "windup robots": StartCommand(("-c", CLI.format("robots")), 4.0),
+    "import windup.hal": StartCommand(("-c", "import windup.hal"), 1.5),
+    "from windup import Robot": StartCommand(("-c", "from windup import Robot"), 2.0),
+    WITHOUT: StartCommand((*PYTEST, "-p", f"no:{PLUGIN}"), 1.0, WITHOUT),
+    "pytest with the plugin": StartCommand(PYTEST, 1.05, WITHOUT),
 }
 """The ways to start, each in a new interpreter."""
 

@@ -25,15 +25,15 @@ from windup.tools.robot.stack import servo_backend
 from windup.tools.terminal.output import console
 
 FIRST = 3.0  # time of the first unplugging, when the robot is armed, s
-OUT = (0.1, 0.6)  # range of times for which the adapter is out, s
-BETWEEN = (0.8, 2.8)  # range of times from its return to the next unplugging, s
+OUT_TIMES = (0.1, 0.6)  # range of times for which the adapter is out, s
+PLUGGED_TIMES = (0.8, 2.8)  # range of times from its return to the next unplugging, s
 PERIOD = 0.008  # s
 PATIENCE = 20.0  # longest time in which nothing happens, s
 WARM = 10  # number of unpluggings before the reference for memory
 
 
 @dataclass
-class Times:
+class UnplugCounts:
     """Counts of events.
 
     Attributes:
@@ -91,23 +91,23 @@ def script(times: int, seed: int, bus: str) -> str:
     """Return the faults that unplug the adapter of `bus` `times` times."""
     rng, moment, rules = np.random.default_rng(seed), FIRST, []
     for _ in range(times):
-        out = rng.uniform(*OUT)
+        out = rng.uniform(*OUT_TIMES)
         rules.append(f"unplug:at={moment:.4f}:seconds={out:.4f}:bus={bus}")
-        moment += out + rng.uniform(*BETWEEN)
+        moment += out + rng.uniform(*PLUGGED_TIMES)
     return ",".join(rules)
 
 
-def watch(backend: ServoBackend, times: int) -> Times:
+def watch(backend: ServoBackend, times: int) -> UnplugCounts:
     """Run a loop until the port was lost `times` times, and arm whenever it is back.
 
     Raises:
         WindupError: It is lost, or not unplugged, for too long.
     """
-    seen, link, gone = Times(), backend.links[0], False
+    seen, link, gone = UnplugCounts(), backend.links[0], False
     hold = JointCommand.hold(backend.joints, backend.read().joints.position)
     since = due = backend.clock.now()
     with console.status("") as status:
-        while seen.lost < times or gone or link.barred:
+        while seen.lost < times or gone or link.goals_withheld:
             due = max(due + PERIOD, backend.clock.now())
             backend.clock.wait_until(due)
             backend.read()
@@ -117,7 +117,7 @@ def watch(backend: ServoBackend, times: int) -> Times:
                 status.update(f"pulled out {seen.lost} times of {times}")
                 if not gone:
                     _examine(backend, hold, seen)
-            elif link.barred and not gone:
+            elif link.goals_withheld and not gone:
                 with suppress(PortError, HardwareError):  # it may be unplugged meanwhile
                     seen.armed += bool(backend.rearm().all_on)
                     since = due
@@ -127,7 +127,7 @@ def watch(backend: ServoBackend, times: int) -> Times:
     return seen
 
 
-def _examine(backend: ServoBackend, hold: JointCommand, seen: Times) -> None:
+def _examine(backend: ServoBackend, hold: JointCommand, seen: UnplugCounts) -> None:
     """Record the state of the robot when it is reachable again, before it is armed."""
     seen.found += 1
     withheld = backend.clamps["unarmed"]
@@ -140,7 +140,7 @@ def _examine(backend: ServoBackend, hold: JointCommand, seen: Times) -> None:
     seen.memory.append(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 
 
-def _row(seen: Times, times: int) -> dict[str, Any]:
+def _row(seen: UnplugCounts, times: int) -> dict[str, Any]:
     warm = min(WARM, seen.found - 1)
     return {
         "pulled_out": times,

@@ -22,7 +22,7 @@ from windup.hal.protocols.protocol2 import Span
 from windup.tools.benches.bus import GOAL, SIZE, STATE, bench_memory, bench_pty, wire_bytes
 from windup.tools.benches.bus1 import MAKERS, Vendor
 
-Maker = Literal[Vendor, "dynamixel2"]
+BenchFamily = Literal[Vendor, "dynamixel2"]
 
 SERVOS = 20
 ROUNDS = 20
@@ -34,7 +34,7 @@ PATIENCE = 5.0  # s; a busy machine may delay the emulator
 BITS = 10  # per byte on the wire: one start, eight data, one stop
 
 
-def measure_bus(maker: Maker = "dynamixel2") -> dict[str, Any]:
+def measure_bus(maker: BenchFamily = "dynamixel2") -> dict[str, Any]:
     """Return the processor time of a cycle relative to other packages, and its time to the wire's.
 
     Args:
@@ -62,7 +62,7 @@ def measure_bus(maker: Maker = "dynamixel2") -> dict[str, Any]:
 
 
 def cycle_over_wire(
-    baud: int, maker: Maker, servos: int = SERVOS, rounds: int = ROUNDS, cycles: int = CYCLES
+    baud: int, maker: BenchFamily, servos: int = SERVOS, rounds: int = ROUNDS, cycles: int = CYCLES
 ) -> float:
     """Return the median time of a cycle, as a ratio to the time of its bytes at `baud`.
 

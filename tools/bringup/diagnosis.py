@@ -1,4 +1,4 @@
-"""Diagnoses a run: compares its telemetry with limits, and advises on every complaint.
+"""Diagnoses a run: compares its telemetry with limits, and advises on every problem.
 
 Supply, temperature, load, stall and IMU are checked by the same watches as during the run.
 """
@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from windup.hal.errors import TelemetryError
-from windup.hal.guard import HealthLevels, Kind
-from windup.hal.guard.finding import SAYINGS, named
+from windup.hal.guard import HealthKind, HealthLevels
+from windup.hal.guard.finding import FINDING_TEXTS, format_names
 from windup.hal.joints import Joints
 from windup.hal.telemetry.header import Header, bits_of
 from windup.hal.telemetry.reader import TelemetryReader, Ticks
@@ -56,22 +56,29 @@ class Limits:
         """Return the limits as plain data; levels are by kind and joint."""
         plain = {item.name: getattr(self, item.name) for item in fields(self)[2:]}
         levels = {
-            SAYINGS[kind].name: {"warn": self.health.warn[kind], "stop": self.health.stop[kind]}
-            for kind in Kind
+            FINDING_TEXTS[kind].name: {
+                "warn": self.health.warn[kind],
+                "stop": self.health.stop[kind],
+            }
+            for kind in HealthKind
         }
         return plain | {"levels": levels}
 
 
 @dataclass(frozen=True)
-class Complaint:
-    """One complaint: the subject, what is wrong, and what to do."""
+class HealthProblem:
+    """One problem of a run, with the part concerned and the remedy."""
 
-    who: str
-    what: str
-    do: str
+    subject: str
+    problem: str
+    remedy: str
 
     def __str__(self) -> str:
-        return f"{self.who}: {self.what}; {self.do}"
+        return f"{self.subject}: {self.problem}; {self.remedy}"
+
+    def record(self) -> dict[str, str]:
+        """Return the problem as plain data."""
+        return {"who": self.subject, "what": self.problem, "do": self.remedy}
 
 
 @dataclass
@@ -84,7 +91,7 @@ class Diagnosis:
         ended: Reason why the run ended, or None.
         limits: Limits of a healthy run.
         now: Present time, s since 1970.
-        complaints: What is not healthy.
+        problems: What is not healthy.
     """
 
     header: Header
@@ -92,7 +99,7 @@ class Diagnosis:
     ended: str | None
     limits: Limits
     now: float
-    complaints: list[Complaint] = field(default_factory=list, init=False)
+    problems: list[HealthProblem] = field(default_factory=list, init=False)
 
     @classmethod
     def of(cls, reader: TelemetryReader, limits: Limits, now: float) -> "Diagnosis":
@@ -103,7 +110,7 @@ class Diagnosis:
         """
         ticks = _last_run(reader.since())
         if not len(ticks):
-            raise TelemetryError(f"{reader.path}: no tick was written yet")
+            raise TelemetryError(f"{reader.path}: no tick has been written yet")
         return cls(reader.header, ticks, reader.ended, limits, now)
 
     def __post_init__(self) -> None:
@@ -117,8 +124,8 @@ class Diagnosis:
 
     @property
     def healthy(self) -> bool:
-        """True when there are no complaints."""
-        return not self.complaints
+        """True when there are no problems."""
+        return not self.problems
 
     @property
     def state(self) -> str:
@@ -143,7 +150,7 @@ class Diagnosis:
     @property
     def slowness(self) -> Slowness:
         """Late ticks and plans over the ring."""
-        missed, plans, late = (int(self.change(name)) for name in COUNTERS)
+        missed, plans, late = (int(self.growth(name)) for name in COUNTERS)
         return Slowness(
             self.header.rate_hz,
             ticks=len(self.ticks),
@@ -157,26 +164,26 @@ class Diagnosis:
         """Share of the ticks that were late."""
         return self.slowness.missed_share
 
-    def change(self, name: str) -> Any:
+    def growth(self, name: str) -> Any:
         """Return the growth of a counter over the ring."""
         return self.newest[name].astype(np.int64) - self.ticks[0][name].astype(np.int64)
 
     def bus_errors(self) -> dict[str, int]:
         """Return the number of bus errors by kind, over the ring."""
-        return {k: int(n) for k, n in zip(self.header.errors, self.change("errors"), strict=True)}
+        return {k: int(n) for k, n in zip(self.header.errors, self.growth("errors"), strict=True)}
 
     def clamps(self) -> dict[str, int]:
         """Return the number of commands changed by each clamp, over the ring."""
-        return {k: int(n) for k, n in zip(self.header.clamps, self.change("clamps"), strict=True)}
+        return {k: int(n) for k, n in zip(self.header.clamps, self.growth("clamps"), strict=True)}
 
     def driver_clamps(self) -> dict[str, int]:
         """Return the number of commands changed by each clamp of the driver, over the ring."""
-        counts = self.change("driver_clamps")
+        counts = self.growth("driver_clamps")
         return {k: int(n) for k, n in zip(self.header.driver_clamps, counts, strict=True)}
 
     def joints(self) -> list[dict[str, Any]]:
         """Return one row per joint: present values, largest age and share of clamped ticks."""
-        ages, clamped = self.ticks["age"].max(axis=0), self.change("clamped") / len(self.ticks)
+        ages, clamped = self.ticks["age"].max(axis=0), self.growth("clamped") / len(self.ticks)
         columns = zip(
             self.header.joints,
             ages,
@@ -224,29 +231,29 @@ class Diagnosis:
             "joints": self.joints(),
             "warnings": [finding.record() for finding in self.findings] + self.slowness.records(),
             "limits": self.limits.record(),
-            "complaints": [vars(complaint) for complaint in self.complaints],
+            "complaints": [problem.record() for problem in self.problems],
         }
 
     def _judge_loop(self) -> None:
         if self.state == "dead":
-            what = f"process {self.header.pid} died without ending its run"
-            self._complain("loop", what, "torque may be on: switch it off with `windup stop`")
+            what = f"process {self.header.pid} died during its run"
+            self._add_problem("loop", what, "torque may be on: switch it off with `windup stop`")
         elif self.state == "standing still":
             what = f"no tick for {self.silence:.1f} s"
-            self._complain("loop", what, f"is process {self.header.pid} stopped or swapped out?")
+            self._add_problem("loop", what, f"is process {self.header.pid} stopped or swapped out?")
         if slow := self.slowness:
-            self._complain("loop", slow.what, slow.do)
+            self._add_problem("loop", slow.description, slow.remedy)
         age = float(self.ticks["imu_age"].max())
         if age > self.limits.age:
             what = f"silent for {age:.2f} s (limit {self.limits.age:g} s)"
-            self._complain("imu", what, "check its cable")
+            self._add_problem("imu", what, "check its cable")
 
     def _judge_bus(self) -> None:
         port = self.header.port or "URL"
         for kind, count in self.bus_errors().items():
             if count > self.limits.errors * len(self.ticks):
                 what = f"{kind!r} {count} times in {len(self.ticks)} ticks"
-                self._complain(
+                self._add_problem(
                     "bus", what, f"check cables and power, then `windup scan {quote(port)}`"
                 )
 
@@ -255,21 +262,23 @@ class Diagnosis:
         for row in self.joints():
             name = row["name"]
             if row["alerts"]:
-                what = f"its servo signals: {', '.join(row['alerts'])}"
-                self._complain(name, what, "remove the cause before it shuts down")
+                what = f"its servo reports: {', '.join(row['alerts'])}"
+                self._add_problem(name, what, "remove the cause before it shuts down")
             if row["age_max_s"] > limits.age:
                 what = f"silent for {row['age_max_s']:.2f} s (limit {limits.age:g} s)"
-                self._complain(name, what, "check its cable and power")
+                self._add_problem(name, what, "check its cable and power")
             if row["clamped_share"] > limits.clamped:
                 what = f"clamped in {row['clamped_share']:.0%} of the ticks"
-                self._complain(name, what, "ask for less, or widen its limits in robot.toml")
+                self._add_problem(
+                    name, what, "command smaller values, or widen its limits in robot.toml"
+                )
 
         for finding in self.findings:
-            who = named(finding.joints) or finding.saying.who
-            self._complain(who, finding.what, finding.saying.do)
+            who = format_names(finding.joints) or finding.text.subject
+            self._add_problem(who, finding.description, finding.text.remedy)
 
-    def _complain(self, who: str, what: str, do: str) -> None:
-        self.complaints.append(Complaint(who, what, do))
+    def _add_problem(self, subject: str, problem: str, remedy: str) -> None:
+        self.problems.append(HealthProblem(subject, problem, remedy))
 
 
 def _last_run(ticks: Ticks) -> Ticks:

@@ -50,15 +50,15 @@ class Health(Command):
     def run(self) -> int:
         """Diagnose; return the exit status: 0 healthy, 1 not healthy, 2 no telemetry."""
         robot = load_robot(self.robot)
-        diagnosis = self._look(robot)
+        diagnosis = self._diagnose(robot)
         if self.watch:
             diagnosis = self._watch(robot, diagnosis)
         else:
-            console.print(picture(diagnosis))
+            console.print(format_health(diagnosis))
         write_json(self.json, "health", diagnosis.result())
         return 0 if diagnosis.healthy else 1
 
-    def _look(self, robot: RobotDescription) -> Diagnosis:
+    def _diagnose(self, robot: RobotDescription) -> Diagnosis:
         """Return the present health; the ring is opened anew because each run has its own.
 
         Raises:
@@ -78,17 +78,17 @@ class Health(Command):
 
     def _watch(self, robot: RobotDescription, diagnosis: Diagnosis) -> Diagnosis:
         try:
-            with Live(picture(diagnosis), console=console, auto_refresh=False) as live:
+            with Live(format_health(diagnosis), console=console, auto_refresh=False) as live:
                 while True:
                     time.sleep(INTERVAL)
-                    diagnosis = self._look(robot)
-                    live.update(picture(diagnosis), refresh=True)
+                    diagnosis = self._diagnose(robot)
+                    live.update(format_health(diagnosis), refresh=True)
         except KeyboardInterrupt:
             return diagnosis
 
 
-def picture(diagnosis: Diagnosis) -> Group:
-    """Return the health as text: the state, a table of the joints, and the complaints."""
+def format_health(diagnosis: Diagnosis) -> Group:
+    """Return the health as text: the state, a table of the joints, and the problems."""
     result = diagnosis.result()
     rate = "" if result["rate_hz"] is None else f"{result['rate_hz']:.1f} Hz of "
     why = "" if result["reason"] is None else f" ({result['reason']})"
@@ -101,7 +101,7 @@ def picture(diagnosis: Diagnosis) -> Group:
         _counts("clamps", result["clamps"]),
         _counts("driver clamps", result["driver_clamps"]),
     ]
-    end = [Text(str(complaint), style="red") for complaint in diagnosis.complaints]
+    end = [Text(str(problem), style="red") for problem in diagnosis.problems]
     healthy = [Text("healthy", style="green")]
     return Group(*map(Text, filter(None, lines)), _table(result["joints"]), *(end or healthy))
 

@@ -26,8 +26,8 @@ def findings(
         if watched:
             found = health.update(observation, JointCommand(tick["applied"]))
             if found is not None:
-                stops.setdefault(found.saying.name, found)
+                stops.setdefault(found.text.name, found)
         if header.estimated:
             imu.update(observation)
     for warning in (*health.warnings, *imu.warnings):
-        yield stops.get(warning.saying.name, warning)
+        yield stops.get(warning.text.name, warning)

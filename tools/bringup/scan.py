@@ -14,8 +14,8 @@ from windup.hal.ranges import Range
 from windup.robots import load_robot
 from windup.sim_twin.wire import parse_address
 from windup.sim_twin.wire.world.address import SCHEME
-from windup.tools.bringup.scan_said import complaints, narrow_lines, table
-from windup.tools.bringup.survey import Survey, places
+from windup.tools.bringup.scan_text import narrow_lines, problems_found, table
+from windup.tools.bringup.survey import Survey, scan_targets
 from windup.tools.options.faults import with_faults
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
@@ -57,7 +57,7 @@ class Scan(Command):
         survey = Survey(port, expected)
         try:
             with _progress() as progress:
-                bar = progress.add_task("", total=len(list(places(port, self.baud))))
+                bar = progress.add_task("", total=len(list(scan_targets(port, self.baud))))
                 survey.update(
                     self.baud, lambda what: progress.update(bar, advance=1, description=what)
                 )
@@ -66,13 +66,17 @@ class Scan(Command):
         there = {row["id"] for row in (*survey.servos, *survey.protocol_1)}
         missing = sorted(set(expected) - there)
         self._show(survey, [f"{expected[id]} (id {id})" for id in missing])
-        strange = [{"id": one.id, "baud": baud, "bytes": one.data.hex()}
-                   for baud, _, one in survey.strange]  # fmt: skip
+        invalid = [{"id": one.id, "baud": baud, "bytes": one.data.hex()}
+                   for baud, _, one in survey.invalid]  # fmt: skip
         result = {"url": self.url, "servos": survey.servos, "missing_ids": missing}
         old = {"protocol_1": survey.protocol_1}
-        more = {"unknown": survey.unknown, "doubled_ids": survey.doubled, "not_understood": strange}
+        more = {
+            "unknown": survey.unknown,
+            "doubled_ids": survey.duplicate_ids,
+            "not_understood": invalid,
+        }
         write_json(self.json, "scan", result | old | more)
-        wrong = missing or survey.doubled or survey.protocol_1
+        wrong = missing or survey.duplicate_ids or survey.protocol_1
         return 3 if wrong or not survey.servos else 0
 
     def _show(self, survey: Survey, missing: list[str]) -> None:
@@ -81,7 +85,7 @@ class Scan(Command):
             for line in narrow_lines(rows, width):
                 console.print(line, markup=False)
             console.print(table(rows, width))
-        for line in complaints(survey, self.url, missing):
+        for line in problems_found(survey, self.url, missing):
             console.print(line, markup=False)
 
 

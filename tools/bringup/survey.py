@@ -4,14 +4,14 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from windup.hal.bus.bus import FIRST, Bus, Found
+from windup.hal.bus.bus import FIRST, Bus, ScannedServo
 from windup.hal.errors import CorruptAnswerError, HardwareError
 from windup.hal.families import DYNAMIXEL_1, DYNAMIXEL_X, Family, families
 from windup.hal.imu.opencr import MODEL_NUMBER as OPENCR
 from windup.hal.imu.opencr import VOLTAGE
 from windup.hal.port.port import Port
 from windup.hal.registers import Register
-from windup.tools.bringup.raw_answers import Strange, is_echo, strange_answers
+from windup.tools.bringup.raw_answers import InvalidAnswer, invalid_answers, is_echo
 
 SLOW: Final = 57_600
 """Assumed baud rate behind a bridge that hides its own: answers may take as long as at this one."""
@@ -32,7 +32,7 @@ class Survey:
         unknown: Servos of unknown models: id, baud, and the content of the model number register,
             by the name of each family with a register at that address.
         protocol_1: Servos of the X series that use protocol 1: id, baud and model.
-        strange: Other answers, with the baud rate and the family that was scanned for.
+        invalid: Other answers, with the baud rate and the family that was scanned for.
     """
 
     port: Port
@@ -40,18 +40,18 @@ class Survey:
     servos: list[dict[str, Any]] = field(default_factory=list)
     unknown: list[dict[str, Any]] = field(default_factory=list)
     protocol_1: list[dict[str, Any]] = field(default_factory=list)
-    strange: list[tuple[int, Family, Strange]] = field(default_factory=list)
+    invalid: list[tuple[int, Family, InvalidAnswer]] = field(default_factory=list)
 
     @property
-    def doubled(self) -> list[int]:
+    def duplicate_ids(self) -> list[int]:
         """Ids from which only broken answers come, or broken ones after a valid ping."""
-        ids = {one.id for _, _, one in self.strange if one.id is not None and not one.whole}
+        ids = {one.id for _, _, one in self.invalid if one.id is not None and not one.whole}
         return sorted(ids | {row["id"] for row in self.servos if row["broken"]})
 
     @property
     def echo(self) -> bool:
         """Whether the adapter echoes the bytes that it sends."""
-        return self.port.echoes or any(is_echo(one.data) for _, _, one in self.strange)
+        return self.port.echoes or any(is_echo(one.data) for _, _, one in self.invalid)
 
     def update(self, baud: int | None, begin: Callable[[str], None]) -> None:
         """Scan for servos of every family.
@@ -63,7 +63,7 @@ class Survey:
         before = self.port.baud
         others: dict[tuple[int | None, int], dict[str, int]] = {}
         try:
-            for family, rate in places(self.port, baud):
+            for family, rate in scan_targets(self.port, baud):
                 begin(f"{family.name}, {rate} baud" if self.port.has_baud else family.name)
                 for servo in self._ask(family, rate):
                     shown = rate if self.port.has_baud else None
@@ -84,19 +84,19 @@ class Survey:
             elif (shown, id) not in known:
                 self.unknown.append({"id": id, "baud": shown, "numbers": numbers})
 
-    def _ask(self, family: Family, rate: int) -> list[Found]:
+    def _ask(self, family: Family, rate: int) -> list[ScannedServo]:
         """Return the servos of a family that answer; store all other answers."""
         bus, self.port.baud = Bus(self.port, family), rate
-        bus.get_to_know_adapter(FIRST)
+        bus.measure_adapter(FIRST)
         before = self.port.received
         found = bus.scan([rate])
         more = self.port.received - before - family.protocol.scan_bytes * len(found)
         if more > 0:
             self.port.baud = rate
-            self.strange += [(rate, family, one) for one in strange_answers(self.port, family)]
+            self.invalid += [(rate, family, one) for one in invalid_answers(self.port, family)]
         return found
 
-    def _add(self, bus: Bus, servo: Found, shown: int | None) -> None:
+    def _add(self, bus: Bus, servo: ScannedServo, shown: int | None) -> None:
         if servo.model_number not in (*bus.family.numbers, OPENCR):
             numbers = {bus.family.name: servo.model_number}
             self.unknown.append({"id": servo.id, "baud": shown, "numbers": numbers})
@@ -105,7 +105,7 @@ class Survey:
         self.servos[-1]["joint"] = self.joints.get(servo.id, "")
 
 
-def places(port: Port, baud: int | None = None) -> Iterator[tuple[Family, int]]:
+def scan_targets(port: Port, baud: int | None = None) -> Iterator[tuple[Family, int]]:
     """Yield the families and baud rates to scan: every family at all of its rates, or at one.
 
     Behind a bridge with a fixed baud rate that is one per family. Protocol 1 is also scanned for at
@@ -121,7 +121,7 @@ def places(port: Port, baud: int | None = None) -> Iterator[tuple[Family, int]]:
         yield from ((family, rate) for rate in bauds if baud in (None, rate))
 
 
-def _describe(bus: Bus, servo: Found) -> dict[str, Any]:
+def _describe(bus: Bus, servo: ScannedServo) -> dict[str, Any]:
     """Return a row with a servo's registers; "broken" if reading one gave a corrupt answer."""
     board = servo.model_number == OPENCR
     registers: Mapping[str, Register] = {VOLTAGE.name: VOLTAGE} if board else bus.family.registers

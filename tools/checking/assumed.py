@@ -6,11 +6,11 @@ from windup.hal.errors import UsageError
 from windup.robots import RobotDescription, mjcf
 from windup.robots.completion import COM_VELOCITY
 from windup.robots.folders import FILE
-from windup.robots.inspection.reading import Reading
+from windup.robots.inspection.reading import FolderContents
 from windup.tools.assembly.shape import check_walks
 
 
-def assumed(reading: Reading) -> Iterator[str]:
+def assumed(reading: FolderContents) -> Iterator[str]:
     """Yield the notes about a robot whose files are valid, one line each."""
     robot = reading.robot
     if robot is None:

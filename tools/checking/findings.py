@@ -9,29 +9,29 @@ class Findings:
 
     Attributes:
         errors: Mistakes; commands that need the file refuse it.
-        doubts: Warnings: valid, but probably unintended.
+        warnings: Warnings: valid, but probably unintended.
         notes: Additions, defaults, and checks that were left out.
     """
 
     errors: list[str] = field(default_factory=list)
-    doubts: list[str] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
     def lines(self) -> list[str]:
         """Return all lines with their kind, the errors last."""
         return [
             *(f"note: {line}" for line in self.notes),
-            *(f"warning: {line}" for line in self.doubts),
+            *(f"warning: {line}" for line in self.warnings),
             *(f"error: {line}" for line in self.errors),
         ]
 
     def verdict(self, name: str) -> str:
         """Return a line that counts errors and warnings.
 
-        >>> Findings(doubts=["no floor"]).verdict("rex")
+        >>> Findings(warnings=["no floor"]).verdict("rex")
         'rex: 0 errors, 1 warning'
         """
-        return f"{name}: {_counted(self.errors, 'error')}, {_counted(self.doubts, 'warning')}"
+        return f"{name}: {_counted(self.errors, 'error')}, {_counted(self.warnings, 'warning')}"
 
 
 def _counted(lines: list[str], what: str) -> str:

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from windup.robots.folders import FILE
-from windup.robots.inspection.doubts import doubts
-from windup.robots.inspection.reading import Reading, read_folder
+from windup.robots.inspection.reading import FolderContents, read_folder
+from windup.robots.inspection.robot_warnings import robot_warnings
 from windup.tools.checking.assumed import assumed
 from windup.tools.checking.findings import Findings
 from windup.tools.checking.gait_files import check_gaits
@@ -23,7 +23,7 @@ class Inspection:
     """
 
     folder: Path
-    reading: Reading
+    reading: FolderContents
     findings: Findings
 
     @property
@@ -49,7 +49,7 @@ def inspect_folder(folder: Path) -> Inspection:
             f"gaits are checked against joints and feet once the errors in {FILE} are gone"
         )
     else:
-        findings.doubts += doubts(robot)
+        findings.warnings += robot_warnings(robot)
         findings.notes += assumed(reading)
     check_gaits(folder, robot, findings)
     check_tables(folder, robot, findings)

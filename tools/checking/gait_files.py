@@ -44,7 +44,7 @@ def check_gaits(folder: Path, robot: RobotDescription | None, findings: Findings
     for models in sorted((folder / GAITS).glob(f"*{SUFFIX}")):
         gait = models.name.removesuffix(SUFFIX) + ".toml"
         if not models.with_name(gait).is_file():
-            findings.doubts.append(f"{GAITS}/{models.name}: there is no gait {gait} beside it")
+            findings.warnings.append(f"{GAITS}/{models.name}: there is no gait {gait} beside it")
 
 
 def _of_the_gait(path: Path, file: GaitFile, robot: RobotDescription) -> list[str]:

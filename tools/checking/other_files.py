@@ -50,7 +50,7 @@ def check_names(folder: Path, findings: Findings) -> None:
         if path.name in read or not (path.is_dir() or path.suffix in (".toml", ".tml")):
             continue
         if near := near_word(path.name, read):
-            findings.doubts.append(f"{path.name}: Windup reads no such file{near}")
+            findings.warnings.append(f"{path.name}: Windup reads no such file{near}")
 
 
 def _record(name: str, robot: RobotDescription | None) -> type[Any] | None:

@@ -9,7 +9,7 @@ from scipy.spatial import ConvexHull, QhullError
 
 from windup.hal.joints import Array
 from windup.robots import RobotDescription, mjcf
-from windup.robots.inspection.posture_doubts import corners_of, sole_points
+from windup.robots.inspection.posture_warnings import corners_of, sole_points
 from windup.robots.inspection.stance import in_stance
 
 FLAT = 0.02

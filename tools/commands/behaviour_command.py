@@ -16,7 +16,7 @@ from windup.tools.options.twin_options import WorldOptions
 from windup.tools.robot.robot import Robot
 from windup.tools.robot.stopping import INTERRUPTED
 from windup.tools.terminal.output import console, write_json
-from windup.tools.terminal.parallel import side_by_side
+from windup.tools.terminal.parallel import run_parallel
 from windup.tools.terminal.picture import check_picture
 from windup.tools.terminal.run_bar import RunBar
 from windup.tools.terminal.run_notes import NOTES
@@ -77,7 +77,7 @@ class BehaviourCommand(WorldOptions, Common):
 
     def _reports(self) -> Iterator[Report]:
         """Run every seed until somebody interrupts; yield the reports in the order of the seeds."""
-        if self.seeds is not None and self.behaviour.side_by_side:
+        if self.seeds is not None and self.behaviour.run_parallel:
             yield from self._side_by_side()
             return
         for seed in self.all_seeds:
@@ -130,7 +130,7 @@ class BehaviourCommand(WorldOptions, Common):
     def keep(self, run: RunRecord[Any]) -> None:
         """Write what a run gives beside its report."""
         if run.plot is not None:
-            with NOTES.losing():
+            with NOTES.collecting_output_errors():
                 self.behaviour.draw(run.plot, run)
                 console.print(f"picture: {run.plot}", markup=False, soft_wrap=True)
 
@@ -140,7 +140,7 @@ class BehaviourCommand(WorldOptions, Common):
         self._check_opened(seeds[0])
         done: dict[int, Report] = {}
         with suppress(KeyboardInterrupt):
-            done.update(side_by_side(self._noted, seeds, label="seeds"))
+            done.update(run_parallel(self._noted, seeds, label="seeds"))
         for seed in sorted(done):
             NOTES.add_row(done[seed].result)
             yield done[seed]

@@ -76,7 +76,7 @@ def _record(seen: Inspection) -> dict[str, Any]:
         "robot": seen.name,
         "folder": str(seen.folder),
         "errors": seen.findings.errors,
-        "warnings": seen.findings.doubts,
+        "warnings": seen.findings.warnings,
         "notes": seen.findings.notes,
         "joints": [] if robot is None else travel_rows(robot),
         "mass": None if model is None else mass_of(model, robot),

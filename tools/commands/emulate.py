@@ -18,7 +18,7 @@ from windup.hal.ranges import Range
 from windup.sim_twin.wire import Address, parse_address
 from windup.sim_twin.wire.faults.fault_text import parse_rules
 from windup.sim_twin.wire.serve.emulate import Emulator, emulate
-from windup.sim_twin.wire.serve.outlet import Outlet
+from windup.sim_twin.wire.serve.outlet import BusOutlet
 from windup.sim_twin.wire.world.address import BENCH, SCHEME
 from windup.sim_twin.wire.world.hand import parse_hands
 from windup.tools.terminal.command import Command
@@ -123,7 +123,7 @@ def _how_to_run(robot: str, emulator: Emulator) -> str:
     return f"in another terminal: windup stand {name} --port {port} --arm"
 
 
-def _describe(outlet: Outlet) -> str:
+def _describe(outlet: BusOutlet) -> str:
     bus = outlet.bus
     if not bus.devices:
         what = f"bus {bus.name!r} (it sends by itself at {bus.baud} baud)"

@@ -14,7 +14,7 @@ from windup.tools.behaviours.push_edge import Edge, Search, find_edge
 from windup.tools.commands.envelope_tables import largest_table, summarise, summary_table
 from windup.tools.commands.plot_envelope import plot_envelope
 from windup.tools.terminal.output import console, write_json
-from windup.tools.terminal.parallel import side_by_side
+from windup.tools.terminal.parallel import run_parallel
 from windup.tools.terminal.run_notes import NOTES
 
 
@@ -43,7 +43,7 @@ class Envelope:
     def run(self) -> int:
         """Search; returns the exit status."""
         found: dict[str, dict[float, Edge]] = {way: {} for way in self.ways}
-        for search, edge in side_by_side(find_edge, self.searches, label="pushing", jobs=self.jobs):
+        for search, edge in run_parallel(find_edge, self.searches, label="pushing", jobs=self.jobs):
             found[search.way][search.direction] = edge
         largest = {way: [found[way][d].impulse for d in self.directions] for way in self.ways}
         console.print(largest_table(self.directions, largest))
@@ -59,7 +59,7 @@ class Envelope:
         write_json(self.json, "push", result)
         if self.plot is not None:
             around = np.radians(self.directions).tolist()
-            with NOTES.losing():
+            with NOTES.collecting_output_errors():
                 plot_envelope(self.plot, self.robot, around, largest)
                 console.print(f"picture: {self.plot}", markup=False, soft_wrap=True)
         return 0

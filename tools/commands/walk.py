@@ -29,7 +29,7 @@ class Walk(WalkRunOptions, TwinOptions, BehaviourCommand):
     def keep(self, run: RunRecord[Any]) -> None:
         """Write the step models that were learnt, and the picture."""
         if self.learn is not None:
-            with NOTES.losing():
+            with NOTES.collecting_output_errors():
                 line = as_typed(self, ("learn", "json", "plot"))
                 keep_learnt(self.learn, run.measured.report, line)
         super().keep(run)

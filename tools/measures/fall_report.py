@@ -11,9 +11,9 @@ def fall_result(gauge: ImpactGauge) -> dict[str, Any]:
     return {
         "torso_impact_m_s": gauge.torso,
         "head_impact_m_s": gauge.head,
-        "torso_knock_m_s": gauge.knock,
+        "torso_knock_m_s": gauge.velocity_jump,
         "peak_load": float(gauge.load.max()),
-        "peak_joint": gauge.busiest,
+        "peak_joint": gauge.most_loaded_joint,
         "overload_s": gauge.overload,
     }
 

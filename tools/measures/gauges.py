@@ -21,7 +21,7 @@ class Gauges:
         contacts: The robot's contact sensors.
         flights: Number of flight phases that ended with a touchdown.
         flight_time: Time in those flight phases, s.
-        touches: Index of the foot of each touchdown, in order.
+        touchdowns: Index of the foot of each touchdown, in order.
         work: Sum over the joints of the absolute mechanical work, J.
         time: Duration so far, s.
     """
@@ -29,7 +29,7 @@ class Gauges:
     contacts: ContactSensors
     flights: int = field(default=0, init=False)
     flight_time: float = field(default=0.0, init=False)
-    touches: list[int] = field(default_factory=list, init=False)
+    touchdowns: list[int] = field(default_factory=list, init=False)
     work: float = field(default=0.0, init=False)
     time: float = field(default=0.0, init=False)
     _turning: float = field(default=0.0, init=False)
@@ -40,7 +40,7 @@ class Gauges:
         self._lifted = np.full(len(self.contacts.feet), np.inf)  # lift-off time; inf in stance
 
     @property
-    def shake(self) -> float:
+    def angular_velocity_rms(self) -> float:
         """Root mean square of the base's angular velocity, rad/s."""
         return float(np.sqrt(self._turning / self.time)) if self.time > 0.0 else 0.0
 
@@ -64,13 +64,13 @@ class Gauges:
     @property
     def skips(self) -> float:
         """Share of the touchdowns in a skipping pattern: twice on one foot, twice on the other."""
-        same = [one == other for one, other in pairwise(self.touches)]
+        same = [one == other for one, other in pairwise(self.touchdowns)]
         turns = [one != other for one, other in pairwise(same)]
         return float(np.mean(turns)) if turns else 0.0
 
     def _touch(self, now: float, down: Mask) -> None:
         for foot in np.flatnonzero(down & (now - self._lifted > SHORTEST_FLIGHT - 1e-9)):
-            self.touches.append(int(foot))
+            self.touchdowns.append(int(foot))
         self._lifted = np.where(down, np.inf, np.minimum(self._lifted, now))
 
     def _fly(self, now: float, down: bool) -> None:

@@ -18,10 +18,13 @@ def format_load(share: float, joint: str) -> str:
     >>> format_load(0.43, "l_knee")
     'peak load 43 % of stall at l_knee'
     >>> format_load(1.86, "l_knee")
-    'l_knee bore 1.9 x its stall torque, more than it gives by itself'
+    'l_knee was loaded with 1.9 x its stall torque, more than its motor can produce'
     """
     if share > 1.0:
-        return f"{joint} bore {share:.1f} x its stall torque, more than it gives by itself"
+        return (
+            f"{joint} was loaded with {share:.1f} x its stall torque, "
+            "more than its motor can produce"
+        )
     return f"peak load {100.0 * share:.0f} % of stall at {joint}"
 
 

@@ -34,7 +34,8 @@ class WalkEnd:
     def __post_init__(self) -> None:
         if self.rest and not self.walker.steering.can_rest:
             raise UsageError(
-                f"gait {self.walker.gait.name!r} cannot step on the spot, and so not come to rest"
+                f"gait {self.walker.gait.name!r} cannot step on the spot and therefore cannot come "
+                "to rest"
             )
 
     def __call__(self, observation: Observation) -> str | None:

@@ -53,7 +53,7 @@ def _flying(result: Result) -> str:
 
 def _sliding(result: Result) -> str:
     """Return whether slipping was detected, so that the robot walked with care."""
-    return ", with care since it slid" if result["slipped"] else ""
+    return ", in the style for slippery ground" if result["slipped"] else ""
 
 
 def _caught(result: Result) -> str:

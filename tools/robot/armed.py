@@ -9,7 +9,7 @@ from windup.hal.errors import HardwareError, PostureError, UsageError, WindupErr
 from windup.hal.torque_state import TorqueState
 from windup.tools.robot.stopping import Stoppable
 from windup.tools.stopping.interrupts import (
-    Asked,
+    StopRequests,
     check_not_interrupted,
     counted_signals,
     forget_interruption,
@@ -56,7 +56,7 @@ class Armed(Stoppable):
                 self._arm(self.backend.rearm, asked)
         self._raise_if(asked)
 
-    def _get_ready(self, down: bool, asked: Asked) -> None:
+    def _get_ready(self, down: bool, asked: StopRequests) -> None:
         """Switch torque on where it is off, once the robot is seen to be in a posture for it.
 
         Where somebody asks for the end meanwhile, it stays off, or goes off again.
@@ -77,7 +77,7 @@ class Armed(Stoppable):
         if start is not None:
             start.unseen = False
 
-    def check_going_on(self, asked: Asked) -> None:
+    def check_going_on(self, asked: StopRequests) -> None:
         """Refuse to go on after an interruption, which stops the robot.
 
         Raises:
@@ -92,18 +92,18 @@ class Armed(Stoppable):
                 self._stop(None, asked)
             raise
 
-    def _arm_once(self, asked: Asked) -> None:
+    def _arm_once(self, asked: StopRequests) -> None:
         if not self.armed and self.stack.wired:
             self._arm(lambda: self.backend.set_torque(True), asked)
 
-    def _arm(self, switch_on: Callable[[], TorqueState], asked: Asked) -> None:
+    def _arm(self, switch_on: Callable[[], TorqueState], asked: StopRequests) -> None:
         """Switch torque on, unless or until somebody asks for the end."""
         if not self.stack.may_arm:
             raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
         check_released(self.backend.backend)
         if self.stack.real:
             say(f"arming {self.description.name}: {how_to_stop(self.backend.backend)}")
-        self.backend.admit()
+        self.backend.check_before_arming()
         if asked():
             return
         self.custody.begin()

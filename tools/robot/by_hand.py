@@ -12,7 +12,7 @@ from windup.tools.reports.run_report import RunReport
 from windup.tools.robot.given import GivenCommand
 from windup.tools.robot.runner import Runner
 from windup.tools.robot.stopping import INTERRUPTED
-from windup.tools.stopping.interrupts import Asked, RunInterruptedError, counted_signals
+from windup.tools.stopping.interrupts import RunInterruptedError, StopRequests, counted_signals
 from windup.tools.stopping.stop_request import pressed_button
 
 SAME = (
@@ -99,7 +99,7 @@ class ByHand:
             raise RunInterruptedError(runner.loop, asked.by)
         return applied
 
-    def _tick(self, runner: Runner, command: JointCommand, asked: Asked) -> JointCommand:
+    def _tick(self, runner: Runner, command: JointCommand, asked: StopRequests) -> JointCommand:
         """Send a command in a tick of its own; stop the robot after an error."""
         loop, runner.loop = self._current(runner), self._report
         assert self._given is not None, "it came with the loop"
@@ -116,7 +116,7 @@ class ByHand:
             raise
         return applied
 
-    def _stop_if_asked(self, runner: Runner, asked: Asked) -> None:
+    def _stop_if_asked(self, runner: Runner, asked: StopRequests) -> None:
         if button := pressed_button(runner.backend.backend):
             asked.add(button)
         if asked():

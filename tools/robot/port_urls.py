@@ -84,14 +84,14 @@ def in_a_world(
         return port, address.world
     name = f"{robot.name}-{next(_worlds)}"
     if around is not None:
-        wire.put_world(name, wire.build_world(address, around), address.clock)
+        wire.register_world(name, wire.build_world(address, around), address.clock)
     return f"{port}{'&' if '?' in port else '?'}world={name}", name
 
 
 def forget_world(world: str, port: str) -> None:
     """Forget a world that was made for `port`, which names none of its own."""
     if world and not wire.parse_address(port).world:
-        wire.drop_world(world)
+        wire.unregister_world(world)
 
 
 def twin_behind(world: str) -> Twin | None:
@@ -112,4 +112,4 @@ def begin_noisily(world: str, twin: Twin, noise: float, seed: int) -> None:
     twin.reset(noise=noise, seed=seed)
     physics = wire.find_world(world).physics
     if noise and isinstance(physics, TwinPhysics):
-        physics.grasp()  # hands would put it back to where they took it
+        physics.store_held_pose()  # hands would put it back to where they took it

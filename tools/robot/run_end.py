@@ -12,7 +12,7 @@ from windup.hal.errors import WindupError
 from windup.hal.observation import Observation
 from windup.tools.reports.run_report import RunReport
 from windup.tools.robot.stopping import INTERRUPTED, LAY
-from windup.tools.stopping.interrupts import Asked
+from windup.tools.stopping.interrupts import StopRequests
 
 if TYPE_CHECKING:  # not needed by robots that do not fall
     from windup.control.falling.protection import Protected
@@ -39,7 +39,7 @@ class RunEnd:
         protected: Protection against falls; a run with a fall goes on until the robot lies still.
     """
 
-    asked: Asked
+    asked: StopRequests
     wishes: Sequence[Callable[[], str | None]]
     fallen: Callable[[], bool]
     loop: LoopReport

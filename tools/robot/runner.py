@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from weakref import ref
 
 from windup.control.loop import Recorder, TickLoop, Until
-from windup.hal.clock import punctual
+from windup.hal.clock import real_time_loop
 from windup.hal.command import JointCommand
 from windup.hal.controller import Controller, Stopwatch
 from windup.hal.errors import ControllerError, WindupError
@@ -23,8 +23,8 @@ from windup.tools.robot.run_end import PreparedRun, RunEnd
 from windup.tools.robot.stopping import INTERRUPTED
 from windup.tools.robot.watched import Watched
 from windup.tools.stopping.interrupts import (
-    Asked,
     RunInterruptedError,
+    StopRequests,
     counted_signals,
     note_interruption,
 )
@@ -139,7 +139,7 @@ class Runner(Watched):
             self.loop = report
             self.runs += 1
             end = RunEnd(
-                asked=asked, wishes=[wanted, lambda: self.running.asked],
+                asked=asked, wishes=[wanted, lambda: self.running.requested_by],
                 fallen=lambda: self.fallen, loop=report, opened=self.backend.clock.now(),
                 seconds=seconds, until=until, down=down, approach=approach, protected=protected,
             )  # fmt: skip
@@ -188,7 +188,7 @@ class Runner(Watched):
             return
         recorder = self.telemetry.begin(run.controller)
         try:
-            with punctual() if self.paced else nullcontext():
+            with real_time_loop() if self.paced else nullcontext():
                 yield self._loop(run, rollouts, recorder)
             self.stop_if_asked(asked)
             state = RunState.FAULTED if run.failed else self.state_between_runs()
@@ -250,15 +250,15 @@ class Runner(Watched):
         if run is not None and self.body is not None:
             run.close()
 
-    def enter_body(self, body: Body, asked: Asked) -> None:
+    def enter_body(self, body: Body, asked: StopRequests) -> None:
         """Begin the body of a `for` loop: from now on the third signal interrupts it."""
         self.body, asked.raises = body, True
 
-    def exit_body(self, asked: Asked) -> None:
+    def exit_body(self, asked: StopRequests) -> None:
         """End the body of a `for` loop: signals are only counted again."""
         self.body, asked.raises = None, False
 
-    def stop_if_asked(self, asked: Asked) -> None:
+    def stop_if_asked(self, asked: StopRequests) -> None:
         """Stop the robot if a stop request has ended the run."""
         if self.loop.reason == INTERRUPTED:
             if self.stack.wired:
@@ -266,7 +266,7 @@ class Runner(Watched):
                 logging.getLogger(__name__).warning("stopped by %s", asked.by)
             self._stop_after_error(asked)
 
-    def fail(self, error: WindupError, asked: Asked) -> None:
+    def fail(self, error: WindupError, asked: StopRequests) -> None:
         """Stop the robot because of an error, and publish the observation of its tick, too."""
         self.loop.reason = str(error)
         self.telemetry.record_last(self.loop)

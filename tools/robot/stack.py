@@ -68,7 +68,7 @@ class Stack:
         """Disconnect."""
         self.backend.disconnect()
         if self.world:
-            wire.drop_world(self.world)
+            wire.unregister_world(self.world)
 
 
 def open_stack(
@@ -116,7 +116,7 @@ def twin_stack(
     What is odd about the twin's `world` nobody is told.
 
     Raises:
-        UsageError: The delay is no whole number of physics steps.
+        UsageError: The delay is not a whole number of physics steps.
     """
     _check_delay(delay, robot)
     twin = Twin(robot, delay=delay, world=world)

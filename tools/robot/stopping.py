@@ -15,18 +15,18 @@ from windup.tools.robot.on_stack import OnStack
 from windup.tools.robot.start import Start
 from windup.tools.stopping.custody import Custody
 from windup.tools.stopping.interrupts import (
-    Asked,
     RunInterruptedError,
+    StopRequests,
     counted_signals,
     note_interruption,
 )
-from windup.tools.stopping.overheard import forget, overhear
 from windup.tools.stopping.running import Running
+from windup.tools.stopping.signal_listeners import add_signal_listener, remove_signal_listener
 from windup.tools.terminal.say import say
 
 INTERRUPTED = "interrupted"
 """The reason of a run that somebody ended."""
-LAY = "it lay there before: put it on its feet"
+LAY = "it was already lying down: put it on its feet"
 """Why a run of a robot that had fallen before ends without a tick."""
 
 
@@ -52,10 +52,10 @@ class Stoppable(OnStack):
         self._failed: WindupError | None = None
         self._closed = ""
         if self.stack.wired:
-            overhear(self)
+            add_signal_listener(self)
             _open.add(self)
 
-    def hear(self, by: str) -> None:
+    def on_signal(self, by: str) -> None:
         """Stop where a signal tells the main thread, which is not in a run, to end."""
         note_interruption(by)
         self.running.end(by)
@@ -78,7 +78,7 @@ class Stoppable(OnStack):
                     self._stop("limp" if limp else None, asked)
         self._raise_if(asked)
 
-    def _raise_if(self, asked: Asked) -> None:
+    def _raise_if(self, asked: StopRequests) -> None:
         """Raise what was asked for meanwhile; from now on nothing arms by itself.
 
         Raises:
@@ -117,7 +117,7 @@ class Stoppable(OnStack):
             if self.armed and not self._closed:
                 self.custody.idle()
 
-    def _stop(self, policy: StopPolicy | None, asked: Asked) -> None:
+    def _stop(self, policy: StopPolicy | None, asked: StopRequests) -> None:
         """Stop; the guardian is let go only if torque has been read back as off.
 
         A robot that has fallen goes limp, and so does one that would crouch before it has made its
@@ -128,7 +128,7 @@ class Stoppable(OnStack):
         if self.fallen or (policy == "crouch" and not moved):
             policy = "limp"
         before = self.armed
-        self.armed = not self.backend.stop(policy, lambda: asked.impatient).all_off
+        self.armed = not self.backend.stop(policy, lambda: asked.skip_crouch).all_off
         if not self.armed:
             self.custody.end(off=True)
             self._say_off(before)
@@ -138,17 +138,17 @@ class Stoppable(OnStack):
             count = len(self.description.joints)
             say(f"{self.description.name}: torque is off at all {count} joints, read back")
 
-    def _stop_before(self, asked: Asked) -> None:
+    def _stop_before(self, asked: StopRequests) -> None:
         """Stop a robot whose run was to end before its first tick."""
         self.loop.reason = INTERRUPTED
         note_interruption(asked.by)
         if self.armed:
             self._stop_after_error(asked)
 
-    def _stop_after_error(self, asked: Asked, error: WindupError | None = None) -> None:
+    def _stop_after_error(self, asked: StopRequests, error: WindupError | None = None) -> None:
         """Carry out the stop policy; nobody holds a joint that is unwell, or bad news."""
         unwell = isinstance(error, UnhealthyError) and self.backend.stop_policy == "hold"
-        limp = error is not None and (error.limp or unwell)
+        limp = error is not None and (error.torque_off_at_once or unwell)
         try:
             self._stop("limp" if limp else None, asked)
         except WindupError as failed:
@@ -188,7 +188,7 @@ class Stoppable(OnStack):
             self.custody.busy()
             self.stack.close()
             self.custody.end(off=not self.armed)
-        forget(self)
+        remove_signal_listener(self)
 
     def disown(self) -> None:
         """Leave the robot to the process that this one was forked from."""

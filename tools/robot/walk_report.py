@@ -141,12 +141,12 @@ class WalkReport(Results):
             "flights": gauges.flights,
             "flight_time_s": gauges.flight_time,
             "touches": "".join(
-                self.robot.description.feet[foot].side[:1] for foot in gauges.touches
+                self.robot.description.feet[foot].side[:1] for foot in gauges.touchdowns
             ),
             "skips": gauges.skips,
             "work_j": gauges.work,
             "cost_of_transport": gauges.cost_of_transport(self.walker.body.mass, way),
-            "shake_rad_s": gauges.shake,
+            "shake_rad_s": gauges.angular_velocity_rms,
         }
 
     def _mean(self, name: str, *, whole_strides: bool = False) -> float | None:

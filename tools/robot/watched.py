@@ -16,7 +16,7 @@ from windup.tools.reports.run_report import RunReport
 from windup.tools.robot.armed import Armed
 from windup.tools.robot.run_telemetry import RunTelemetry
 from windup.tools.robot.stack import look_with
-from windup.tools.stopping.interrupts import Asked
+from windup.tools.stopping.interrupts import StopRequests
 from windup.tools.terminal.slowness import Slowness
 
 # Called once a tick with the observation.
@@ -89,7 +89,7 @@ class Watched(Armed):
             return RunState.FALLEN
         return RunState.HOLDING if self.armed or not self.stack.wired else RunState.LIMP
 
-    def _stop(self, policy: StopPolicy | None, asked: Asked) -> None:
+    def _stop(self, policy: StopPolicy | None, asked: StopRequests) -> None:
         """Stop, and publish that; see `Stoppable`."""
         with self.telemetry.stopping(self.state_between_runs):
             super()._stop(policy, asked)

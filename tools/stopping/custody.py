@@ -74,7 +74,7 @@ class Custody:
         if self._keeper is None and isinstance(self._backend.clock, WallClock):
             safety = self._robot.safety
             seconds = safety.hold if self._robot.stop == "hold" else safety.idle
-            self._keeper = IdleKeeper(self._backend, seconds, self._beat, self._let_go)
+            self._keeper = IdleKeeper(self._backend, seconds, self._beat, self._stop_robot)
 
     def busy(self) -> None:
         """Stop holding the robot, because it is commanded from now on."""
@@ -98,7 +98,7 @@ class Custody:
             return
         guardian.hand_over()
         logging.getLogger(__name__).warning(
-            "the guardian (process %d) has %s now: it goes on until torque has been read as off",
+            "the guardian (process %d) has %s now: it continues until torque has been read as off",
             guardian.pid,
             self._robot.name,
         )
@@ -120,7 +120,7 @@ class Custody:
         if isinstance(self._backend.backend, ServoBackend):
             self._backend.backend.heartbeat = no_heartbeat
 
-    def _let_go(self, error: WindupError | None) -> None:
+    def _stop_robot(self, error: WindupError | None) -> None:
         """Stop the robot by `give_up`, if it still exists."""
         give_up = self._give_up()
         if give_up is not None:

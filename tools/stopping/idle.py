@@ -14,7 +14,7 @@ from windup.hal.guard import GuardedBackend
 from windup.tools.stopping.interrupts import note_interruption
 from windup.tools.stopping.stop_request import pressed_button
 
-LEAVE = 0.2
+GRACE_TIME = 0.2
 """Time for an interrupted program to end by itself, s."""
 PERIOD = 0.04
 """Period of reading the servos, s; their bus watchdog has a time-out of 0.2 s."""
@@ -48,7 +48,7 @@ class IdleKeeper:
     def interrupt(self, by: str) -> None:
         """Stop soon because of the signal `by`, unless the program starts a run before that."""
         self._by = self._by or by
-        self._until = min(self._until, self._backend.clock.now() + LEAVE)
+        self._until = min(self._until, self._backend.clock.now() + GRACE_TIME)
 
     def end(self) -> None:
         """End the thread; the caller controls the robot from now on."""
@@ -61,7 +61,7 @@ class IdleKeeper:
         try:
             while not self._over.wait(PERIOD):
                 if clock.now() > self._until:
-                    self._let_go()
+                    self._stop_robot()
                     return
                 self._backend.read()
                 self._alive()
@@ -74,7 +74,7 @@ class IdleKeeper:
             logging.getLogger(__name__).warning("%s; torque goes off", error)
             self._give_up(error)
 
-    def _let_go(self) -> None:
+    def _stop_robot(self) -> None:
         if self._by:
             logging.getLogger(__name__).warning("stopped by %s", self._by)
             self._give_up(None)

@@ -15,19 +15,19 @@ from typing import Any
 
 from windup.hal.errors import UsageError
 
-WORDS = {
+SIGNAL_NAMES = {
     signal.SIGTSTP: "Ctrl-Z",
     signal.SIGQUIT: "Ctrl-\\",
-    signal.SIGHUP: "the end of its terminal",
+    signal.SIGHUP: "the end of the terminal",
     signal.SIGTERM: "SIGTERM",
     signal.SIGINT: "Ctrl-C",
 }
 """The signals that end a run on servos. SIGINT, which raises, is last, to be restored last."""
 IN_SIMULATION = (signal.SIGTERM, signal.SIGINT)
 """The signals that end a run on a twin, which may be suspended by Ctrl-Z."""
-LAST_STRAW = 10
+KILL_COUNT = 10
 """Number of signals that kill a program which does not end; its guardian stops the robot."""
-IMPATIENT = 3
+SKIP_CROUCH_COUNT = 3
 """Number of signals from which on a stop omits the crouch."""
 
 
@@ -44,7 +44,7 @@ class RunInterruptedError(KeyboardInterrupt):
 
 
 @dataclass
-class Asked:
+class StopRequests:
     """The requests to end the program.
 
     Attributes:
@@ -63,18 +63,18 @@ class Asked:
         return self.count > 0
 
     @property
-    def impatient(self) -> bool:
+    def skip_crouch(self) -> bool:
         """Whether the stop must omit the crouch."""
-        return self.count >= IMPATIENT
+        return self.count >= SKIP_CROUCH_COUNT
 
-    def remember(self, number: int, frame: Any) -> None:
+    def on_signal(self, number: int, frame: Any) -> None:
         """Count a signal; this is the signal handler.
 
         Raises:
             KeyboardInterrupt: It is the third one, and `raises` is set.
         """
-        self.add(WORDS[signal.Signals(number)])
-        if self.raises and self.impatient:
+        self.add(SIGNAL_NAMES[signal.Signals(number)])
+        if self.raises and self.skip_crouch:
             raise KeyboardInterrupt
 
     def add(self, by: str) -> None:
@@ -83,7 +83,7 @@ class Asked:
         self.count += 1
 
 
-class _Elsewhere(Asked):
+class _OtherThreadRequests(StopRequests):
     """Requests to another thread: signals only reach the main thread, whose end is a request."""
 
     def __call__(self) -> bool:
@@ -93,34 +93,34 @@ class _Elsewhere(Asked):
         return self.count > 0
 
 
-_asked: Asked | None = None
+_requests: StopRequests | None = None
 _stopped_by = ""
 _ignored = 0
 
 
 @contextmanager
-def counted_signals(wired: bool = True) -> Iterator[Asked]:
+def counted_signals(wired: bool = True) -> Iterator[StopRequests]:
     """Within the context, count the signals that ask this program to end.
 
     Args:
         wired: Whether servos are involved: Ctrl-Z, SIGQUIT and SIGHUP count too.
     """
-    global _asked
+    global _requests
     if current_thread() is not main_thread():
-        yield _Elsewhere()
+        yield _OtherThreadRequests()
         return
-    if _asked is not None:
-        yield _asked
+    if _requests is not None:
+        yield _requests
         return
-    _asked = asked = Asked()
-    numbers = tuple(WORDS) if wired else IN_SIMULATION
+    _requests = requests = StopRequests()
+    numbers = tuple(SIGNAL_NAMES) if wired else IN_SIMULATION
     before: dict[signal.Signals, Callable[[int, Any], Any] | int | None] = {}
     try:
         for number in numbers:
-            before[number] = signal.signal(number, asked.remember)
-        yield asked
+            before[number] = signal.signal(number, requests.on_signal)
+        yield requests
     finally:
-        _asked = None
+        _requests = None
         for number, handler in before.items():
             signal.signal(number, handler)
 
@@ -147,15 +147,15 @@ def ignore_signals() -> None:
 
 def _end_once(number: int, frame: Any) -> None:
     for each in (signal.SIGHUP, signal.SIGQUIT, signal.SIGTERM, signal.SIGINT):
-        signal.signal(each, _count_on)
+        signal.signal(each, _count_ignored)
     raise KeyboardInterrupt
 
 
-def _count_on(number: int, frame: Any) -> None:
+def _count_ignored(number: int, frame: Any) -> None:
     """Ignore a signal, but exit at once after ten of them, if the program does not end."""
     global _ignored
     _ignored += 1
-    if _ignored >= LAST_STRAW:
+    if _ignored >= KILL_COUNT:
         os._exit(130)
 
 
@@ -178,6 +178,6 @@ def check_not_interrupted() -> None:
     """
     if _stopped_by:
         raise UsageError(
-            f"{_stopped_by} has stopped this program: no torque comes on by itself any more; "
-            "call robot.arm() to go on all the same"
+            f"{_stopped_by} has stopped this program, so torque is not switched on automatically; "
+            "call robot.arm() to continue"
         )

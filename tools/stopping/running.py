@@ -5,7 +5,7 @@ from types import TracebackType
 
 from windup.hal.errors import UsageError
 
-PATIENCE = 3.0
+STOP_TIME = 3.0
 """Longest time for a run to react to a request and to stop its robot, s."""
 
 
@@ -13,11 +13,11 @@ class Running:
     """A context that is active during a run; only one run is possible at a time.
 
     Attributes:
-        asked: Name of the request to end the run; "" if there is none.
+        requested_by: Name of the request to end the run; "" if there is none.
     """
 
     def __init__(self) -> None:
-        self.asked = ""
+        self.requested_by = ""
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
         self._idle = threading.Event()
@@ -30,8 +30,10 @@ class Running:
             UsageError: Another run is in progress.
         """
         if not self._lock.acquire(blocking=False):
-            raise UsageError("this robot is in a run already: wait until it is over, or stop() it")
-        self.asked = ""
+            raise UsageError(
+                "this robot is already running: wait for the end of the run, or call stop()"
+            )
+        self.requested_by = ""
         self._thread = threading.current_thread()
         self._idle.clear()
 
@@ -54,7 +56,7 @@ class Running:
         """Request the end of the run at its next tick; return its thread, or None without a run."""
         thread = self._thread
         if thread is not None:
-            self.asked = self.asked or by
+            self.requested_by = self.requested_by or by
         return thread
 
     def end_and_wait(self, by: str) -> bool:
@@ -62,4 +64,4 @@ class Running:
         thread = self.end(by)
         if thread is None:
             return False
-        return thread is threading.current_thread() or self._idle.wait(PATIENCE)
+        return thread is threading.current_thread() or self._idle.wait(STOP_TIME)

@@ -42,7 +42,7 @@ def check_released(backend: Backend) -> None:
         backend.read()
         if held := backend.button.held:
             raise UsageError(
-                f"the {held[0]} button of the robot is held down, and it is a stop: release it"
+                f"the {held[0]} button of the robot is held down, which stops the robot: release it"
             )
 
 

@@ -15,7 +15,7 @@ from windup.tools.sweeps.sweep_run import Run, check_line, play
 from windup.tools.sweeps.sweep_table import Row, Table, open_table
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console
-from windup.tools.terminal.parallel import side_by_side
+from windup.tools.terminal.parallel import run_parallel
 from windup.tools.terminal.quantities import Count, Jobs, Seed, Seeds
 from windup.tools.terminal.writing import check_writable, writing
 
@@ -84,7 +84,7 @@ class Sweep(Command):
         """Run the missing runs, add each row to the table, and return the errors."""
         errors = []
         try:
-            for _, row in side_by_side(play, todo, label="runs", jobs=self.jobs):
+            for _, row in run_parallel(play, todo, label="runs", jobs=self.jobs):
                 with writing(self.out):
                     table.append(row)
                 if row["error"] is not None:

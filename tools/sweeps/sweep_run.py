@@ -17,7 +17,7 @@ from windup.tools.cli import parse
 from windup.tools.command_line.parse_errors import gist
 from windup.tools.sweeps.sweep_grid import Axis, Point
 from windup.tools.sweeps.sweep_table import Row, typed
-from windup.tools.terminal.output import plain
+from windup.tools.terminal.output import to_json_types
 
 OURS = ("seed", "seeds", "json", "plot")  # options that the sweep itself sets
 YES, NO = ("true", "yes", "on", "1"), ("false", "no", "off", "0")
@@ -122,7 +122,7 @@ def flat(value: Any, name: str = "") -> Row:
     elif isinstance(value, list):
         items = [_item(index, item) for index, item in enumerate(value)]
     else:
-        return {name: plain(value)}
+        return {name: to_json_types(value)}
     row: Row = {}
     for key, item in items:
         row |= flat(item, f"{name}.{key}" if name else str(key))

@@ -97,7 +97,7 @@ class Synthesise(Command):
                 trials = [self._trial(n, genome.express(values), seeds) for n, values in todo]
                 for trial, rows in workers.run(walk_trial, trials):
                     yield trial.number, {"cost": aim.cost(rows), "terms": aim.terms(rows)}
-                    workers.say(f"best cost {_best(log):.3f}")
+                    workers.set_status(f"best cost {_best(log):.3f}")
 
             search = Search(genes, log, walk, self.trials, self.seed, self.population, self.spread)
             search.run()

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from windup.hal.errors import UsageError
-from windup.tools.terminal.output import plain
+from windup.tools.terminal.output import to_json_types
 from windup.tools.terminal.writing import writing
 
 Entry = dict[str, Any]
@@ -28,7 +28,7 @@ class SearchLog:
     def __init__(self, path: Path, setup: dict[str, Any]) -> None:
         self.path = path
         self.entries: dict[int, Entry] = {}
-        setup = json.loads(json.dumps(plain(setup)))
+        setup = json.loads(json.dumps(to_json_types(setup)))
         try:
             text = path.read_text(encoding="utf-8") if path.exists() else ""
             whole = text[: text.rfind("\n") + 1]  # without a last line cut off by a kill
@@ -42,7 +42,7 @@ class SearchLog:
 
     def add(self, number: int, entry: Entry) -> None:
         """Store a trial; it is in the file on return."""
-        entry = plain(entry)
+        entry = to_json_types(entry)
         self.entries[number] = entry
         with writing(self.path), self.path.open("a", encoding="utf-8") as file:
             file.write(json.dumps({"trial": number, **entry}) + "\n")

@@ -18,16 +18,16 @@ SCHEMA = 1
 console = Console(file=cast(IO[str], StandardError()), highlight=False)
 
 
-def plain(value: Any) -> Any:
+def to_json_types(value: Any) -> Any:
     """Return `value` in plain JSON types; NaN and infinity become null."""
     if isinstance(value, dict):
-        return {str(key): plain(item) for key, item in value.items()}
+        return {str(key): to_json_types(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
+        return [to_json_types(item) for item in value]
     if isinstance(value, np.ndarray):
-        return plain(value.tolist())
+        return to_json_types(value.tolist())
     if isinstance(value, np.generic):
-        return plain(value.item())
+        return to_json_types(value.item())
     if isinstance(value, float):
         return round(value, 6) if isfinite(value) else None
     return value
@@ -46,8 +46,8 @@ def write_json(target: Path | None, command: str, result: dict[str, Any]) -> Non
     if NOTES.ran:
         whole["warnings"] = NOTES.records()
         whole["driver_clamps"] = NOTES.driver_clamps
-    text = json.dumps(plain(whole), indent=2)
-    with NOTES.losing():
+    text = json.dumps(to_json_types(whole), indent=2)
+    with NOTES.collecting_output_errors():
         if target == STANDARD_OUTPUT:
             print_result(text + "\n")
             return

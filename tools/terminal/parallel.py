@@ -26,7 +26,7 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
-def side_by_side(
+def run_parallel(
     work: Callable[[Item], Result],
     items: list[Item],
     *,
@@ -102,10 +102,10 @@ class Workers:
                 yield futures[future], future.result()
         except BrokenProcessPool:
             raise WindupError(
-                "a worker process died (out of memory?); run again to go on"
+                "a worker process died (out of memory?); run the command again to continue"
             ) from None
 
-    def say(self, text: str) -> None:
+    def set_status(self, text: str) -> None:
         """Set the status text of the progress bar."""
         self._progress.update(self._bar, said=text)
 

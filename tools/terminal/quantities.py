@@ -8,7 +8,7 @@ from typing import Annotated
 
 from windup.hal.ranges import Range
 
-LONGEST = 1e7  # about four months, s
+MAX_TIME = 1e7  # about four months, s
 
 Seed = Annotated[int, Range(0, 2**32 - 1)]
 Count = Annotated[int, Range(1, 1_000_000)]
@@ -16,8 +16,8 @@ Some = Annotated[int, Range(1, 1_000)]
 Seeds = Annotated[int, Range(1, 100_000)]
 Jobs = Annotated[int, Range(1, 1_024)]
 Rate = Annotated[float, Range(0.0, 10_000.0, "Hz", above=True)]
-Seconds = Annotated[float, Range(0.0, LONGEST, "s")]
-Duration = Annotated[float, Range(0.0, LONGEST, "s", above=True)]
+Seconds = Annotated[float, Range(0.0, MAX_TIME, "s")]
+Duration = Annotated[float, Range(0.0, MAX_TIME, "s", above=True)]
 Delay = Annotated[float, Range(0.0, 1.0, "s")]
 Speed = Annotated[float, Range(-100.0, 100.0, "m/s")]
 TurnRate = Annotated[float, Range(-3_600.0, 3_600.0, "degrees/s")]

@@ -45,9 +45,9 @@ class RunNotes:
         if isinstance(backend, BusHealth):
             self.driver_clamps.update(backend.clamps)
         for finding in findings:
-            known = self._findings.get(finding.saying.name)
+            known = self._findings.get(finding.text.name)
             if known is None:
-                self._findings[finding.saying.name] = deepcopy(finding)
+                self._findings[finding.text.name] = deepcopy(finding)
             else:
                 known.merge(finding)
         if self._slowness is None:
@@ -62,7 +62,7 @@ class RunNotes:
         self._rows.append(row)
 
     @contextmanager
-    def losing(self) -> Iterator[None]:
+    def collecting_output_errors(self) -> Iterator[None]:
         """Record a failure to write a result, and continue: there may be other results."""
         try:
             yield
@@ -80,7 +80,7 @@ class RunNotes:
         ]
         return own + late + others
 
-    def said(self, ended_by: str = "") -> str:
+    def summary(self, ended_by: str = "") -> str:
         """Return the warnings in one line, or "".
 
         Args:

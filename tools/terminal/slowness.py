@@ -44,10 +44,10 @@ class Slowness:
         return self.missed_share > TICKS or self.late_share > PLANS
 
     def __str__(self) -> str:
-        return f"{self.what}: {self.do}"
+        return f"{self.description}: {self.remedy}"
 
     @property
-    def what(self) -> str:
+    def description(self) -> str:
         """Description of what was late."""
         parts = []
         if self.missed_share > TICKS:
@@ -57,7 +57,7 @@ class Slowness:
         return f"{' and '.join(parts)} came late"
 
     @property
-    def do(self) -> str:
+    def remedy(self) -> str:
         """Cause and advice: late plans are due to the computer, late ticks possibly to the bus."""
         if self.simulated:
             return f"the bus is too slow for {self.rate_hz:g} Hz: try a lower --rate"

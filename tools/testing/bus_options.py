@@ -67,7 +67,7 @@ def bus_url(robot: str | Path, options: Mapping[str, object]) -> str:
         UsageError: An option is unknown or reserved, or a value is not possible.
     """
     if taken := set(options) & set(RESERVED):
-        raise UsageError(f"a test's bus chooses its own {' and '.join(sorted(taken))}")
+        raise UsageError(f"a test's bus sets these options itself: {' and '.join(sorted(taken))}")
     query = urlencode({key: value for key, value in options.items() if value != ""}, safe=":,;")
     url = f"{SCHEME}://{robot}?{query}"
     parse_address(url)

@@ -23,15 +23,15 @@ from windup.hal.backend import Clock
 from windup.hal.errors import UsageError
 from windup.hal.port.open_port import open_port
 from windup.hal.port.port import Port
-from windup.sim_twin.wire import build_world, drop_world, parse_address, put_world
+from windup.sim_twin.wire import build_world, parse_address, register_world, unregister_world
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.faults.faults import Faults
-from windup.sim_twin.wire.serve.tape import check_played, tape_world
 from windup.sim_twin.wire.serve.trace import Checker, Recorder, Tap
+from windup.sim_twin.wire.serve.trace_replay import check_played, replay_world
 from windup.sim_twin.wire.world.address import BENCH
 from windup.sim_twin.wire.world.bus_world import BusWorld
 from windup.sim_twin.wire.world.clocks import VirtualClock
-from windup.sim_twin.wire.world.hand import Swing
+from windup.sim_twin.wire.world.hand import HandMotion
 from windup.tools.testing.bus_options import BusOptions, bus_url
 from windup.tools.testing.sdk_port import Sdk, port_handler_class
 
@@ -53,7 +53,7 @@ class ServoBus:
 
     Attributes:
         world: The world.
-        clock: Its clock; it moves when somebody waits.
+        clock: Its clock; it advances during waits.
         faults: The faults, one method for each kind.
         url: What to open: any pyserial program in this process can.
     """
@@ -67,13 +67,13 @@ class ServoBus:
         """Return buses that answer from a trace; a host that sends other bytes is told so."""
         bus = cls.__new__(cls)
         bus._robot, bus._seed = "", 0
-        bus._begin(tape_world(Path(path)))
+        bus._begin(replay_world(Path(path)))
         return bus
 
     def _begin(self, world: BusWorld) -> None:
         self.world = world
         self._name = f"servo-bus-{next(_numbers)}"
-        put_world(self._name, world)
+        register_world(self._name, world)
         self.clock: Clock = VirtualClock(world)
         self.faults: Faults = world.faults
         self.url = f"twin://{self._robot or 'tape'}?clock=virtual&world={self._name}"
@@ -163,7 +163,7 @@ class ServoBus:
             degrees: How far, from where it is.
             seconds: How long that takes.
         """
-        self.world.hand(Swing(joint, math.radians(degrees), seconds))
+        self.world.hand(HandMotion(joint, math.radians(degrees), seconds))
 
     def wait(self, seconds: float) -> None:
         """Let `seconds` s of virtual time pass."""
@@ -213,7 +213,7 @@ class ServoBus:
         """Return what there is to close, the last first; a second time there is nothing left."""
         stack = ExitStack()
         stack.push(_closing(partial(check_played, self.world)))
-        stack.callback(drop_world, self._name)
+        stack.callback(unregister_world, self._name)
         close = [robot.stack.close for robot in self._robots]
         close += [port.closePort for port in self._sdk_ports]
         close += [tap.close for tap in self._taps]

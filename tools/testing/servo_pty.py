@@ -17,7 +17,7 @@ from typing import Any, Self, Unpack
 
 from windup.hal.errors import PortError, UsageError
 from windup.sim_twin.wire.faults.fault_methods import FaultMethods
-from windup.sim_twin.wire.faults.fault_rule import Rule
+from windup.sim_twin.wire.faults.fault_rule import FaultRule
 from windup.sim_twin.wire.faults.fault_text import format_rule
 from windup.sim_twin.wire.world.address import BENCH
 from windup.tools.testing.bus_options import BusOptions, bus_url
@@ -45,7 +45,7 @@ class PtyFaults(FaultMethods):
         """The present time, s: 0, since times count from the call."""
         return 0.0
 
-    def add(self, rule: Rule) -> Self:
+    def add(self, rule: FaultRule) -> Self:
         """Add a fault.
 
         Raises:
@@ -133,7 +133,7 @@ class ServoPty:
         """Send an order and return the answer; see `_hear`."""
         stdin = self._process.stdin
         if stdin is None or stdin.closed:
-            raise UsageError("these servos are closed; nothing can be asked of them any more")
+            raise UsageError("these servos are closed; open them again with servo_pty(...)")
         self._orders += 1
         with suppress(BrokenPipeError):  # the answer says that the process has ended
             stdin.write(json.dumps(order | {"number": self._orders}).encode() + b"\n")
@@ -171,7 +171,7 @@ class ServoPty:
         status = self._process.poll()
         if status is None:
             return f"runs, and has not answered for {PATIENCE:g} s; is the machine busy?"
-        return f"has ended (exit status {status}); see its last words"
+        return f"has ended (exit status {status}); see its output"
 
     def __enter__(self) -> Self:
         return self

@@ -22,8 +22,8 @@ from windup.sim_twin.wire.servos.register_file import (
     BAD_INSTRUCTION,
     BAD_RANGE,
     OK,
-    Item,
     RegisterFile,
+    TableItem,
 )
 from windup.sim_twin.wire.servos.x_series import BAUD_RATES
 
@@ -33,28 +33,28 @@ MODE_BUTTON, START_BUTTON, USER_BUTTON = 0x01, 0x02, 0x04
 PRESENT = (30, 49)
 
 REGISTERS = (
-    Item(0, 2, "model_number", default=0x7400),
-    Item(2, 1, "firmware_version", default=1),
-    Item(3, 1, "id", "RW", 200, 0, 252),
-    Item(4, 1, "baud_rate", "RW", 3, 0, 7),
-    Item(5, 1, "return_delay_time", "RW", 0, 0, 254),
-    Item(16, 1, "status_return_level", "RW", 2, 0, 2),
-    Item(18, 2, "roll_offset", "RW", 0, -32768, 32767),
-    Item(20, 2, "pitch_offset", "RW", 0, -32768, 32767),
-    Item(22, 2, "yaw_offset", "RW", 0, -32768, 32767),
-    Item(24, 1, "dynamixel_power", "RW", 0, 0, 1),
-    Item(25, 1, "led", "RW", 0, 0, 255),
-    Item(26, 2, "led_rgb", "RW", 0, 0, 0x7FFF),
-    Item(28, 2, "buzzer", "RW", 0, 0, 65535),
-    Item(30, 1, "button"),
-    Item(31, 1, "present_voltage"),
+    TableItem(0, 2, "model_number", default=0x7400),
+    TableItem(2, 1, "firmware_version", default=1),
+    TableItem(3, 1, "id", "RW", 200, 0, 252),
+    TableItem(4, 1, "baud_rate", "RW", 3, 0, 7),
+    TableItem(5, 1, "return_delay_time", "RW", 0, 0, 254),
+    TableItem(16, 1, "status_return_level", "RW", 2, 0, 2),
+    TableItem(18, 2, "roll_offset", "RW", 0, -32768, 32767),
+    TableItem(20, 2, "pitch_offset", "RW", 0, -32768, 32767),
+    TableItem(22, 2, "yaw_offset", "RW", 0, -32768, 32767),
+    TableItem(24, 1, "dynamixel_power", "RW", 0, 0, 1),
+    TableItem(25, 1, "led", "RW", 0, 0, 255),
+    TableItem(26, 2, "led_rgb", "RW", 0, 0, 0x7FFF),
+    TableItem(28, 2, "buzzer", "RW", 0, 0, 65535),
+    TableItem(30, 1, "button"),
+    TableItem(31, 1, "present_voltage"),
     *(
-        Item(32 + 2 * k, 2, name, low=-32768)
+        TableItem(32 + 2 * k, 2, name, low=-32768)
         for k, name in enumerate(
             ("gyro_x", "gyro_y", "gyro_z", "acc_x", "acc_y", "acc_z", "roll", "pitch", "yaw")
         )
     ),
-    Item(50, 1, "imu_control", "RW", 0, 0, 15),
+    TableItem(50, 1, "imu_control", "RW", 0, 0, 15),
 )
 
 
@@ -85,7 +85,7 @@ class OpenCr:
         mounting: Mounting = IN_OP3,
     ) -> None:
         self.imu, self.servos, self.supply = imu, tuple(servos), supply
-        self._chip = mounting.chip
+        self._chip = mounting.to_imu
         self.buttons = 0
         self.dead: list[Device] = []
         self.on_power: Callable[[bool], None] | None = None
@@ -106,7 +106,7 @@ class OpenCr:
         return self.registers.memory[3]
 
     @property
-    def shadow(self) -> int:
+    def secondary_id(self) -> int:
         """No secondary id."""
         return 255
 
@@ -227,7 +227,7 @@ class OpenCr:
     def control(self, now: float, dt: float) -> None:
         """Do nothing: there is no control loop."""
 
-    def watch(self, now: float, dt: float, heard: float) -> None:
+    def watch(self, now: float, dt: float, last_instruction: float) -> None:
         """Do nothing: there is no watchdog."""
 
     def set_supply(self, volts: float, now: float) -> None:

@@ -16,7 +16,7 @@ from typing import Final
 from windup.hal.geometry.gravity import STANDARD_GRAVITY
 from windup.hal.geometry.quaternion import zxy_angles
 from windup.sim_twin.wire.bus.bus import Bus
-from windup.sim_twin.wire.bus.heard import Heard
+from windup.sim_twin.wire.bus.parsed_item import ParsedItem
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.imu.imu import ImuSource
 
@@ -37,33 +37,33 @@ def encode_rvc(index: int, imu: ImuSource) -> bytes:
     return HEADER + body + bytes((sum(body) & 0xFF,))
 
 
-class Mute:
+class SendOnlyProtocol:
     """The protocol of a bus whose only device ignores all bytes from the host."""
 
     id_at, length_at, data_at, tail = 2, 2, 3, 1
 
-    def seal(self, frame: bytes) -> bytes:
+    def with_checksum(self, frame: bytes) -> bytes:
         """Return `frame` with its checksum."""
         return frame[:-1] + bytes((sum(frame[2:-1]) & 0xFF,))
 
     def set_devices(self, devices: Sequence[Device]) -> None:
         """Do nothing: there are no addressable devices."""
 
-    def feed(self, chunk: bytes) -> list[Heard]:
+    def feed(self, chunk: bytes) -> list[ParsedItem]:
         """Ignore the bytes and return no frames."""
         return []
 
     def reset(self) -> None:
         """Do nothing: there is no partial frame."""
 
-    def execute(self, frame: Heard, bus: Bus) -> bool:
+    def execute(self, frame: ParsedItem, bus: Bus) -> bool:
         """Do nothing; return False."""
         return False
 
 
 def start_rvc(bus: Bus, imu: ImuSource, start: float = PERIOD) -> None:
     """Make an IMU send on `bus` periodically from `start`, s, without end."""
-    bus.schedule.at(start, partial(_send, bus, imu, 0, start))
+    bus.schedule.add(start, partial(_send, bus, imu, 0, start))
 
 
 def _send(bus: Bus, imu: ImuSource, count: int, start: float) -> None:
@@ -72,4 +72,4 @@ def _send(bus: Bus, imu: ImuSource, count: int, start: float) -> None:
     if not imu.silent:
         bus.answer(encode_rvc(count, imu), BAUD, count & 0xFF)
     count += 1
-    bus.schedule.at(start + count * PERIOD, partial(_send, bus, imu, count, start))
+    bus.schedule.add(start + count * PERIOD, partial(_send, bus, imu, count, start))

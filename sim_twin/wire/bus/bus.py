@@ -10,10 +10,10 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Protocol
 
-from windup.sim_twin.wire.bus.air import Air
-from windup.sim_twin.wire.bus.heard import Heard
 from windup.sim_twin.wire.bus.inbox import Burst, Inbox
+from windup.sim_twin.wire.bus.parsed_item import ParsedItem
 from windup.sim_twin.wire.bus.timing import Timing
+from windup.sim_twin.wire.bus.traffic import Traffic
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.imu.bno055 import Bno055Registers
 from windup.sim_twin.wire.imu.imu_faults import FaultyImu
@@ -40,7 +40,7 @@ class WireProtocol(Protocol):
     data_at: int
     tail: int
 
-    def seal(self, frame: bytes, /) -> bytes:
+    def with_checksum(self, frame: bytes, /) -> bytes:
         """Return `frame` with the correct checksum."""
         ...
 
@@ -48,7 +48,7 @@ class WireProtocol(Protocol):
         """Register the devices; called whenever registers below 64 may have changed."""
         ...
 
-    def feed(self, chunk: bytes) -> list[Heard]:
+    def feed(self, chunk: bytes) -> list[ParsedItem]:
         """Return the frames that `chunk` completes."""
         ...
 
@@ -56,12 +56,12 @@ class WireProtocol(Protocol):
         """Discard an incomplete frame."""
         ...
 
-    def execute(self, frame: Heard, bus: "Bus") -> bool:
+    def execute(self, frame: ParsedItem, bus: "Bus") -> bool:
         """Execute a frame; return False if it was dropped."""
         ...
 
 
-class Disturbance(Protocol):
+class FaultInjector(Protocol):
     """The faults of a bus, applied to what is sent on it.
 
     Attributes:
@@ -74,7 +74,7 @@ class Disturbance(Protocol):
         """Send a status packet with the faults that hit it now; return when it ends, s."""
         ...
 
-    def asked(self, bus: "Bus") -> bool:
+    def echoes(self, bus: "Bus") -> bool:
         """Return whether the adapter echoes the host's present bytes back to it."""
         ...
 
@@ -94,7 +94,7 @@ class Bus:
         schedule: The schedule of the world.
         timing: Latencies.
         faults: The faults; set by the world.
-        heard: Time at which the last valid instruction ended, s.
+        last_instruction: Time at which the last valid instruction ended, s.
         began: Time at which the host's last bytes began, s.
         counts: Numbers of "frames" executed, frames "dropped", and "collisions".
         plugged: Whether the host's adapter is plugged in.
@@ -117,8 +117,8 @@ class Bus:
     ) -> None:
         self.name, self.devices, self.protocol, self.schedule = name, devices, protocol, schedule
         self.timing = timing or Timing()
-        self.faults: Disturbance | None = None
-        self.heard = self.began = 0.0
+        self.faults: FaultInjector | None = None
+        self.last_instruction = self.began = 0.0
         self.counts = {"frames": 0, "dropped": 0, "collisions": 0}
         self.plugged, self.plugs = True, 0
         self.spoken: int | None = None
@@ -129,13 +129,13 @@ class Bus:
         self._baud = baud
         self._sent = -math.inf  # end of the host's last byte, s
         self._out = -math.inf  # time until which the adapter stays pulled out, s
-        self._air = Air()
+        self._traffic = Traffic()
         self.inbox = Inbox(self.timing.latency)
         self._by_id: dict[int, list[Device]] = {}
         self.refresh()
 
     @property
-    def disturbance(self) -> Disturbance | None:
+    def fault_injector(self) -> FaultInjector | None:
         """The faults, or None while none is active."""
         return self.faults if self.faults is not None and self.faults.active else None
 
@@ -156,8 +156,8 @@ class Bus:
         self._by_id.clear()
         for device in self.devices:
             self._by_id.setdefault(device.identifier, []).append(device)
-            if device.shadow < 253 and device.shadow != device.identifier:
-                self._by_id.setdefault(device.shadow, []).append(device)
+            if device.secondary_id < 253 and device.secondary_id != device.identifier:
+                self._by_id.setdefault(device.secondary_id, []).append(device)
 
     # The host's side
 
@@ -168,20 +168,20 @@ class Bus:
             self.protocol.reset()
         burst = Burst(start, BITS / self._baud, bytearray(data))
         self._sent, self.began = burst.end, start
-        self.counts["collisions"] += self._air.add(burst, self.schedule.now, self._noise)
+        self.counts["collisions"] += self._traffic.add(burst, self.schedule.now, self._noise)
         if self.tap is not None:
             self.tap(">", self._baud, burst)
-        wrong = self.disturbance
-        if wrong is not None and wrong.asked(self) and self.plugged:
-            self.inbox.append(Burst(burst.start, burst.byte, bytearray(burst.data)))
+        wrong = self.fault_injector
+        if wrong is not None and wrong.echoes(self) and self.plugged:
+            self.inbox.append(Burst(burst.start, burst.byte_time, bytearray(burst.data)))
         for at in range(0, len(burst.data), PIECE):
             for item in self.protocol.feed(bytes(burst.data[at : at + PIECE])):
                 if item.noise:
                     self.protocol.execute(item, self)
                     self.counts["dropped"] += 1
                     continue
-                end = start + (at + item.end) * burst.byte
-                self.schedule.at(end, partial(self._hear, item, burst, end))
+                end = start + (at + item.end) * burst.byte_time
+                self.schedule.add(end, partial(self._execute_frame, item, burst, end))
 
     @property
     def backlog(self) -> float:
@@ -209,7 +209,7 @@ class Bus:
         """Discard the bytes that the host has received and not read."""
         self.read(self.available())
 
-    def plug(self, there: bool) -> None:
+    def set_plugged(self, there: bool) -> None:
         """Pull the host's adapter out or plug it in; ports opened before stay dead in any case."""
         if there != self.plugged:
             self.plugged = there
@@ -219,15 +219,15 @@ class Bus:
 
     def unplug(self, seconds: float) -> None:
         """Pull the adapter out, and plug it in after some seconds (infinity: never)."""
-        self.plug(False)
+        self.set_plugged(False)
         back = self.schedule.now + seconds
         self._out = max(self._out, back)
         if back < math.inf:
-            self.schedule.at(back, self._plug_in)
+            self.schedule.add(back, self._plug_in)
 
     def _plug_in(self) -> None:
         if self.schedule.now >= self._out:  # no later call of `unplug` lasts longer
-            self.plug(True)
+            self.set_plugged(True)
 
     # The devices' side
 
@@ -236,7 +236,7 @@ class Bus:
         found = self._by_id.get(identifier)
         return [device for device in found if self.hears(device)] if found else []
 
-    def everybody(self) -> list[Device]:
+    def all_listening(self) -> list[Device]:
         """Return all devices that hear the host."""
         return [device for device in self.devices if self.hears(device)]
 
@@ -250,7 +250,7 @@ class Bus:
 
     def answer(self, data: bytes, baud: int, identifier: int) -> float:
         """Send a status packet now, with faults; return when it ends, s."""
-        wrong = self.disturbance
+        wrong = self.fault_injector
         if wrong is None:
             return self.put(data, baud)
         return wrong.answer(self, data, baud, identifier)
@@ -263,20 +263,22 @@ class Bus:
         """Send status packets without gaps and faults, at the host's baud rate."""
         self.put(b"".join(data), self._baud)
 
-    def put(self, data: bytes, baud: int, got: bytes | None = None, held: float = 0.0) -> float:
+    def put(
+        self, data: bytes, baud: int, received: bytes | None = None, held_until: float = 0.0
+    ) -> float:
         """Send bytes of a device now; return when they end, s.
 
         Args:
             data: The bytes that the device sends.
             baud: Baud rate of the device.
-            got: The bytes that the host receives instead, if a fault changed them.
-            held: Time before which the host's adapter does not deliver them, s.
+            received: The bytes that the host receives instead, if a fault changed them.
+            held_until: Time before which the host's adapter does not deliver them, s.
         """
-        burst = Burst(self.schedule.now, BITS / baud, bytearray(data), held=held)
+        burst = Burst(self.schedule.now, BITS / baud, bytearray(data), held_until=held_until)
         end = burst.end
-        self.counts["collisions"] += self._air.add(burst, self.schedule.now, self._noise)
-        if got is not None:
-            burst.data[:] = got
+        self.counts["collisions"] += self._traffic.add(burst, self.schedule.now, self._noise)
+        if received is not None:
+            burst.data[:] = received
         if abs(baud - self._baud) > BAUD_TOLERANCE * self._baud:
             burst.data[:] = self._noise(len(burst.data))
         if burst.data and self.plugged:
@@ -285,10 +287,10 @@ class Bus:
                 self.tap("<", baud, burst)
         return end
 
-    def _hear(self, item: Heard, burst: Burst, end: float) -> None:
+    def _execute_frame(self, item: ParsedItem, burst: Burst, end: float) -> None:
         """Execute a frame of the host, unless a collision has corrupted it since."""
-        if end > burst.ruined or not self.protocol.execute(item, self):
+        if end > burst.corrupted or not self.protocol.execute(item, self):
             self.counts["dropped"] += 1
             return
         self.counts["frames"] += 1
-        self.heard = end
+        self.last_instruction = end

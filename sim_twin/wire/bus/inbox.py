@@ -11,22 +11,22 @@ class Burst:
 
     Attributes:
         start: Start of the first byte, s.
-        byte: Duration of each byte, s.
+        byte_time: Duration of each byte, s.
         data: The bytes.
-        ruined: Time from which a collision has corrupted them, s.
-        held: Time before which the host's adapter does not deliver them, s.
+        corrupted: Time from which a collision has corrupted them, s.
+        held_until: Time before which the host's adapter does not deliver them, s.
     """
 
     start: float
-    byte: float
+    byte_time: float
     data: bytearray
-    ruined: float = math.inf
-    held: float = 0.0
+    corrupted: float = math.inf
+    held_until: float = 0.0
 
     @property
     def end(self) -> float:
         """End of the last byte, s."""
-        return self.start + len(self.data) * self.byte
+        return self.start + len(self.data) * self.byte_time
 
 
 class Inbox:
@@ -62,9 +62,9 @@ class Inbox:
         """Return the number of bytes that the host has received by `now`, s, and not read."""
         total = -self._taken
         for burst in self._bursts:
-            if burst.held > now:
+            if burst.held_until > now:
                 break
-            arrived = int((now - self.latency - burst.start) / burst.byte + 1e-6)
+            arrived = int((now - self.latency - burst.start) / burst.byte_time + 1e-6)
             total += max(0, min(arrived, len(burst.data)))
             if arrived < len(burst.data):
                 break
@@ -77,9 +77,9 @@ class Inbox:
         count += self._taken
         floor = 0.0
         for burst in self._bursts:
-            floor = max(floor, burst.held)
+            floor = max(floor, burst.held_until)
             if count <= len(burst.data):
-                return max(floor, burst.start + count * burst.byte + self.latency)
+                return max(floor, burst.start + count * burst.byte_time + self.latency)
             count -= len(burst.data)
         return math.inf
 

@@ -9,10 +9,10 @@ class Timing(NamedTuple):
     Attributes:
         latency: Latency from a byte's end on the wire until the host has it, s.
         turnaround: Time added to every return delay, s.
-        waits: Behaviour after a missing servo in a sync read. True: the later servos wait for it
-            for ever; False: they answer when its slot has passed.
+        waits_for_missing: Whether, in a sync read, the servos after a missing one wait for it for
+            ever; if not, they answer when its slot has passed.
     """
 
     latency: float = 0.0
     turnaround: float = 0.0
-    waits: bool = False
+    waits_for_missing: bool = False

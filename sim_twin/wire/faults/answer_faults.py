@@ -6,44 +6,44 @@ from dataclasses import dataclass
 from functools import partial
 
 from windup.sim_twin.wire.bus.bus import Bus
+from windup.sim_twin.wire.bus.corruption import corrupt_packet
 from windup.sim_twin.wire.bus.inbox import Burst
-from windup.sim_twin.wire.bus.spoilt import spoil
 
 
 @dataclass
-class Fate:
+class PacketFaults:
     """The faults that apply to one status packet.
 
     Attributes:
-        got: The bytes that the host receives.
+        received: The bytes that the host receives.
         before: The device's previous status packet of the same length.
         late: Additional delay before the device sends it, s.
-        held: Time until which the adapter holds it back, s.
-        glued: Longest time for which the adapter waits to deliver it with the next one, s.
-        torn: Index of the first byte that the adapter holds back, and for how long, s.
+        held_until: Time until which the adapter holds it back, s.
+        glue_time: Longest time for which the adapter waits to deliver it with the next one, s.
+        late_from: Index of the first byte that the adapter holds back, and for how long, s.
     """
 
-    got: bytes
+    received: bytes
     before: bytes = b""
     late: float = 0.0
-    held: float = 0.0
-    glued: float = 0.0
-    torn: tuple[int, float] | None = None
+    held_until: float = 0.0
+    glue_time: float = 0.0
+    late_from: tuple[int, float] | None = None
 
-    def suffer(self, kind: str, seconds: float, bus: Bus, dice: random.Random) -> None:
+    def apply(self, kind: str, seconds: float, bus: Bus, rng: random.Random) -> None:
         """Apply one fault of `fault_rule.ANSWERS`."""
         if kind == "late":
             self.late += seconds
         elif kind == "delay":
-            self.held = max(self.held, bus.schedule.now + seconds)
+            self.held_until = max(self.held_until, bus.schedule.now + seconds)
         elif kind == "glue":
-            self.glued = seconds
+            self.glue_time = seconds
         elif kind == "late_byte":
-            self.torn = dice.randrange(len(self.got)), seconds
+            self.late_from = rng.randrange(len(self.received)), seconds
         elif kind == "stale":
-            self.got = self.before
+            self.received = self.before
         else:
-            self.got = spoil(kind, self.got, bus.protocol, dice)
+            self.received = corrupt_packet(kind, self.received, bus.protocol, rng)
 
 
 class Sender:
@@ -52,43 +52,47 @@ class Sender:
     def __init__(self) -> None:
         self._glued: dict[str, Burst] = {}
 
-    def send(self, bus: Bus, data: bytes, baud: int, fate: Fate) -> float:
+    def send(self, bus: Bus, data: bytes, baud: int, faults: PacketFaults) -> float:
         """Send a status packet; return when it ends, s."""
-        put = partial(self._put, bus, data, baud, fate)
-        if fate.late <= 0.0:
+        put = partial(self._put, bus, data, baud, faults)
+        if faults.late <= 0.0:
             return put()
-        start = bus.schedule.now + fate.late
-        bus.schedule.at(start, put)
+        start = bus.schedule.now + faults.late
+        bus.schedule.add(start, put)
         return start + len(data) * 10.0 / baud
 
-    def _put(self, bus: Bus, data: bytes, baud: int, fate: Fate) -> float:
+    def _put(self, bus: Bus, data: bytes, baud: int, faults: PacketFaults) -> float:
         """Send it now; a packet glued to it is delivered together with its last byte."""
-        if fate.torn is not None:
-            return self._tear(bus, data, baud, fate)
-        end = bus.put(data, baud, fate.got, math.inf if fate.glued else fate.held)
+        if faults.late_from is not None:
+            return self._tear(bus, data, baud, faults)
+        end = bus.put(
+            data, baud, faults.received, math.inf if faults.glue_time else faults.held_until
+        )
         burst = bus.inbox.last
-        if not fate.got or burst is None:
+        if not faults.received or burst is None:
             return end
         waiting = self._glued.pop(bus.name, None)
-        if waiting is not None and waiting.held == math.inf:
-            waiting.held = end
-            burst.held = max(burst.held, end)
-        if fate.glued:
+        if waiting is not None and waiting.held_until == math.inf:
+            waiting.held_until = end
+            burst.held_until = max(burst.held_until, end)
+        if faults.glue_time:
             self._glued[bus.name] = burst
-            bus.schedule.at(end + fate.glued, partial(_release, burst, end + fate.glued))
+            bus.schedule.add(
+                end + faults.glue_time, partial(_release, burst, end + faults.glue_time)
+            )
         return end
 
-    def _tear(self, bus: Bus, data: bytes, baud: int, fate: Fate) -> float:
-        """Send it now; the adapter delivers the bytes from `torn` on later."""
-        assert fate.torn is not None
-        at, seconds = fate.torn
-        end = bus.put(data, baud, fate.got[:at], fate.held)
+    def _tear(self, bus: Bus, data: bytes, baud: int, faults: PacketFaults) -> float:
+        """Send it now; the adapter delivers the bytes from `late_from` on later."""
+        assert faults.late_from is not None
+        at, seconds = faults.late_from
+        end = bus.put(data, baud, faults.received[:at], faults.held_until)
         late = bus.schedule.now + seconds
-        bus.inbox.append(Burst(end, 10.0 / baud, bytearray(fate.got[at:]), held=late))
+        bus.inbox.append(Burst(end, 10.0 / baud, bytearray(faults.received[at:]), held_until=late))
         return end
 
 
 def _release(burst: Burst, time: float) -> None:
     """Deliver a glued packet if no other one followed in time."""
-    if burst.held == math.inf:
-        burst.held = time
+    if burst.held_until == math.inf:
+        burst.held_until = time

@@ -8,17 +8,17 @@ from typing import Final, Protocol
 from windup.sim_twin.wire.boards.opencr import USER_BUTTON, OpenCr
 from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.device import Device
-from windup.sim_twin.wire.faults.fault_rule import Rule
+from windup.sim_twin.wire.faults.fault_rule import FaultRule
 from windup.sim_twin.wire.schedule import Schedule
 
-EVERYBODY = -1
+WHOLE_BUS = -1
 OF_BUS: Final = frozenset(("unplug", "brown_out"))
 OF_IMU: Final = frozenset(("imu_silent", "imu_frozen", "imu_spin"))
 SILENCING: Final = frozenset(("dead", "reset", "brown_out", "unplug", "imu_silent"))
 """Events that also suppress the status packet at whose start they happen."""
 
 
-class Circuit(Protocol):
+class FaultyWorld(Protocol):
     """The part of the world that faults act on: its buses, its time and its supply."""
 
     @property
@@ -49,22 +49,22 @@ class Circuit(Protocol):
         ...
 
 
-def victims(rule: Rule, bus: Bus) -> Sequence[int]:
-    """Return the ids on a bus that an event hits; `EVERYBODY` stands for the bus itself."""
+def event_targets(rule: FaultRule, bus: Bus) -> Sequence[int]:
+    """Return the ids on a bus that an event hits; `WHOLE_BUS` stands for the bus itself."""
     if rule.bus not in (None, bus.name):
         return []
     if rule.kind in OF_BUS:
-        return [EVERYBODY]
+        return [WHOLE_BUS]
     if rule.kind in OF_IMU and bus.imu is None:
         return []
     boards = rule.kind in OF_IMU or rule.kind == "button"
     if rule.kind in OF_IMU and not bus.devices:  # an IMU that streams by itself has no id
-        return [EVERYBODY] if rule.ids is None else []
+        return [WHOLE_BUS] if rule.ids is None else []
     ids = [d.identifier for d in bus.devices if not boards or isinstance(d, OpenCr)]
-    return [id for id in ids if rule.concerns(bus.name, id)]
+    return [id for id in ids if rule.applies_to(bus.name, id)]
 
 
-def befall(rule: Rule, bus: Bus, identifier: int, world: Circuit) -> None:
+def apply_event(rule: FaultRule, bus: Bus, identifier: int, world: FaultyWorld) -> None:
     """Apply an event to one device of a bus, or to the whole bus."""
     if rule.kind == "unplug":
         bus.unplug(rule.seconds)
@@ -79,7 +79,7 @@ def befall(rule: Rule, bus: Bus, identifier: int, world: Circuit) -> None:
                 _hit(rule, bus, device, world)
 
 
-def _hit(rule: Rule, bus: Bus, device: Device, world: Circuit) -> None:
+def _hit(rule: FaultRule, bus: Bus, device: Device, world: FaultyWorld) -> None:
     """Apply an event to one device."""
     now = bus.schedule.now
     if rule.kind == "reset":
@@ -97,7 +97,7 @@ def _hit(rule: Rule, bus: Bus, device: Device, world: Circuit) -> None:
         _end(bus, rule, partial(device.release, USER_BUTTON))
 
 
-def _fail(rule: Rule, bus: Bus) -> None:
+def _fail(rule: FaultRule, bus: Bus) -> None:
     """Make the IMU of a bus fail."""
     imu = bus.imu
     assert imu is not None
@@ -109,7 +109,7 @@ def _fail(rule: Rule, bus: Bus) -> None:
         imu.spin(rule.seconds, rule.speed)
 
 
-def _end(bus: Bus, rule: Rule, undo: Callable[[], None]) -> None:
+def _end(bus: Bus, rule: FaultRule, undo: Callable[[], None]) -> None:
     """Schedule `undo` for the end of an event, unless it lasts for ever."""
     if rule.seconds < math.inf:
-        bus.schedule.at(bus.schedule.now + rule.seconds, undo)
+        bus.schedule.add(bus.schedule.now + rule.seconds, undo)

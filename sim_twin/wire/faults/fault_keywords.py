@@ -6,7 +6,7 @@ from typing import TypedDict
 from windup.sim_twin.wire.faults.fault_rule import Times
 
 
-class When(TypedDict, total=False):
+class TimeKeywords(TypedDict, total=False):
     """Rate or times of a fault.
 
     Attributes:
@@ -22,7 +22,7 @@ class When(TypedDict, total=False):
     bus: str
 
 
-class Who(When, total=False):
+class TargetKeywords(TimeKeywords, total=False):
     """Rate or times of a fault, and its targets.
 
     Attributes:

@@ -8,5 +8,6 @@ class FaultMethods(AnswerFaultMethods, EventMethods):
     """One method for each kind of fault: faults of answers in transit, and events.
 
     Each method adds one fault and returns the object, so that calls can be chained. All take the
-    keywords ``rate`` (share of the answers, 0 to 1) or ``at`` (s), ``ids`` and ``bus``; see `Who`.
+    keywords ``rate`` (share of the answers, 0 to 1) or ``at`` (s), ``ids`` and ``bus``; see
+    `TargetKeywords`.
     """

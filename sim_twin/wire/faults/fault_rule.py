@@ -59,13 +59,13 @@ RANGES: Final = {
     "degrees": Range(-273.0, 255.0, "degrees C"),
     "speed": Range(-100.0, 100.0, "rad/s"),
 }
-RATE = 0.01  # default share of answers that are hit, if neither rate nor time is given
+DEFAULT_RATE = 0.01  # default share of answers that are hit, if neither rate nor time is given
 
 Times = float | Sequence[float]
 
 
 @dataclass
-class Rule:
+class FaultRule:
     """One fault.
 
     Attributes:
@@ -81,7 +81,7 @@ class Rule:
     """
 
     kind: str
-    rate: float = RATE
+    rate: float = DEFAULT_RATE
     at: list[float] = field(default_factory=list)
     ids: frozenset[int] | None = None
     bus: str | None = None
@@ -93,7 +93,7 @@ class Rule:
     def __post_init__(self) -> None:
         self._scripted = bool(self.at)
 
-    def concerns(self, bus: str, identifier: int) -> bool:
+    def applies_to(self, bus: str, identifier: int) -> bool:
         """Return whether the fault can hit the device with this id on this bus."""
         here = self.bus is None or self.bus == bus
         return here and (self.ids is None or identifier in self.ids)
@@ -111,14 +111,14 @@ class Rule:
         there = {id for name, ids in buses.items() if self.bus in (None, name) for id in ids}
         if self.ids is not None and not self.ids & there:
             given, known = (", ".join(map(str, sorted(ids))) for ids in (self.ids, there))
-            raise UsageError(f"faults: {self.kind}: nobody has id {given}; there are {known}")
+            raise UsageError(f"faults: {self.kind}: no servo has id {given}; ids here: {known}")
 
-    def strikes(self, dice: random.Random, bus: str, identifier: int, now: float) -> bool:
+    def hits(self, rng: random.Random, bus: str, identifier: int, now: float) -> bool:
         """Return whether it hits the answer that a device begins at `now`, s."""
-        if not self.concerns(bus, identifier):
+        if not self.applies_to(bus, identifier):
             return False
         if not self._scripted:
-            return dice.random() < self.rate
+            return rng.random() < self.rate
         if self.kind in EVENTS or not self.at or now < self.at[0]:
             return False
         del self.at[0]
@@ -134,7 +134,7 @@ def make_rule(
     bus: str | None = None,
     seconds: float | None = None,
     **extra: float | None,
-) -> Rule:
+) -> FaultRule:
     """Return a checked rule; arguments that are omitted or None get their defaults.
 
     Args:
@@ -151,12 +151,12 @@ def make_rule(
     """
     check_kind(kind)
     if at is None:
-        rate = RATE if rate is None else rate
+        rate = DEFAULT_RATE if rate is None else rate
         check_number(f"faults: {kind}: rate", rate, SHARE)
         times: list[float] = []
     else:
         if rate is not None:
-            raise UsageError(f"faults: {kind}: a rate or a time, not both")
+            raise UsageError(f"faults: {kind}: give a rate or a time, not both")
         times = sorted(at) if isinstance(at, Sequence) else [at]
     for time in times:
         check_number(f"faults: {kind}: at", time, TIME)
@@ -167,9 +167,11 @@ def make_rule(
         takers = ", ".join(other for other in KINDS if SECONDS[other])
         raise UsageError(f"faults: {kind}: takes no seconds; these do: {takers}")
     if ids is not None and kind in REQUESTS:
-        raise UsageError(f"faults: {kind}: takes no ids; it concerns all that the host sends")
+        raise UsageError(
+            f"faults: {kind}: takes no ids; it applies to all bytes that the host sends"
+        )
     who = None if ids is None else frozenset(ids)
-    return Rule(kind, rate or 0.0, times, who, bus, lasts, **_extra(kind, extra))
+    return FaultRule(kind, rate or 0.0, times, who, bus, lasts, **_extra(kind, extra))
 
 
 def check_kind(kind: str) -> None:

@@ -9,7 +9,7 @@ from windup.sim_twin.wire.faults.fault_rule import (
     EXTRA,
     LAST_ID,
     SECONDS,
-    Rule,
+    FaultRule,
     check_kind,
     make_rule,
 )
@@ -18,7 +18,7 @@ KEYS: Final = ("rate", "at", "ids", "bus", "seconds", *EXTRA)
 EXAMPLE = "'drop:0.01,late:0.02:seconds=0.003:ids=1-6,unplug:at=2.5:seconds=0.5'"
 
 
-def parse_rules(text: str, live: bool = False) -> list[Rule]:
+def parse_rules(text: str, live: bool = False) -> list[FaultRule]:
     """Return the faults of a text: ``KIND[:RATE][:KEY=VALUE...]``, joined by commas.
 
     Keys are rate (its key may be omitted), at (s; several joined by ';'), ids ("1-6;9"), bus,
@@ -38,7 +38,7 @@ def parse_rules(text: str, live: bool = False) -> list[Rule]:
     return [_parse(part.strip(), live) for part in text.split(",") if part.strip()]
 
 
-def format_rule(rule: Rule) -> str:
+def format_rule(rule: FaultRule) -> str:
     """Return a fault as text, in the form that `parse_rules` reads.
 
     >>> format_rule(make_rule("unplug", at=2.5, seconds=1.0))
@@ -62,7 +62,7 @@ def _joined(numbers: Iterable[float]) -> str:
     return ";".join(map(str, numbers))
 
 
-def _parse(part: str, live: bool) -> Rule:
+def _parse(part: str, live: bool) -> FaultRule:
     kind, *words = (word.strip() for word in part.split(":"))
     check_kind(kind)
     values: dict[str, str] = {}

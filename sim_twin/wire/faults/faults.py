@@ -10,23 +10,23 @@ from weakref import ReferenceType, ref
 
 from windup.hal.errors import UsageError
 from windup.sim_twin.wire.bus.bus import Bus
-from windup.sim_twin.wire.faults.answer_faults import Fate, Sender
+from windup.sim_twin.wire.faults.answer_faults import PacketFaults, Sender
 from windup.sim_twin.wire.faults.fault_events import (
-    EVERYBODY,
     OF_IMU,
     SILENCING,
-    Circuit,
-    befall,
-    victims,
+    WHOLE_BUS,
+    FaultyWorld,
+    apply_event,
+    event_targets,
 )
 from windup.sim_twin.wire.faults.fault_methods import FaultMethods
-from windup.sim_twin.wire.faults.fault_rule import EVENTS, KINDS, REQUESTS, Rule
+from windup.sim_twin.wire.faults.fault_rule import EVENTS, KINDS, REQUESTS, FaultRule
 from windup.sim_twin.wire.faults.fault_text import parse_rules
 
 REMEMBERED = 10_000  # number of latest hits that are kept
 
 
-class Hit(NamedTuple):
+class AppliedFault(NamedTuple):
     """One fault that happened: time (s), kind, bus and id (-1: the whole bus)."""
 
     time: float
@@ -50,10 +50,10 @@ class Faults(FaultMethods):
     def __init__(self, seed: int = 0) -> None:
         self.active = False
         self.counts = dict.fromkeys(KINDS, 0)
-        self.hits: deque[Hit] = deque(maxlen=REMEMBERED)
-        self._rules: list[Rule] = []
+        self.hits: deque[AppliedFault] = deque(maxlen=REMEMBERED)
+        self._rules: list[FaultRule] = []
         self._dice = random.Random(seed)
-        self._of: ReferenceType[Circuit] | None = None
+        self._of: ReferenceType[FaultyWorld] | None = None
         self._sender = Sender()
         self._said: dict[tuple[str, int, int], bytes] = {}  # (bus, id, length) -> last answer
 
@@ -69,14 +69,14 @@ class Faults(FaultMethods):
             faults.add(rule)
         return faults
 
-    def add(self, rule: Rule) -> Self:
+    def add(self, rule: FaultRule) -> Self:
         """Add a fault."""
         self._rules.append(rule)
         self.active = True
         self._script(rule)
         return self
 
-    def inject(self, rules: Sequence[Rule], now: float) -> None:
+    def inject(self, rules: Sequence[FaultRule], now: float) -> None:
         """Add faults whose times count from `now`, s; see `parse_rules`."""
         for rule in rules:
             self.add(replace(rule, at=[now + time for time in rule.at]))
@@ -87,7 +87,7 @@ class Faults(FaultMethods):
         self.active = False
         return self
 
-    def attach(self, world: Circuit) -> None:
+    def attach(self, world: FaultyWorld) -> None:
         """Connect the faults to a world and schedule its timed events.
 
         Raises:
@@ -105,10 +105,10 @@ class Faults(FaultMethods):
         return 0.0 if self._world is None else self._world.now
 
     @property
-    def _world(self) -> Circuit | None:
+    def _world(self) -> FaultyWorld | None:
         return None if self._of is None else self._of()
 
-    def check(self, rules: Sequence[Rule]) -> None:
+    def check(self, rules: Sequence[FaultRule]) -> None:
         """Check that faults can happen in the world.
 
         Raises:
@@ -118,11 +118,11 @@ class Faults(FaultMethods):
         there = {bus.name: [device.identifier for device in bus.devices] for bus in buses}
         for rule in rules:
             rule.check_target(there)
-            if rule.kind in EVENTS and not any(victims(rule, bus) for bus in buses):
+            if rule.kind in EVENTS and not any(event_targets(rule, bus) for bus in buses):
                 what = (
                     "IMU" if rule.kind in OF_IMU else "OpenCR" if rule.kind == "button" else "servo"
                 )
-                raise UsageError(f"faults: {rule.kind}: there is no {what} that it could hit")
+                raise UsageError(f"faults: {rule.kind}: there is no {what} in this world")
 
     def noise(self, count: int) -> bytes:
         """Return random bytes, as received in a collision or at a wrong baud rate."""
@@ -131,68 +131,70 @@ class Faults(FaultMethods):
     def answer(self, bus: Bus, data: bytes, baud: int, identifier: int) -> float:
         """Send a status packet with the faults that hit it now; return when it ends, s."""
         key, now = (bus.name, identifier, len(data)), bus.schedule.now
-        fate, self._said[key] = Fate(data, self._said.get(key, data)), data
+        packet_faults, self._said[key] = PacketFaults(data, self._said.get(key, data)), data
         for rule in [*self._rules]:
             if rule.kind in REQUESTS:
                 continue
-            if not rule.strikes(self._dice, bus.name, identifier, now) or not fate.got:
+            if not rule.hits(self._dice, bus.name, identifier, now) or not packet_faults.received:
                 continue  # a packet that is lost already cannot be hit again
             if rule.kind in EVENTS:
-                self._begin(rule, bus, identifier, fate)
+                self._begin(rule, bus, identifier, packet_faults)
                 continue
             self._note(rule.kind, bus.name, identifier)
-            fate.suffer(rule.kind, rule.seconds, bus, self._dice)
-        return self._sender.send(bus, data, baud, fate)
+            packet_faults.apply(rule.kind, rule.seconds, bus, self._dice)
+        return self._sender.send(bus, data, baud, packet_faults)
 
-    def asked(self, bus: Bus) -> bool:
+    def echoes(self, bus: Bus) -> bool:
         """Return whether the adapter echoes the host's present bytes back to it."""
         echoes = False
         for rule in self._rules:
             now = bus.schedule.now
-            if rule.kind == "echo" and rule.strikes(self._dice, bus.name, EVERYBODY, now):
-                self._note(rule.kind, bus.name, EVERYBODY)
+            if rule.kind == "echo" and rule.hits(self._dice, bus.name, WHOLE_BUS, now):
+                self._note(rule.kind, bus.name, WHOLE_BUS)
                 echoes = True
         return echoes
 
-    def _begin(self, rule: Rule, bus: Bus, identifier: int, fate: Fate) -> None:
+    def _begin(
+        self, rule: FaultRule, bus: Bus, identifier: int, packet_faults: PacketFaults
+    ) -> None:
         """Apply an event at the start of an answer, if it can hit the answering device."""
-        concerned = victims(rule, bus)
-        if EVERYBODY not in concerned and identifier not in concerned:
+        concerned = event_targets(rule, bus)
+        if WHOLE_BUS not in concerned and identifier not in concerned:
             return
-        self._happen(rule, bus, identifier)
+        self._apply(rule, bus, identifier)
         if rule.kind in SILENCING:
-            fate.got = b""
+            packet_faults.received = b""
 
-    def _script(self, rule: Rule) -> None:
+    def _script(self, rule: FaultRule) -> None:
         """Schedule the timed events of a fault."""
         if self._world is not None and rule.kind in EVENTS:
             for time in rule.at:
-                self._world.schedule.at(time, partial(self._strike, rule))
+                self._world.schedule.add(time, partial(self._apply_timed, rule))
 
-    def _strike(self, rule: Rule) -> None:
+    def _apply_timed(self, rule: FaultRule) -> None:
         """Apply a timed event unless it was cleared; remove its rule after the last time."""
         if self._world is None or not any(known is rule for known in self._rules):
             return
-        self.happen(rule)
+        self.apply_now(rule)
         if self._world.now >= rule.at[-1]:
             self._rules = [known for known in self._rules if known is not rule]
             self.active = bool(self._rules)
 
-    def happen(self, rule: Rule) -> None:
+    def apply_now(self, rule: FaultRule) -> None:
         """Apply an event now to all its targets; before `attach` there are none."""
         for bus in self._world.buses.values() if self._world is not None else ():
-            concerned = victims(rule, bus)
+            concerned = event_targets(rule, bus)
             for identifier in concerned:
-                self._happen(rule, bus, identifier)
+                self._apply(rule, bus, identifier)
             if concerned and rule.kind == "brown_out":  # all buses share one supply
                 return
 
-    def _happen(self, rule: Rule, bus: Bus, identifier: int) -> None:
+    def _apply(self, rule: FaultRule, bus: Bus, identifier: int) -> None:
         """Record an event, and apply it to one device or to the bus."""
         self._note(rule.kind, bus.name, identifier)
         if self._world is not None:
-            befall(rule, bus, identifier, self._world)
+            apply_event(rule, bus, identifier, self._world)
 
     def _note(self, kind: str, bus: str, identifier: int) -> None:
         self.counts[kind] += 1
-        self.hits.append(Hit(self.now, kind, bus, identifier))
+        self.hits.append(AppliedFault(self.now, kind, bus, identifier))

@@ -42,7 +42,7 @@ class Bno055Registers:
         for register, value in RESET.items():
             self._memory[register] = value
         self._measures_from = math.inf
-        schedule.at(schedule.now + PERIOD, self._sample)
+        schedule.add(schedule.now + PERIOD, self._sample)
 
     def read(self, register: int, count: int) -> bytes:
         """Return `count` registers from one on.
@@ -75,7 +75,7 @@ class Bno055Registers:
         now = self._schedule.now
         if now >= self._measures_from and not self._imu.silent:
             self._memory[DATA : DATA + 32] = self._data()
-        self._schedule.at(now + PERIOD, self._sample)
+        self._schedule.add(now + PERIOD, self._sample)
 
     def _data(self) -> bytes:
         """Return the registers from DATA on; magnetic field and Euler angles are 0."""

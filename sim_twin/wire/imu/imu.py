@@ -62,12 +62,12 @@ class MountedImu:
     @property
     def angular_velocity(self) -> Array:
         """(3,) rad/s."""
-        return self._mounting.chip(self._source.angular_velocity)
+        return self._mounting.to_imu(self._source.angular_velocity)
 
     @property
     def acceleration(self) -> Array:
         """(3,) m/s2."""
-        return self._mounting.chip(self._source.acceleration)
+        return self._mounting.to_imu(self._source.acceleration)
 
     @property
     def orientation(self) -> Array:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from windup.sim_twin.wire.bus.bus import Bus
-from windup.sim_twin.wire.bus.heard import Heard
+from windup.sim_twin.wire.bus.parsed_item import ParsedItem
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.protocols.dynamixel2 import Dynamixel2
 from windup.sim_twin.wire.protocols.frames1 import Frame1, Frame1Error
@@ -31,7 +31,7 @@ class Dynamixel:
         """Check which protocols the devices use now."""
         self._mixed = any(device.protocol == OLD for device in devices)
 
-    def feed(self, chunk: bytes) -> list[Heard]:
+    def feed(self, chunk: bytes) -> list[ParsedItem]:
         """Return the frames of both protocols that `chunk` completes.
 
         Frames of protocol 2 are noise to the parser of protocol 1, so its noise is not reported.
@@ -47,7 +47,7 @@ class Dynamixel:
         self._new.reset()
         self._old.reset()
 
-    def execute(self, frame: Heard, bus: Bus) -> bool:
+    def execute(self, frame: ParsedItem, bus: Bus) -> bool:
         """Let the devices of its protocol execute a frame; return False if it was dropped."""
         old = isinstance(frame, Frame1 | Frame1Error)
         half = self._old if old else self._new
@@ -59,4 +59,4 @@ class Dynamixel:
     def _speak(self, half: Dynamixel2 | Protocol1) -> None:
         """Take over the frame layout of one protocol."""
         self.id_at, self.length_at = half.id_at, half.length_at
-        self.data_at, self.tail, self.seal = half.data_at, half.tail, half.seal
+        self.data_at, self.tail, self.with_checksum = half.data_at, half.tail, half.with_checksum

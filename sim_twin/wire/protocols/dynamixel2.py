@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 
 from windup.sim_twin.wire.bus.bus import Bus
-from windup.sim_twin.wire.bus.heard import Heard
+from windup.sim_twin.wire.bus.parsed_item import ParsedItem
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.protocols.frames import (
     BROADCAST,
@@ -18,9 +18,9 @@ from windup.sim_twin.wire.protocols.frames import (
     Parser,
     crc16,
     encode_status,
-    seal,
+    with_checksum,
 )
-from windup.sim_twin.wire.protocols.turns import READS, Round, Turn, answering, take_turns
+from windup.sim_twin.wire.protocols.turns import READS, GroupRead, ReadTurn, answering, take_turns
 from windup.sim_twin.wire.servos.register_file import (
     BAD_CRC,
     BAD_INSTRUCTION,
@@ -48,7 +48,7 @@ class Dynamixel2:
 
     id_at, length_at = ID_AT, LENGTH_AT
     data_at, tail = 9, 2
-    seal = staticmethod(seal)
+    with_checksum = staticmethod(with_checksum)
 
     def __init__(self) -> None:
         self._parser = Parser()
@@ -65,7 +65,7 @@ class Dynamixel2:
     def set_devices(self, devices: Sequence[Device]) -> None:
         """Do nothing: all devices use protocol 2."""
 
-    def feed(self, chunk: bytes) -> list[Heard]:
+    def feed(self, chunk: bytes) -> list[ParsedItem]:
         """Return the frames that `chunk` completes."""
         return [*self._parser.feed(chunk)]
 
@@ -73,7 +73,7 @@ class Dynamixel2:
         """Discard an incomplete frame."""
         self._parser.reset()
 
-    def execute(self, frame: Heard, bus: Bus) -> bool:
+    def execute(self, frame: ParsedItem, bus: Bus) -> bool:
         """Execute a frame; return False if it was dropped."""
         if not isinstance(frame, Frame):
             reason = getattr(frame, "reason", "unknown")
@@ -91,7 +91,7 @@ class Dynamixel2:
         elif frame.instruction == PING:
             _ping_all(bus)
         elif frame.instruction != READ:
-            for device in bus.everybody():
+            for device in bus.all_listening():
                 _act(device, frame, bus, broadcast=True)
             bus.refresh()
         return True
@@ -107,7 +107,7 @@ def _complain(identifier: int, bus: Bus) -> None:
             alert = device.read(0, 1, bus.schedule.now)[0]
             status = encode_status(identifier, alert | BAD_CRC)
             start = bus.schedule.now + device.return_delay + bus.timing.turnaround
-            bus.schedule.at(start, partial(bus.answer, status, device.baud, identifier))
+            bus.schedule.add(start, partial(bus.answer, status, device.baud, identifier))
 
 
 def _one(frame: Frame, bus: Bus) -> None:
@@ -122,7 +122,7 @@ def _one(frame: Frame, bus: Bus) -> None:
         if level >= needs and not silent:
             status = encode_status(frame.identifier, error, data)
             start = bus.schedule.now + delay + bus.timing.turnaround
-            bus.schedule.at(start, partial(bus.answer, status, baud, frame.identifier))
+            bus.schedule.add(start, partial(bus.answer, status, baud, frame.identifier))
 
 
 def _changes_eeprom(frame: Frame) -> bool:
@@ -187,11 +187,11 @@ def _write_to(identifier: int, address: int, data: bytes, bus: Bus) -> None:
 def _ping_all(bus: Bus) -> None:
     """Let every device answer a broadcast ping in the slot of its id."""
     now = bus.schedule.now
-    for device in bus.everybody():
+    for device in bus.all_listening():
         data = encode_status(device.identifier, device.read(0, 1, now)[0], device.ping())
         slot = PING_GAP + len(data) * 10.0 / bus.baud
         start = now + device.identifier * slot + device.return_delay
-        bus.schedule.at(start, partial(bus.answer, data, device.baud, device.identifier))
+        bus.schedule.add(start, partial(bus.answer, data, device.baud, device.identifier))
 
 
 def _sync_write(parameters: bytes, bus: Bus) -> None:
@@ -209,14 +209,14 @@ def _bulk_write(parameters: bytes, bus: Bus) -> None:
         at += 5 + count
 
 
-def _sync(parameters: bytes) -> list[Turn]:
+def _sync(parameters: bytes) -> list[ReadTurn]:
     address, count = _word(parameters, 0), _word(parameters, 2)
-    return [Turn(identifier, address, count) for identifier in parameters[4:]]
+    return [ReadTurn(identifier, address, count) for identifier in parameters[4:]]
 
 
-def _bulk(parameters: bytes) -> list[Turn]:
+def _bulk(parameters: bytes) -> list[ReadTurn]:
     return [
-        Turn(parameters[at], _word(parameters, at + 1), _word(parameters, at + 3))
+        ReadTurn(parameters[at], _word(parameters, at + 1), _word(parameters, at + 3))
         for at in range(0, len(parameters) - 4, 5)
     ]
 
@@ -225,11 +225,11 @@ def _word(data: bytes, at: int) -> int:
     return int.from_bytes(data[at : at + 2], "little")
 
 
-def _take(turns: list[Turn], bus: Bus) -> None:
-    take_turns(turns, Round(bus, encode_status, STATUS_BYTES))
+def _take(turns: list[ReadTurn], bus: Bus) -> None:
+    take_turns(turns, GroupRead(bus, encode_status, STATUS_BYTES))
 
 
-def _chained(turns: list[Turn], bus: Bus) -> None:
+def _chained(turns: list[ReadTurn], bus: Bus) -> None:
     """Answer a fast read: all devices contribute to one status packet, without byte stuffing.
 
     Each part ends with a CRC over all bytes so far; the last one is the packet's CRC.
@@ -246,7 +246,7 @@ def _chained(turns: list[Turn], bus: Bus) -> None:
 
 
 def _chain_on(
-    left: Iterator[tuple[Turn, list[Device]]], head: bytes, crc: int, bus: Bus, end: float
+    left: Iterator[tuple[ReadTurn, list[Device]]], head: bytes, crc: int, bus: Bus, end: float
 ) -> None:
     """Schedule the next device's part; it begins with `head` if it is the first."""
     for turn, devices in left:
@@ -254,17 +254,17 @@ def _chain_on(
             # Only the first device applies its return delay: the packet has no gaps.
             delay = devices[0].return_delay + bus.timing.turnaround if head else 0.0
             part = partial(_add_part, turn, devices[0], left, head, crc, bus)
-            bus.schedule.at(end + delay, part)
+            bus.schedule.add(end + delay, part)
             return
-        if bus.timing.waits or head:
+        if bus.timing.waits_for_missing or head:
             return
         end += (turn.size + 4) * 10.0 / bus.baud
 
 
 def _add_part(
-    turn: Turn,
+    turn: ReadTurn,
     device: Device,
-    left: Iterator[tuple[Turn, list[Device]]],
+    left: Iterator[tuple[ReadTurn, list[Device]]],
     head: bytes,
     crc: int,
     bus: Bus,

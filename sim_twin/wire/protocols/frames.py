@@ -81,7 +81,7 @@ def encode_status(identifier: int, error: int, parameters: bytes = b"") -> bytes
     return known[0] + body + crc16(body, known[1]).to_bytes(2, "little")
 
 
-def seal(frame: bytes) -> bytes:
+def with_checksum(frame: bytes) -> bytes:
     """Return `frame` with the correct CRC."""
     return frame[:-2] + crc16(frame[:-2]).to_bytes(2, "little")
 

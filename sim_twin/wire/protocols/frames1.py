@@ -41,7 +41,7 @@ def encode(identifier: int, instruction: int, parameters: bytes = b"") -> bytes:
     return HEADER + body + bytes((~sum(body) & 0xFF,))
 
 
-def seal(frame: bytes) -> bytes:
+def with_checksum(frame: bytes) -> bytes:
     """Return `frame` with the correct checksum."""
     return frame[:-1] + bytes((checksum(frame[2:-1]),))
 

@@ -5,7 +5,7 @@ from functools import partial
 from typing import Final, NamedTuple
 
 from windup.sim_twin.wire.bus.bus import BITS, Bus
-from windup.sim_twin.wire.bus.heard import Heard
+from windup.sim_twin.wire.bus.parsed_item import ParsedItem
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.protocols.frames1 import (
     BROADCAST,
@@ -16,9 +16,9 @@ from windup.sim_twin.wire.protocols.frames1 import (
     Frame1Error,
     Parser1,
     encode,
-    seal,
+    with_checksum,
 )
-from windup.sim_twin.wire.protocols.turns import READS, Round, Turn, take_turns
+from windup.sim_twin.wire.protocols.turns import READS, GroupRead, ReadTurn, take_turns
 from windup.sim_twin.wire.servos.register_file import EEPROM_END
 
 PING, READ, WRITE, REG_WRITE, ACTION, RESET, REBOOT = 0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x08
@@ -62,7 +62,7 @@ class Protocol1:
 
     id_at, length_at = ID_AT, LENGTH_AT
     data_at, tail = 5, 1
-    seal = staticmethod(seal)
+    with_checksum = staticmethod(with_checksum)
 
     def __init__(self, variant: Variant) -> None:
         self.variant = variant
@@ -77,7 +77,7 @@ class Protocol1:
     def set_devices(self, devices: Sequence[Device]) -> None:
         """Do nothing: all devices use protocol 1."""
 
-    def feed(self, chunk: bytes) -> list[Heard]:
+    def feed(self, chunk: bytes) -> list[ParsedItem]:
         """Return the frames that `chunk` completes."""
         return [*self._parser.feed(chunk)]
 
@@ -85,7 +85,7 @@ class Protocol1:
         """Discard an incomplete frame."""
         self._parser.reset()
 
-    def execute(self, frame: Heard, bus: Bus) -> bool:
+    def execute(self, frame: ParsedItem, bus: Bus) -> bool:
         """Execute a frame; return False if it was dropped."""
         if not isinstance(frame, Frame1):
             self._drop(frame, bus)
@@ -98,12 +98,12 @@ class Protocol1:
         elif frame.instruction == PING:
             self._ping_all(bus)
         elif frame.instruction != READ:
-            for device in bus.everybody():
+            for device in bus.all_listening():
                 self._act(device, frame, bus)
             bus.refresh()
         return True
 
-    def _drop(self, item: Heard, bus: Bus) -> None:
+    def _drop(self, item: ParsedItem, bus: Bus) -> None:
         """Count the reason; a Dynamixel whose id is in the frame answers a checksum error."""
         reason = getattr(item, "reason", "unknown")
         self.errors[reason] = self.errors.get(reason, 0) + 1
@@ -166,7 +166,7 @@ class Protocol1:
         """Let all devices answer a broadcast ping: each in the slot of its id, or all at once."""
         slot = PING_SLOT + STATUS_BYTES * BITS / bus.baud if self.variant.slots else 0.0
         now = bus.schedule.now
-        for device in bus.everybody():
+        for device in bus.all_listening():
             status = encode(device.identifier, device.read(0, 1, now)[0])
             _later(device, bus, status, device.return_delay + device.identifier * slot)
 
@@ -184,22 +184,22 @@ def _later(
     """Schedule a status packet after the return delay."""
     delay = device.return_delay if delay is None else delay
     start = bus.schedule.now + delay + bus.timing.turnaround
-    bus.schedule.at(start, partial(bus.answer, status, baud or device.baud, status[ID_AT]))
+    bus.schedule.add(start, partial(bus.answer, status, baud or device.baud, status[ID_AT]))
 
 
-def _take(turns: list[Turn], bus: Bus) -> None:
+def _take(turns: list[ReadTurn], bus: Bus) -> None:
     if all(turn.size <= LONGEST_READ for turn in turns):
-        take_turns(turns, Round(bus, encode, STATUS_BYTES))
+        take_turns(turns, GroupRead(bus, encode, STATUS_BYTES))
 
 
-def _sync(parameters: bytes) -> list[Turn]:
-    return [Turn(k, parameters[0], parameters[1]) for k in parameters[2:]]
+def _sync(parameters: bytes) -> list[ReadTurn]:
+    return [ReadTurn(k, parameters[0], parameters[1]) for k in parameters[2:]]
 
 
-def _bulk(parameters: bytes) -> list[Turn]:
+def _bulk(parameters: bytes) -> list[ReadTurn]:
     """Return the turns of a bulk read: a zero, then length, id and address of each."""
     return [
-        Turn(parameters[at + 1], parameters[at + 2], parameters[at])
+        ReadTurn(parameters[at + 1], parameters[at + 2], parameters[at])
         for at in range(1, len(parameters) - 2, 3)
     ]
 

@@ -12,7 +12,7 @@ PIECE = 4  # number of answers that are computed together
 READS = 1  # status return level from which reads are answered
 
 
-class Turn(NamedTuple):
+class ReadTurn(NamedTuple):
     """One device's part in a sync or bulk read."""
 
     identifier: int
@@ -20,7 +20,7 @@ class Turn(NamedTuple):
     size: int
 
 
-class Round(NamedTuple):
+class GroupRead(NamedTuple):
     """Data that all turns of one read share.
 
     Attributes:
@@ -34,26 +34,26 @@ class Round(NamedTuple):
     overhead: int
 
 
-Turns = Sequence[tuple[Turn, list[Device]]]
+Turns = Sequence[tuple[ReadTurn, list[Device]]]
 
 
-def take_turns(turns: Sequence[Turn], round_: Round) -> None:
+def take_turns(turns: Sequence[ReadTurn], group: GroupRead) -> None:
     """Answer a sync or bulk read with one status packet after the other.
 
     All devices sample their shafts when the request ends, as real servos do.
     """
-    bus = round_.bus
+    bus = group.bus
     who = [(turn, answering(turn, bus)) for turn in turns]
     for _, devices in who:
         for device in devices:
             device.sample()
-    if _gapless(who, bus):
-        _in_pieces(who, 0, round_)
+    if _without_gaps(who, bus):
+        _in_pieces(who, 0, group)
     else:
-        _go_on(iter(who), round_, bus.schedule.now)
+        _go_on(iter(who), group, bus.schedule.now)
 
 
-def answering(turn: Turn, bus: Bus, fast: bool = False) -> list[Device]:
+def answering(turn: ReadTurn, bus: Bus, fast: bool = False) -> list[Device]:
     """Return the devices that will answer a turn."""
     return [
         device
@@ -64,10 +64,10 @@ def answering(turn: Turn, bus: Bus, fast: bool = False) -> list[Device]:
     ]
 
 
-def _gapless(who: Turns, bus: Bus) -> bool:
+def _without_gaps(who: Turns, bus: Bus) -> bool:
     """Return whether the answers follow each other without gaps, faults or collisions."""
     return (
-        bus.disturbance is None
+        bus.fault_injector is None
         and bus.timing.turnaround == 0.0
         and all(len(devices) == 1 for _, devices in who)
         and all(devices[0].return_delay == 0.0 for _, devices in who)
@@ -75,12 +75,12 @@ def _gapless(who: Turns, bus: Bus) -> bool:
     )
 
 
-def _in_pieces(who: Turns, first: int, round_: Round) -> None:
+def _in_pieces(who: Turns, first: int, group: GroupRead) -> None:
     """Send gapless answers, a few at once.
 
     Not all at once, because the host may be waiting for the first of them in real time.
     """
-    bus, encode = round_.bus, round_.encode
+    bus, encode = group.bus, group.encode
     now, byte = bus.schedule.now, BITS / bus.baud
     last = first + PIECE
     answers: list[bytes] = []
@@ -90,29 +90,32 @@ def _in_pieces(who: Turns, first: int, round_: Round) -> None:
         now += len(answers[-1]) * byte
     bus.answers(answers)
     if last < len(who):
-        bus.schedule.at(now, partial(_in_pieces, who, last, round_))
+        bus.schedule.add(now, partial(_in_pieces, who, last, group))
 
 
-def _go_on(left: Iterator[tuple[Turn, list[Device]]], round_: Round, end: float) -> None:
+def _go_on(left: Iterator[tuple[ReadTurn, list[Device]]], group: GroupRead, end: float) -> None:
     """Schedule the next device's answer; the previous one ended at `end`, s."""
-    bus = round_.bus
+    bus = group.bus
     for turn, devices in left:
         if devices:
             start = end + devices[0].return_delay + bus.timing.turnaround
-            bus.schedule.at(start, partial(_take_turn, turn, devices, left, round_))
+            bus.schedule.add(start, partial(_take_turn, turn, devices, left, group))
             return
-        if bus.timing.waits:
+        if bus.timing.waits_for_missing:
             return
-        end += (turn.size + round_.overhead) * BITS / bus.baud
+        end += (turn.size + group.overhead) * BITS / bus.baud
 
 
 def _take_turn(
-    turn: Turn, devices: Iterable[Device], left: Iterator[tuple[Turn, list[Device]]], round_: Round
+    turn: ReadTurn,
+    devices: Iterable[Device],
+    left: Iterator[tuple[ReadTurn, list[Device]]],
+    group: GroupRead,
 ) -> None:
-    bus = round_.bus
+    bus = group.bus
     now = end = bus.schedule.now
     for device in devices:
         error, data = device.read(turn.address, turn.size, now)
-        status = round_.encode(turn.identifier, error, data)
+        status = group.encode(turn.identifier, error, data)
         end = max(end, bus.answer(status, device.baud, turn.identifier))
-    _go_on(left, round_, end)
+    _go_on(left, group, end)

@@ -18,11 +18,11 @@ from queue import SimpleQueue
 
 from windup.hal.errors import UsageError
 from windup.hal.port.port import SELECTABLE
-from windup.sim_twin.wire.faults.fault_rule import Rule
+from windup.sim_twin.wire.faults.fault_rule import FaultRule
 from windup.sim_twin.wire.faults.fault_text import parse_rules
-from windup.sim_twin.wire.serve.journal import Event, Journal, Watcher
+from windup.sim_twin.wire.serve.journal import Event, Journal, WorldWatcher
 from windup.sim_twin.wire.serve.link import Link, Pty, Tcp, free_port
-from windup.sim_twin.wire.serve.outlet import Outlet
+from windup.sim_twin.wire.serve.outlet import BusOutlet
 from windup.sim_twin.wire.world.address import Address
 from windup.sim_twin.wire.world.build import build_world
 from windup.sim_twin.wire.world.bus_world import BusWorld
@@ -58,16 +58,16 @@ class Emulator:
         events: Callable[[Event], None] | None = None,
     ) -> None:
         self.world = world
-        self.outlets: list[Outlet] = []
+        self.outlets: list[BusOutlet] = []
         self._wake_read, self._wake_write = os.pipe()
         self._running = True
-        self._watcher = Watcher(world, journal, events)
+        self._watcher = WorldWatcher(world, journal, events)
         self._orders: SimpleQueue[Callable[[], object]] = SimpleQueue()
 
-    def plug(self, bus: str, make: Callable[[], Link]) -> None:
+    def connect(self, bus: str, make: Callable[[], Link]) -> None:
         """Connect a bus to the link that `make` makes, now and after each unplugging."""
-        self.outlets.append(Outlet(self.world.bus(bus), make))
-        self.outlets[-1].settle()
+        self.outlets.append(BusOutlet(self.world.bus(bus), make))
+        self.outlets[-1].update_link()
 
     def stop(self) -> None:
         """End `run`; signal handlers and threads may call this."""
@@ -84,18 +84,18 @@ class Emulator:
             UsageError: The text is wrong or cannot happen in this world, or the emulator has ended.
         """
         if not self._running:
-            raise UsageError("the emulator has ended; nothing can be injected any more")
+            raise UsageError("the emulator has ended; faults cannot be injected")
         rules = parse_rules(text, live=True)
         self.world.faults.check(rules)
-        self._order(partial(self._begin, rules))
+        self._queue_call(partial(self._begin, rules))
 
     def clear_faults(self) -> None:
         """Remove all faults, from any thread; devices that are broken already stay broken."""
-        self._order(self.world.faults.clear)
+        self._queue_call(self.world.faults.clear)
 
     def run(self) -> None:
         """Serve until `stop`."""
-        _be_punctual()
+        _set_real_time()
         start = wall.perf_counter() - self.world.now
         schedule = self.world.schedule
         while self._running:
@@ -109,7 +109,7 @@ class Emulator:
                 continue
             if self._step(now, due):
                 self._wait(0.0, start)
-                start += self._slip(now)
+                start += self._delay(now)
                 continue
             step = self.world.physics_time + self.world.physics.timestep
             wake = min(due, schedule.next - MARGIN, max(step, now + QUIET), now + IDLE)
@@ -147,11 +147,11 @@ class Emulator:
         world.step()
         for outlet in self.outlets:
             if outlet.bus.plugged is (outlet.link is None):
-                outlet.settle()
+                outlet.update_link()
         self._watcher.update(now)
         return True
 
-    def _slip(self, now: float) -> float:
+    def _delay(self, now: float) -> float:
         """Return the time by which simulated time must be delayed, s; a large lag is not caught up.
 
         Catching up would leave no time to receive, and the servos would run too fast.
@@ -168,22 +168,22 @@ class Emulator:
             if place in places:
                 places[place].receive()
             else:
-                self._take_orders()
+                self._run_queued()
         for outlet in self.outlets:
             outlet.feed()
 
-    def _order(self, what: Callable[[], object]) -> None:
+    def _queue_call(self, what: Callable[[], object]) -> None:
         """Queue a call for the thread that runs `run`, and wake it."""
         self._orders.put(what)
         os.write(self._wake_write, b"i")
 
-    def _take_orders(self) -> None:
+    def _run_queued(self) -> None:
         """Run what other threads have queued."""
         os.read(self._wake_read, CHUNK)
         while not self._orders.empty():
             self._orders.get()()
 
-    def _begin(self, rules: list[Rule]) -> None:
+    def _begin(self, rules: list[FaultRule]) -> None:
         """Add injected faults, whose times count from now."""
         self.world.faults.inject(rules, self.world.now)
 
@@ -209,16 +209,16 @@ def emulate(
         events: See `Emulator`.
     """
     if (pty is None) == (tcp is None):
-        raise UsageError("an emulated bus needs a --pty PATH or a --tcp PORT, one of them")
+        raise UsageError("give either --pty PATH or --tcp PORT")
     emulator = Emulator(build_world(address), journal, events)
     with contextlib.closing(emulator):
         serial = [name for name, bus in emulator.world.buses.items() if bus.chip is None]
         for k, bus in enumerate(serial):
             if pty is not None:
                 alone = len(serial) == 1
-                emulator.plug(bus, partial(Pty, pty if alone else Path(f"{pty}-{bus}")))
+                emulator.connect(bus, partial(Pty, pty if alone else Path(f"{pty}-{bus}")))
             elif tcp is not None:
-                emulator.plug(bus, partial(Tcp, tcp + k if tcp else free_port()))
+                emulator.connect(bus, partial(Tcp, tcp + k if tcp else free_port()))
         if on_ready is not None:
             on_ready(emulator)
         emulator.run()
@@ -234,7 +234,7 @@ def _readable(places: list[int], seconds: float) -> list[int]:
     return [place for place, _ in poller.poll(seconds * 1e3)]
 
 
-def _be_punctual() -> None:
+def _set_real_time() -> None:
     """Ask the kernel for exact sleeps and real-time priority, and disable garbage collection."""
     with contextlib.suppress(OSError, AttributeError):
         ctypes.CDLL(None).prctl(PR_SET_TIMERSLACK, 1)

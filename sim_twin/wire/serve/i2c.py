@@ -6,7 +6,7 @@ from windup.hal.errors import UsageError
 from windup.sim_twin.wire.imu.bno055 import Bno055Registers
 from windup.sim_twin.wire.world.address import parse_address
 from windup.sim_twin.wire.world.clocks import WireClock
-from windup.sim_twin.wire.world.worlds import enter, leave
+from windup.sim_twin.wire.world.worlds import open_world, release_world
 
 CLOCK_RATE = 400_000.0
 """Bits a second of the bus."""
@@ -26,12 +26,12 @@ class TwinI2c:
 
     def __init__(self, url: str) -> None:
         address = parse_address(url)
-        self._running = enter(address)
+        self._running = open_world(address)
         self._bus = self._running.world.bus(address.bus)
         chip = self._bus.chip
         if chip is None:
-            leave(self._running)
-            raise UsageError(f"{url}: there is no chip on I2C in this world")
+            release_world(self._running)
+            raise UsageError(f"{url}: this world has no chip on I2C")
         self._chip: Bno055Registers = chip
         self._open = True
 
@@ -54,7 +54,7 @@ class TwinI2c:
         """Leave the world."""
         if self._open:
             self._open = False
-            leave(self._running)
+            release_world(self._running)
 
     def _transfer(self, count: int) -> None:
         """Let the time of a transfer pass.

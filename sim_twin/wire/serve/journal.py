@@ -26,7 +26,7 @@ class Event(NamedTuple):
     bus: str = ""
 
 
-class Watcher:
+class WorldWatcher:
     """Compares a world with its state at the previous call and reports the changes.
 
     Args:

@@ -130,7 +130,7 @@ def _make_room(path: Path) -> None:
     other = "choose another path"
     if not path.is_symlink():
         if path.exists():
-            raise UsageError(f"{path} exists and is not the link of an emulator; {other}")
+            raise UsageError(f"{path} exists and is not the link of an emulated port; {other}")
         return
     target = os.readlink(path)
     if OURS.fullmatch(target) is None:

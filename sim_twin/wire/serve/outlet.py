@@ -15,7 +15,7 @@ ON_THE_WIRE: Final = 0.010  # longest time of a program's bytes that the bus que
 
 
 @dataclass
-class Outlet:
+class BusOutlet:
     """A bus, its link, and the bytes that wait between them.
 
     Bytes from a program are read from its link at once, so that a program that flushes its output
@@ -39,7 +39,7 @@ class Outlet:
     sent: float = -math.inf
     waiting: bytearray = field(default_factory=bytearray)
 
-    def settle(self) -> None:
+    def update_link(self) -> None:
         """Open or close the link, according to whether the bus is plugged in."""
         if self.bus.plugged and self.link is None:
             self.link = self.make()

@@ -11,7 +11,7 @@ from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.world.address import parse_address
 from windup.sim_twin.wire.world.bus_world import BusWorld
 from windup.sim_twin.wire.world.clocks import RealClock
-from windup.sim_twin.wire.world.worlds import Running, enter, leave
+from windup.sim_twin.wire.world.worlds import OpenWorld, open_world, release_world
 
 PATIENCE = 60.0  # longest wait of a read without a time-out and answer, virtual s
 
@@ -33,12 +33,12 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
             raise serial.SerialException("the port is open already")
         try:
             address = parse_address(self._port)
-            self._running: Running = enter(address)
+            self._running: OpenWorld = open_world(address)
         except WindupError as error:
             raise serial.SerialException(str(error)) from error
         self._bus: Bus = self._running.world.bus(address.bus)
         if not self._bus.plugged:
-            leave(self._running, address)
+            release_world(self._running, address)
             raise serial.SerialException(f"the adapter of {self._port} is unplugged")
         self._address, self._plugs = address, self._bus.plugs
         self.is_open = True
@@ -49,7 +49,7 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
         """Close the port and leave the world."""
         if self.is_open:
             self.is_open = False
-            leave(self._running, self._address if self._plugs != self._bus.plugs else None)
+            release_world(self._running, self._address if self._plugs != self._bus.plugs else None)
 
     @property
     def world(self) -> BusWorld:
@@ -90,7 +90,9 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
                 target = min(limit, max(schedule.next, now))
             if target == math.inf or now > patience:
                 if not isinstance(clock, RealClock) and limit == math.inf:
-                    raise serial.SerialException("a read without a time-out, and nobody answers")
+                    raise serial.SerialException(
+                        "a read without a time-out on a bus without an answer would never return"
+                    )
                 target = min(target, now + 0.001)
             clock.wait_until(target)
             self._check_plug()

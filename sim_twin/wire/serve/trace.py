@@ -24,33 +24,33 @@ class TraceError(AssertionError):
     """A run differs from a trace, or a file is not a trace."""
 
 
-class Line(NamedTuple):
+class TraceLine(NamedTuple):
     """One burst of a trace; see the module's docstring."""
 
     time: float
     bus: str
     direction: str
     baud: int
-    held: float
+    held_until: float
     data: bytes
 
     def __str__(self) -> str:
-        held = f"{self.held:.9f}" if self.held else "-"
+        held = f"{self.held_until:.9f}" if self.held_until else "-"
         return (
             f"{self.time:.9f} {self.bus} {self.direction} {self.baud} {held} {self.data.hex(' ')}"
         )
 
-    def same(self, other: "Line") -> bool:
+    def matches(self, other: "TraceLine") -> bool:
         """Return whether the other line is the same burst at the same time."""
         return (
             self[1:4] == other[1:4]
             and self.data == other.data
             and abs(self.time - other.time) < SAME_TIME
-            and abs(self.held - other.held) < SAME_TIME
+            and abs(self.held_until - other.held_until) < SAME_TIME
         )
 
 
-def read_trace(path: Path) -> list[Line]:
+def read_trace(path: Path) -> list[TraceLine]:
     """Return the lines of a trace.
 
     Raises:
@@ -62,10 +62,10 @@ def read_trace(path: Path) -> list[Line]:
     return [_parse(line) for line in text[1:] if line]
 
 
-def _parse(line: str) -> Line:
+def _parse(line: str) -> TraceLine:
     time, bus, direction, baud, held, *data = line.split(" ")
     late = 0.0 if held == "-" else float(held)
-    return Line(float(time), bus, direction, int(baud), late, bytes.fromhex("".join(data)))
+    return TraceLine(float(time), bus, direction, int(baud), late, bytes.fromhex("".join(data)))
 
 
 class Tap:
@@ -81,9 +81,9 @@ class Tap:
             if bus.tap is not None:
                 raise TraceError(f"bus {bus.name!r} is being recorded or checked already")
         for bus in world.buses.values():
-            bus.tap = partial(self._hear, bus.name)
+            bus.tap = partial(self._receive, bus.name)
 
-    def heard(self, line: Line) -> None:
+    def handle(self, line: TraceLine) -> None:
         """Process a burst that is complete."""
         raise NotImplementedError
 
@@ -94,14 +94,16 @@ class Tap:
         while self._pending:
             self._take()
 
-    def _hear(self, bus: str, direction: str, baud: int, burst: Burst) -> None:
+    def _receive(self, bus: str, direction: str, baud: int, burst: Burst) -> None:
         self._pending.append((bus, direction, baud, burst))
         if len(self._pending) > LAG:
             self._take()
 
     def _take(self) -> None:
         bus, direction, baud, burst = self._pending.popleft()
-        self.heard(Line(burst.start, bus, direction, baud, burst.held, bytes(burst.data)))
+        self.handle(
+            TraceLine(burst.start, bus, direction, baud, burst.held_until, bytes(burst.data))
+        )
 
 
 class Recorder(Tap):
@@ -112,7 +114,7 @@ class Recorder(Tap):
         self._file = path.open("w", encoding="utf-8")
         self._file.write(HEADER + "\n")
 
-    def heard(self, line: Line) -> None:
+    def handle(self, line: TraceLine) -> None:
         """Write a burst."""
         self._file.write(f"{line}\n")
 
@@ -131,10 +133,10 @@ class Checker(Tap):
         super().__init__(world)
         self.path, self._lines, self._at = path, read_trace(path), 0
 
-    def heard(self, line: Line) -> None:
+    def handle(self, line: TraceLine) -> None:
         """Compare a burst with the next line of the trace."""
         wanted = self._lines[self._at] if self._at < len(self._lines) else None
-        if wanted is None or not wanted.same(line):
+        if wanted is None or not wanted.matches(line):
             raise TraceError(difference(self.path, self._lines, self._at, line))
         self._at += 1
 
@@ -145,22 +147,22 @@ class Checker(Tap):
             raise TraceError(difference(self.path, self._lines, self._at, None))
 
 
-def difference(path: Path, lines: list[Line], at: int, got: Line | None) -> str:
+def difference(path: Path, lines: list[TraceLine], at: int, got: TraceLine | None) -> str:
     """Return a description of how `got` differs from line `at` of a trace."""
     wanted = lines[at] if at < len(lines) else None
     text = [f"{path}, line {at + 2}: {_first_difference(wanted, got)}"]
     text += [f"  {line}" for line in lines[max(0, at - CONTEXT) : at]]
     text.append(f"- {wanted}" if wanted else "- (the trace ends)")
-    text.append(f"+ {got}" if got else "+ (nothing happens any more)")
+    text.append(f"+ {got}" if got else "+ (no further bytes)")
     if wanted and got and wanted.data != got.data:
         before = str(wanted)[: -len(wanted.data.hex(" "))]
         text.append(" " * (2 + len(before) + 3 * _place(wanted.data, got.data)) + "^^")
     return "\n".join(text)
 
 
-def _first_difference(wanted: Line | None, got: Line | None) -> str:
+def _first_difference(wanted: TraceLine | None, got: TraceLine | None) -> str:
     if wanted is None or got is None:
-        return "more happened than" if wanted is None else "less happened than" + " recorded"
+        return f"{'more' if wanted is None else 'fewer'} bytes than recorded"
     for name in ("bus", "direction", "baud"):
         if getattr(wanted, name) != getattr(got, name):
             return f"{name} {getattr(got, name)!r}, recorded {getattr(wanted, name)!r}"

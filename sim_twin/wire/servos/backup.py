@@ -8,7 +8,7 @@ Configuration(60) is set to do so.
 from collections.abc import Callable
 from typing import Final
 
-from windup.sim_twin.wire.servos.register_file import EEPROM_END, Item, RegisterFile
+from windup.sim_twin.wire.servos.register_file import EEPROM_END, RegisterFile, TableItem
 
 STORE: Final = b"\x01CTRL"
 RESTORE: Final = b"\x02CTRL"
@@ -32,7 +32,7 @@ class Backup:
         self._stored: dict[str, int] = {}
 
     @property
-    def known(self) -> bool:
+    def is_supported(self) -> bool:
         """Whether this model supports backups."""
         return READY in self._registers.items
 
@@ -49,23 +49,23 @@ class Backup:
 
     def restore(self) -> None:
         """Restore the EEPROM."""
-        self._bring_back(lambda item: item.address < EEPROM_END)
+        self._restore(lambda item: item.address < EEPROM_END)
 
     def boot(self, restore: bool) -> None:
         """Set Backup Ready at start-up, and restore the RAM if `restore`."""
-        if self.known:
+        if self.is_supported:
             self._registers.set(READY, int(self.ready))
         if restore:
-            self._bring_back(lambda item: item.address >= EEPROM_END)
+            self._restore(lambda item: item.address >= EEPROM_END)
 
-    def _bring_back(self, wanted: Callable[[Item], bool]) -> None:
+    def _restore(self, wanted: Callable[[TableItem], bool]) -> None:
         items = self._registers.items
         self._registers.commit(
             (items[name], value) for name, value in self._stored.items() if wanted(items[name])
         )
 
 
-def _is_stored(item: Item) -> bool:
+def _is_stored(item: TableItem) -> bool:
     writable = item.access == "RW"
     indirect = item.name.startswith("indirect_address")
     return writable and (item.address < EEPROM_END or item.name in KEPT or indirect)

@@ -4,7 +4,7 @@ import math
 from abc import ABC, abstractmethod
 
 from windup.sim_twin.wire.servos.byte_table import ByteTable, Writes
-from windup.sim_twin.wire.servos.health import AMBIENT, warmed
+from windup.sim_twin.wire.servos.health import AMBIENT, motor_temperature
 from windup.sim_twin.wire.servos.motor_loop import MotorLoop
 
 BOOT_SECONDS = 0.3  # time without answers after a reset, s, assumed
@@ -40,7 +40,7 @@ class ByteServo(ABC):
         torque_on: Whether torque is enabled.
         powered: Whether it has a supply voltage.
         temperature: Temperature of its motor, degrees C.
-        floor: Lowest temperature of the motor, set by a heat fault, degrees C.
+        minimum_temperature: Lowest temperature of the motor, set by a heat fault, degrees C.
         errors: Bits of the error byte of its status packets.
     """
 
@@ -62,7 +62,7 @@ class ByteServo(ABC):
         self.model, self.table, self.loop = name, table, loop
         self.torque_on = False
         self.powered = True
-        self.temperature, self.floor = AMBIENT, -math.inf
+        self.temperature, self.minimum_temperature = AMBIENT, -math.inf
         self.errors = 0
         self._ready = 0.0
         self._strained = 0.0
@@ -86,7 +86,7 @@ class ByteServo(ABC):
         return self.table.get("id")
 
     @property
-    def shadow(self) -> int:
+    def secondary_id(self) -> int:
         """No secondary id."""
         return NO_ID
 
@@ -147,7 +147,7 @@ class ByteServo(ABC):
     def read(self, address: int, count: int, now: float) -> tuple[int, bytes]:
         """Return the error byte and the data of a read instruction."""
         if address + count > self.live:
-            self.show(now, address + count <= self.live_motion)
+            self.write_sample(now, address + count <= self.live_motion)
         return self.errors, self.table.read(address, count)
 
     def write(self, address: int, data: bytes, now: float) -> int:
@@ -156,8 +156,8 @@ class ByteServo(ABC):
         if not error:
             for field, value in writes:
                 self.table.set(field.name, value)
-                self.keep(field.name)
-            self.act({field.name for field, _ in writes}, now)
+                self.save_field(field.name)
+            self.apply_fields({field.name for field, _ in writes}, now)
         return self.errors | error
 
     def register_write(self, address: int, data: bytes) -> int:
@@ -181,7 +181,7 @@ class ByteServo(ABC):
 
     def factory_reset(self, option: int, broadcast: bool, now: float) -> int:
         """Restore the factory values, including id and baud rate, and reboot."""
-        self.table.factory()
+        self.table.reset_to_factory()
         self.reboot(now)
         return 0
 
@@ -200,20 +200,20 @@ class ByteServo(ABC):
         if self.driving:
             self.loop.update(now, dt)
 
-    def watch(self, now: float, dt: float, heard: float) -> None:
-        """Update temperature and protection, periodically; `heard` is unused without a watchdog."""
+    def watch(self, now: float, dt: float, last_instruction: float) -> None:
+        """Update temperature and protection, periodically; there is no watchdog."""
         if not self.powered:
             return
         loop = self.loop
         loop.sample()
         current = loop.effort / loop.constant if self.driving else 0.0
-        warm = warmed(self.temperature, current, loop.resistance, dt)
-        self.temperature = max(warm, self.floor)
+        warm = motor_temperature(self.temperature, current, loop.resistance, dt)
+        self.temperature = max(warm, self.minimum_temperature)
         self.protect(now, dt)
 
     def heat(self, degrees: float) -> None:
         """Keep the motor at least this hot, degrees C; -inf lets it cool again."""
-        self.floor = degrees
+        self.minimum_temperature = degrees
         self.temperature = max(self.temperature, degrees)
 
     def voltage_is_wrong(self) -> bool:
@@ -242,12 +242,12 @@ class ByteServo(ABC):
         self._registered = None
         self.loop.release()
         self.loop.hold_here()
-        self.begin()
+        self.init_registers()
 
     # Differences between the families
 
     @abstractmethod
-    def begin(self) -> None:
+    def init_registers(self) -> None:
         """Set the registers that are not constant at power-up."""
 
     @abstractmethod
@@ -255,15 +255,15 @@ class ByteServo(ABC):
         """Return the error of a write, and the fields that it would set."""
 
     @abstractmethod
-    def keep(self, name: str) -> None:
+    def save_field(self, name: str) -> None:
         """Save a field that has been written, unless the EEPROM is locked."""
 
     @abstractmethod
-    def act(self, names: set[str], now: float) -> None:
+    def apply_fields(self, names: set[str], now: float) -> None:
         """Apply the effects of fields that have been written together."""
 
     @abstractmethod
-    def show(self, now: float, motion: bool) -> None:
+    def write_sample(self, now: float, motion: bool) -> None:
         """Write the last sample to the registers; with `motion`, only position, speed, load."""
 
     @abstractmethod

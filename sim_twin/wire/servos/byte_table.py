@@ -82,7 +82,7 @@ class ByteTable:
         for field in self.fields.values():
             self.set(field.name, self.saved.get(field.name, field.default))
 
-    def factory(self, keep: Iterable[str] = ()) -> None:
+    def reset_to_factory(self, keep: Iterable[str] = ()) -> None:
         """Save the factory defaults, except of the fields in `keep`."""
         for name in self.saved:
             if name not in keep:

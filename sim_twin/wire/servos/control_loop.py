@@ -22,7 +22,7 @@ from windup.sim_twin.wire.servos.x_series import (
     PWM_FULL,
     VELOCITY,
     VELOCITY_UNIT,
-    Model,
+    XSeriesModel,
 )
 from windup.sim_twin.wire.shafts.shaft import Shaft
 
@@ -47,7 +47,12 @@ class ControlLoop:
     """
 
     def __init__(
-        self, model: Model, servo: ServoModel, registers: RegisterFile, shaft: Shaft, supply: float
+        self,
+        model: XSeriesModel,
+        servo: ServoModel,
+        registers: RegisterFile,
+        shaft: Shaft,
+        supply: float,
     ) -> None:
         self.registers, self.servo, self.shaft, self.supply = registers, servo, shaft, supply
         self.encoder = Encoder()
@@ -70,7 +75,7 @@ class ControlLoop:
 
     def trajectory(self, now: float) -> tuple[float, float]:
         """Return the profile's position, counts, and velocity, velocity units."""
-        value, rate = self.profile.at(now - self._since)
+        value, rate = self.profile.state_at(now - self._since)
         if self.mode == VELOCITY:
             return 0.0, value
         return value, rate / (VELOCITY_UNIT * COUNTS_PER_RAD)
@@ -90,7 +95,7 @@ class ControlLoop:
     def release(self) -> None:
         """Switch the motor off: the shaft turns freely."""
         self.busy = False
-        self.shaft.off()
+        self.shaft.release()
 
     def update(self, now: float, dt: float = 0.0) -> None:
         """Command the shaft for now; `dt` s have passed since the last step."""
@@ -105,37 +110,39 @@ class ControlLoop:
             self._regulate(now, dt, most)
         elif mode == PWM:
             self.busy = False
-            self.shaft.push(self.encoder.sign * math.copysign(volts, get("goal_pwm")))
+            self.shaft.apply_voltage(self.encoder.sign * math.copysign(volts, get("goal_pwm")))
         elif mode == CURRENT:
             self.busy = False
-            self.shaft.pull(self.encoder.sign * self._goal_torque(), volts)
+            self.shaft.apply_torque(self.encoder.sign * self._goal_torque(), volts)
 
     def _goal_torque(self) -> float:
         return (self.torque_unit or 0.0) * self.registers.get("goal_current")
 
     def _hold(self, now: float, volts: float) -> None:
-        angle = self.encoder.angle(self.profile.at(now - self._since)[0])
+        angle = self.encoder.angle(self.profile.state_at(now - self._since)[0])
         gain = self.registers.get("position_p_gain")
         stiffness = gain * self._stiffness_unit * self.supply
         most = abs(self._goal_torque()) if self.mode == CURRENT_POSITION else math.inf
-        self.shaft.drive(angle, stiffness, volts, most)
+        self.shaft.hold_goal(angle, stiffness, volts, most)
 
     def _regulate(self, now: float, dt: float, most: int) -> None:
         """Velocity loop: PWM = P/128 e + I/65536 sum(e), e in units of 0.229 rev/min."""
         get = self.registers.get
         sign = self.encoder.sign
-        error = self.profile.at(now - self._since)[0] - sign * self.shaft.velocity / VELOCITY_UNIT
+        error = (
+            self.profile.state_at(now - self._since)[0] - sign * self.shaft.velocity / VELOCITY_UNIT
+        )
         step = get("velocity_i_gain") / 65536.0 * error * dt * VELOCITY_RATE
         pwm = get("velocity_p_gain") / 128.0 * error + self._integral + step
         if abs(pwm) < most:
             self._integral += step
         pwm = max(-most, min(most, pwm))
-        self.shaft.push(sign * pwm / PWM_FULL * self.supply)
+        self.shaft.apply_voltage(sign * pwm / PWM_FULL * self.supply)
 
     def _plan_position(self, now: float) -> None:
         get = self.registers.get
         goal, top, rise = get("goal_position"), get("profile_velocity"), get("profile_acceleration")
-        position, velocity = self.profile.at(now - self._since)
+        position, velocity = self.profile.state_at(now - self._since)
         if get("drive_mode") & TIME_BASED:
             self.profile = Profile.timed(position, goal, top / 1e3, rise / 1e3)
         else:
@@ -146,7 +153,7 @@ class ControlLoop:
     def _plan_velocity(self, now: float) -> None:
         get = self.registers.get
         present, goal, rise = (
-            self.profile.at(now - self._since)[0],
+            self.profile.state_at(now - self._since)[0],
             get("goal_velocity"),
             get("profile_acceleration"),
         )

@@ -95,7 +95,7 @@ class Dynamixel1Servo(ByteServo):
     def _divider(self) -> int:
         return self.table.get("resolution_divider") if self._many_turns else 1
 
-    def begin(self) -> None:
+    def init_registers(self) -> None:
         """Set the torque limit from the EEPROM, and the goal to the present position."""
         self.table.set("torque_limit", self.table.get("max_torque"))
         self.loop.sample()
@@ -117,11 +117,11 @@ class Dynamixel1Servo(ByteServo):
                 return RANGE, []  # only a power cycle unlocks
         return 0, writes
 
-    def keep(self, name: str) -> None:
+    def save_field(self, name: str) -> None:
         """Save a field: EEPROM registers are stored immediately."""
         self.table.save(name)
 
-    def act(self, names: set[str], now: float) -> None:
+    def apply_fields(self, names: set[str], now: float) -> None:
         """Apply the effects of fields that have been written together."""
         if "max_torque" in names:
             self.table.set("torque_limit", self.table.get("max_torque"))
@@ -137,7 +137,7 @@ class Dynamixel1Servo(ByteServo):
         elif names & GAINS and self.torque_on:
             self._drive(now)
 
-    def show(self, now: float, motion: bool) -> None:
+    def write_sample(self, now: float, motion: bool) -> None:
         """Write the last sample to the registers; with `motion`, only position, speed, load."""
         loop, memory = self.loop, self.table.memory
         speed, driving = loop.velocity / self._unit, self.driving
@@ -160,7 +160,7 @@ class Dynamixel1Servo(ByteServo):
         hot = self.temperature >= self.table.get("temperature_limit")
         self._flag(INPUT_VOLTAGE, self.voltage_is_wrong())
         self._flag(OVERHEATING, hot)
-        strained = self.driving and self.loop.strain() >= OVERLOAD_LEVEL
+        strained = self.driving and self.loop.relative_torque() >= OVERLOAD_LEVEL
         self._strained = self._strained + dt if strained else 0.0
         if self._strained > OVERLOAD_TIME:
             self.errors |= OVERLOAD
@@ -231,9 +231,9 @@ class Dynamixel1Servo(ByteServo):
             goal = get("goal_torque")
             amperes = (-(goal & FULL) if goal > FULL else goal) * CURRENT_UNIT
             constant = loop.servo.torque_constant or 0.0
-            loop.shaft.pull(amperes * constant, loop.most * loop.supply)
+            loop.shaft.apply_torque(amperes * constant, loop.most * loop.supply)
         elif self._wheel and self._is_ax:
             speed = get("moving_speed")
-            loop.press((-(speed & FULL) if speed > FULL else speed) / FULL)
+            loop.apply_duty((-(speed & FULL) if speed > FULL else speed) / FULL)
         else:
             loop.update(now)

@@ -102,7 +102,7 @@ class FeetechServo(ByteServo):
     def _many_turns(self) -> bool:
         return bool(self.table.get("phase") & MANY_TURNS)
 
-    def begin(self) -> None:
+    def init_registers(self) -> None:
         """Set the torque limit from the EEPROM, and the goal to the present position."""
         self._overcurrent = 0.0
         if self.magnetic:
@@ -115,18 +115,18 @@ class FeetechServo(ByteServo):
         writes, _ = self.table.decode(address, data)
         return 0, [(field, max(field.low, min(field.high, value))) for field, value in writes]
 
-    def keep(self, name: str) -> None:
+    def save_field(self, name: str) -> None:
         """Save a field, unless the lock is on."""
         if not self.table.get("lock"):
             self.table.save(name)
 
     def factory_reset(self, option: int, broadcast: bool, now: float) -> int:
         """Restore the factory values of all but the id, and reboot (FT-SCS protocol, 0x06)."""
-        self.table.factory(keep=("id",))
+        self.table.reset_to_factory(keep=("id",))
         self.reboot(now)
         return 0
 
-    def act(self, names: set[str], now: float) -> None:
+    def apply_fields(self, names: set[str], now: float) -> None:
         """Apply the effects of fields that have been written together."""
         if "torque_enable" in names:
             self._write_torque(names, now)
@@ -141,7 +141,7 @@ class FeetechServo(ByteServo):
         elif names & (RETUNED | GOALS) and self.torque_on:
             self._drive(now)
 
-    def show(self, now: float, motion: bool) -> None:
+    def write_sample(self, now: float, motion: bool) -> None:
         """Write the last sample to the registers; with `motion`, only position, speed, load."""
         loop, memory, driving = self.loop, self.table.memory, self.driving
         steps = loop.velocity * loop.per_rad
@@ -166,7 +166,7 @@ class FeetechServo(ByteServo):
         self._flag(VOLTAGE, self.voltage_is_wrong())
         self._flag(TEMPERATURE, self.temperature >= get("max_temperature"))
         most = get("torque_limit") / FULL if self.magnetic else get("max_torque") / FULL
-        strained = self.driving and loop.strain() >= get("overload_torque") / 100.0 * most
+        strained = self.driving and loop.relative_torque() >= get("overload_torque") / 100.0 * most
         self._strained = self._strained + dt if strained and most else 0.0
         if self._strained > get("protection_time") * PROTECTION_UNIT:
             self.overload(now)
@@ -289,6 +289,6 @@ class FeetechServo(ByteServo):
             duty = get("goal_time")
             if not self.magnetic:
                 duty = -(duty & ~PWM_SIGN) if duty & PWM_SIGN else duty
-            loop.press(duty / FULL)
+            loop.apply_duty(duty / FULL)
         else:
             loop.update(now)

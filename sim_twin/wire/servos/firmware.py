@@ -4,15 +4,21 @@ from windup.hal.servos.servo_model import ServoModel
 from windup.sim_twin.wire.servos.backup import Backup
 from windup.sim_twin.wire.servos.control_loop import POSITION_MODES, ControlLoop
 from windup.sim_twin.wire.servos.health import Health
-from windup.sim_twin.wire.servos.present import Present
-from windup.sim_twin.wire.servos.register_file import BAD_ACCESS, BAD_LIMIT, BAD_RANGE, OK, Item
+from windup.sim_twin.wire.servos.present_registers import PresentRegisters
+from windup.sim_twin.wire.servos.register_file import (
+    BAD_ACCESS,
+    BAD_LIMIT,
+    BAD_RANGE,
+    OK,
+    TableItem,
+)
 from windup.sim_twin.wire.servos.x_series import (
     CURRENT,
     POSITION,
     PWM,
     VELOCITY,
     WATCHDOG_UNIT,
-    Model,
+    XSeriesModel,
 )
 from windup.sim_twin.wire.shafts.shaft import Shaft
 
@@ -47,11 +53,11 @@ class Firmware:
             goal ends that, once the watchdog register has been cleared.
     """
 
-    def __init__(self, model: Model, servo: ServoModel, shaft: Shaft, supply: float) -> None:
+    def __init__(self, model: XSeriesModel, servo: ServoModel, shaft: Shaft, supply: float) -> None:
         self.model = model
         self.registers = model.registers()
         self.loop = ControlLoop(model, servo, self.registers, shaft, supply)
-        self.present = Present(self.loop)
+        self.present = PresentRegisters(self.loop)
         self.health = Health(self.loop)
         self.backup = Backup(self.registers)
         self.powered = True
@@ -117,12 +123,12 @@ class Firmware:
         if self.driving:
             self.loop.update(now, dt)
 
-    def watch(self, now: float, dt: float, heard: float) -> None:
-        """Check watchdog and health, periodically; `heard` is the last instruction's time, s."""
+    def watch(self, now: float, dt: float, last_instruction: float) -> None:
+        """Check watchdog and health, periodically; `last_instruction` is a time, s."""
         if not self.powered:
             return
         timeout = self.registers.memory[98]
-        if 0 < timeout < 128 and self.driving and now - heard > timeout * WATCHDOG_UNIT:
+        if 0 < timeout < 128 and self.driving and now - last_instruction > timeout * WATCHDOG_UNIT:
             self._trip(now)
         before = self.health.errors
         self.health.watch(dt, self.loop.shaft.torque, self.driving)
@@ -165,7 +171,7 @@ class Firmware:
         elif self.driving:
             self.loop.update(now)
 
-    def veto(self, writes: list[tuple[Item, int]]) -> int:
+    def check_writes(self, writes: list[tuple[TableItem, int]]) -> int:
         """Return the error of a write whose values other registers forbid, or OK."""
         for item, value in writes:
             error = self._forbidden(item.name, value)
@@ -197,7 +203,7 @@ class Firmware:
             return BAD_ACCESS
         return OK
 
-    def written(self, name: str, value: int, now: float) -> None:
+    def apply_write(self, name: str, value: int, now: float) -> None:
         """Apply the effect of one register that has just been written."""
         if name in GOALS:
             self._new_goal(name, value, now)

@@ -18,7 +18,7 @@ OVERLOAD_LEVEL = 0.8  # share of the stall torque at the present supply
 OVERLOAD_TIME = 1.0  # s
 
 
-def warmed(temperature: float, current: float, resistance: float, dt: float) -> float:
+def motor_temperature(temperature: float, current: float, resistance: float, dt: float) -> float:
     """Return the temperature of a motor after `dt` s at a current in A, degrees C."""
     heat = current * current * resistance - (temperature - AMBIENT) / HEAT_RESISTANCE
     return temperature + dt * heat / HEAT_CAPACITY
@@ -32,13 +32,13 @@ class Health:
         loop: The servo's control loop: supply, torque, limits.
         temperature: Temperature of the motor, degrees C.
         errors: Bits of the Hardware Error Status; they stay until a reboot.
-        floor: Lowest temperature of the motor, set by a heat fault, degrees C.
+        minimum_temperature: Lowest temperature of the motor, set by a heat fault, degrees C.
     """
 
     loop: ControlLoop
     temperature: float = AMBIENT
     errors: int = 0
-    floor: float = -math.inf
+    minimum_temperature: float = -math.inf
     _overloaded: float = field(default=0.0, repr=False)
 
     def reset(self) -> None:
@@ -52,7 +52,7 @@ class Health:
 
     def heat(self, degrees: float) -> None:
         """Keep the motor at least this hot, degrees C, from now on; -inf lets it cool again."""
-        self.floor = degrees
+        self.minimum_temperature = degrees
         self.temperature = max(self.temperature, degrees)
 
     def watch(self, dt: float, torque: float, driving: bool) -> None:
@@ -61,8 +61,8 @@ class Health:
         get = loop.registers.get
         torque = abs(torque) if driving else 0.0
         current = torque / loop.constant
-        warm = warmed(self.temperature, current, loop.resistance, dt)
-        self.temperature = max(warm, self.floor)
+        warm = motor_temperature(self.temperature, current, loop.resistance, dt)
+        self.temperature = max(warm, self.minimum_temperature)
         stall = loop.constant / loop.resistance * loop.supply
         strained = driving and torque >= OVERLOAD_LEVEL * stall
         self._overloaded = self._overloaded + dt if strained else 0.0

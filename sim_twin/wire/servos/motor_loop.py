@@ -62,8 +62,8 @@ class MotorLoop:
     def goal(self, now: float) -> tuple[float, float]:
         """Return the profile's position, counts, and velocity, counts/s."""
         if self._running is not None:
-            return self.counts(self._running), self._profile.at(now - self._since)[0]
-        return self._profile.at(now - self._since)
+            return self.counts(self._running), self._profile.state_at(now - self._since)[0]
+        return self._profile.state_at(now - self._since)
 
     def moving(self, now: float) -> bool:
         """Return whether the profile is still in progress."""
@@ -88,15 +88,15 @@ class MotorLoop:
         self._profile = Profile(present, 0.0, speed, rise, 0.0)
         self._since = now
 
-    def press(self, duty: float) -> None:
+    def apply_duty(self, duty: float) -> None:
         """Apply a share of the supply voltage to the motor, regardless of the position."""
         self.busy = False
-        self.shaft.push(max(-self.most, min(self.most, duty)) * self.supply)
+        self.shaft.apply_voltage(max(-self.most, min(self.most, duty)) * self.supply)
 
     def release(self) -> None:
         """Switch the motor off: the shaft turns freely."""
         self.busy, self._running = False, None
-        self.shaft.off()
+        self.shaft.release()
 
     def update(self, now: float, dt: float = 0.0) -> None:
         """Command the shaft for now; `dt` s have passed since the last step."""
@@ -104,10 +104,10 @@ class MotorLoop:
             self._run_on(now, dt)
             target = self._running
         else:
-            target = (self._profile.at(now - self._since)[0] - self.centre) / self.per_rad
+            target = (self._profile.state_at(now - self._since)[0] - self.centre) / self.per_rad
         self.busy = self._running is not None or self.moving(now)
         stiffness = self.gain * self.supply * self.constant / self.resistance
-        self.shaft.drive(target, stiffness, self.most * self.supply, self.torque)
+        self.shaft.hold_goal(target, stiffness, self.most * self.supply, self.torque)
 
     def duty(self) -> float:
         """Return the duty that yields the last sample's torque at its speed."""
@@ -120,7 +120,7 @@ class MotorLoop:
         """Return the current of the last sample, A; negative against the counts."""
         return self.effort / (self.servo.torque_constant or self.constant * TORQUE_SHARE)
 
-    def strain(self) -> float:
+    def relative_torque(self) -> float:
         """Return the last sample's torque as a share of the present stall torque."""
         stall = self.constant / self.resistance * self.supply
         return abs(self.effort) / stall if stall > 0.0 else 0.0
@@ -129,7 +129,7 @@ class MotorLoop:
         """Advance a continuously moving goal by `dt` s."""
         angle = self.shaft.position
         lead = self.most / self.gain if self.gain > 0.0 else 0.0
-        speed = self._profile.at(now - self._since)[0] / self.per_rad
+        speed = self._profile.state_at(now - self._since)[0] / self.per_rad
         ahead = (self._running or 0.0) + speed * dt
         self._running = max(angle - lead, min(angle + lead, ahead))
 

@@ -92,7 +92,7 @@ class PlainServo(ByteServo):
         """Status return level: it answers all instructions."""
         return ANSWERS_ALL
 
-    def begin(self) -> None:
+    def init_registers(self) -> None:
         """Set the goal to the present position."""
         self.loop.sample()
         self._show("goal_position", self._counts())
@@ -102,12 +102,12 @@ class PlainServo(ByteServo):
         writes, _ = self.table.decode(address, data)
         return 0, [(field, max(field.low, min(field.high, value))) for field, value in writes]
 
-    def keep(self, name: str) -> None:
+    def save_field(self, name: str) -> None:
         """Save a field, unless there is a lock and it is on."""
         if "lock" not in self._registers or not self.table.get("lock"):
             self.table.save(name)
 
-    def act(self, names: set[str], now: float) -> None:
+    def apply_fields(self, names: set[str], now: float) -> None:
         """Apply the effects of fields that have been written together."""
         if "torque_enable" in names:
             on = bool(self.table.get("torque_enable"))
@@ -124,7 +124,7 @@ class PlainServo(ByteServo):
         if self.torque_on:
             self._drive(now)
 
-    def show(self, now: float, motion: bool) -> None:
+    def write_sample(self, now: float, motion: bool) -> None:
         """Write the last sample to the registers."""
         loop, driving = self.loop, self.driving
         values = (
@@ -154,7 +154,7 @@ class PlainServo(ByteServo):
         hottest = self._value("temperature_limit", limits.temperature if limits else math.inf)
         self._flag(VOLTAGE, self.voltage_is_wrong())
         self._flag(HEAT, self.temperature >= hottest)
-        strained = self.driving and self.loop.strain() >= OVERLOAD_LEVEL
+        strained = self.driving and self.loop.relative_torque() >= OVERLOAD_LEVEL
         self._strained = self._strained + dt if strained else 0.0
         if self._strained > OVERLOAD_TIME:
             self.overload(now)
@@ -199,7 +199,7 @@ class PlainServo(ByteServo):
         elif not was:
             self.loop.hold_here()
             if not has_goal:
-                self.begin()
+                self.init_registers()
 
     def _drive(self, now: float) -> None:
         """Set gain and limit of the loop, and command the shaft accordingly."""

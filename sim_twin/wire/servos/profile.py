@@ -60,7 +60,7 @@ class Profile:
         top = abs(goal - start) / (seconds - rise) if seconds > 0.0 else 0.0
         return cls(start, 0.0, goal, top, top / rise if rise > 0.0 else 0.0)
 
-    def at(self, time: float) -> tuple[float, float]:
+    def state_at(self, time: float) -> tuple[float, float]:
         """Return position and velocity `time` s after the start."""
         for phase in self._phases:
             if time < phase.seconds:

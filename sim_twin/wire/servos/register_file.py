@@ -16,7 +16,7 @@ MASKS: Final = {1: 0xFF, 2: 0xFFFF, 4: 0xFFFFFFFF}
 EEPROM_END = 64  # items below this address survive a reboot
 
 
-class Item(NamedTuple):
+class TableItem(NamedTuple):
     """One item of a control table.
 
     Attributes:
@@ -48,7 +48,7 @@ class Item(NamedTuple):
         return self.address + self.size
 
 
-class Indirect(NamedTuple):
+class IndirectAddresses(NamedTuple):
     """A run of indirect addresses (two bytes each) and the data bytes that they map."""
 
     address: int
@@ -63,22 +63,24 @@ class RegisterFile:
     items read as zero. An indirect data byte has the properties of the byte that it points to.
     """
 
-    def __init__(self, items: Sequence[Item], indirect: Sequence[Indirect] = ()) -> None:
+    def __init__(
+        self, items: Sequence[TableItem], indirect: Sequence[IndirectAddresses] = ()
+    ) -> None:
         slots = [
-            Item(run.address + 2 * k, 2, f"indirect_address_{run.address + 2 * k}", "RW",
+            TableItem(run.address + 2 * k, 2, f"indirect_address_{run.address + 2 * k}", "RW",
                  run.data + k, EEPROM_END, max(r.data + r.slots for r in indirect) - 1)
             for run in indirect
             for k in range(run.slots)
         ]  # fmt: skip
         cells = [
-            Item(run.data + k, 1, f"indirect_data_{run.data + k}", "RW", 0, 0, 255)
+            TableItem(run.data + k, 1, f"indirect_data_{run.data + k}", "RW", 0, 0, 255)
             for run in indirect
             for k in range(run.slots)
         ]
         self.items = {item.name: item for item in (*items, *slots, *cells)}
         self.size = max(item.end for item in self.items.values())
         self.memory = bytearray(self.size)
-        self._at: dict[int, Item] = {item.address: item for item in self.items.values()}
+        self._at: dict[int, TableItem] = {item.address: item for item in self.items.values()}
         self._defined = bytearray(self.size)
         for item in self.items.values():
             self._defined[item.address : item.end] = b"\1" * item.size
@@ -87,7 +89,7 @@ class RegisterFile:
         }
         self._slot_addresses = frozenset(self._slots.values())
         self._routes: dict[tuple[int, int], tuple[int, ...] | None] = {}
-        self._plans: dict[tuple[int, int, bool], tuple[Item, ...] | int] = {}
+        self._plans: dict[tuple[int, int, bool], tuple[TableItem, ...] | int] = {}
         self._values: dict[str, int] = {}
         self.reset(self.items.values())
 
@@ -101,17 +103,17 @@ class RegisterFile:
         """Set an item regardless of access rights and limits; the bytes wrap around its size."""
         self._store(self.items[name], value)
 
-    def reset(self, items: Iterable[Item]) -> None:
+    def reset(self, items: Iterable[TableItem]) -> None:
         """Reset items to their defaults."""
         for item in items:
             self.set(item.name, item.default)
         self._forget()
 
-    def eeprom(self) -> list[Item]:
+    def eeprom(self) -> list[TableItem]:
         """Return the items that survive a reboot."""
         return [item for item in self.items.values() if item.address < EEPROM_END]
 
-    def ram(self) -> list[Item]:
+    def ram(self) -> list[TableItem]:
         """Return the items that a reboot resets."""
         return [item for item in self.items.values() if item.address >= EEPROM_END]
 
@@ -135,7 +137,9 @@ class RegisterFile:
             return any(first <= place <= last for place in route)
         return address <= last and first < address + count
 
-    def check(self, address: int, data: bytes, locked: bool) -> tuple[int, list[tuple[Item, int]]]:
+    def check(
+        self, address: int, data: bytes, locked: bool
+    ) -> tuple[int, list[tuple[TableItem, int]]]:
         """Return the error of writing `data`, and the items with the values they would get.
 
         Args:
@@ -161,7 +165,7 @@ class RegisterFile:
             at += item.size
         return OK, writes
 
-    def _plan(self, address: int, count: int, locked: bool) -> tuple[Item, ...] | int:
+    def _plan(self, address: int, count: int, locked: bool) -> tuple[TableItem, ...] | int:
         """Return the items that a write covers, or its error."""
         if count == 0 or address + count > self.size:
             return BAD_ACCESS
@@ -180,14 +184,14 @@ class RegisterFile:
             at += item.size
         return tuple(plan)
 
-    def commit(self, writes: Iterable[tuple[Item, int]]) -> None:
+    def commit(self, writes: Iterable[tuple[TableItem, int]]) -> None:
         """Execute writes that `check` has accepted."""
         for item, value in writes:
             self._store(item, value)
             if item.address in self._slot_addresses:
                 self._forget()
 
-    def _store(self, item: Item, value: int) -> None:
+    def _store(self, item: TableItem, value: int) -> None:
         """Store a value twice: as bytes for the host, as a number for the firmware."""
         address, size = item.address, item.size
         wrapped = value & MASKS[size]

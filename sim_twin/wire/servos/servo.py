@@ -6,17 +6,17 @@ from windup.hal.servos.servo_model import ServoModel
 from windup.sim_twin.wire.servos.backup import RESTORE, STORE
 from windup.sim_twin.wire.servos.firmware import Firmware
 from windup.sim_twin.wire.servos.health import OVERLOAD
-from windup.sim_twin.wire.servos.old_errors import old_error
-from windup.sim_twin.wire.servos.present import MOTION
+from windup.sim_twin.wire.servos.present_registers import MOTION
+from windup.sim_twin.wire.servos.protocol1_errors import protocol1_error
 from windup.sim_twin.wire.servos.register_file import (
     BAD_ACCESS,
     BAD_INSTRUCTION,
     BAD_RANGE,
     FAILED,
     OK,
-    Item,
+    TableItem,
 )
-from windup.sim_twin.wire.servos.x_series import BAUD_RATES, PRESENT, Model
+from windup.sim_twin.wire.servos.x_series import BAUD_RATES, PRESENT, XSeriesModel
 from windup.sim_twin.wire.shafts.shaft import Shaft
 
 BOOT_SECONDS = 0.3  # time without answers after a reboot, s, assumed
@@ -37,7 +37,7 @@ class Servo:
 
     def __init__(
         self,
-        model: Model,
+        model: XSeriesModel,
         servo: ServoModel,
         shaft: Shaft,
         identifier: int = 1,
@@ -66,7 +66,7 @@ class Servo:
         return self.registers.memory[7]
 
     @property
-    def shadow(self) -> int:
+    def secondary_id(self) -> int:
         """Secondary id, whose instructions it executes without answering; 253 and up: none."""
         return self.registers.memory[12]
 
@@ -136,34 +136,34 @@ class Servo:
             firmware.present.write(now, firmware.driving, firmware.health.temperature, motion)
         data = self.registers.read(address, count)
         if data is None:
-            return self._said(BAD_ACCESS), b""
-        return self._said(OK), data
+            return self._error_byte(BAD_ACCESS), b""
+        return self._error_byte(OK), data
 
     def write(self, address: int, data: bytes, now: float) -> int:
         """Execute a write and return the error byte."""
         error, writes = self.registers.check(address, data, self.firmware.torque_on)
-        error = error or self.firmware.veto(writes)
+        error = error or self.firmware.check_writes(writes)
         if error:
-            return self._said(error, writes)
-        said = self._said(OK)  # before a write that may change the protocol
+            return self._error_byte(error, writes)
+        said = self._error_byte(OK)  # before a write that may change the protocol
         self.registers.commit(writes)
         for item, value in writes:
-            self.firmware.written(item.name, value, now)
+            self.firmware.apply_write(item.name, value, now)
         return said
 
     def register_write(self, address: int, data: bytes) -> int:
         """Store a write for `action` and return the error byte."""
         error, writes = self.registers.check(address, data, self.firmware.torque_on)
-        error = error or self.firmware.veto(writes)
+        error = error or self.firmware.check_writes(writes)
         if not error:
             self._registered = (address, data)
             self.registers.set("registered_instruction", 1)
-        return self._said(error, writes)
+        return self._error_byte(error, writes)
 
     def action(self, now: float) -> int:
         """Execute the stored write and return the error byte."""
         if self._registered is None:
-            return self._said(BAD_INSTRUCTION)
+            return self._error_byte(BAD_INSTRUCTION)
         address, data = self._registered
         self._registered = None
         self.registers.set("registered_instruction", 0)
@@ -179,9 +179,9 @@ class Servo:
         """Reset everything (0xFF), all but id (1), or all but id and baud rate (2); then reboot."""
         keep = {0xFF: (), 0x01: ("id",), 0x02: ("id", "baud_rate")}.get(option)
         if keep is None or (broadcast and option == 0xFF):
-            return self._said(BAD_RANGE)
+            return self._error_byte(BAD_RANGE)
         if self.firmware.torque_on:
-            return self._said(BAD_ACCESS)
+            return self._error_byte(BAD_ACCESS)
         items = [item for item in self.registers.eeprom() if item.name not in keep]
         self.registers.reset(items)
         self.reboot(now)
@@ -190,12 +190,12 @@ class Servo:
     def clear(self, parameters: bytes) -> int:
         """Forget the turns and return the error byte; refused while moving."""
         if parameters != b"\x01DXL\x22":
-            return self._said(BAD_RANGE)
+            return self._error_byte(BAD_RANGE)
         self.sample()
         if self.firmware.present.moving:
-            return self._said(FAILED)
+            return self._error_byte(FAILED)
         self.firmware.hold_here(forget=True)
-        return self._said(OK)
+        return self._error_byte(OK)
 
     def backup(self, parameters: bytes, now: float) -> int:
         """Store the control table, or restore its EEPROM and reboot; return the error byte.
@@ -203,18 +203,18 @@ class Servo:
         No manual states the answer to a restore without a backup: Result Fail is assumed.
         """
         firmware, backup = self.firmware, self.firmware.backup
-        if not backup.known:
-            return self._said(BAD_INSTRUCTION)
+        if not backup.is_supported:
+            return self._error_byte(BAD_INSTRUCTION)
         if parameters not in (STORE, RESTORE):
-            return self._said(BAD_RANGE)
+            return self._error_byte(BAD_RANGE)
         if firmware.torque_on or (parameters == RESTORE and not backup.ready):
-            return self._said(FAILED)
+            return self._error_byte(FAILED)
         if parameters == STORE:
             backup.store()
         else:
             backup.restore()
             self.reboot(now)
-        return self._said(OK)
+        return self._error_byte(OK)
 
     def overload(self, now: float) -> None:
         """Enter the overload state."""
@@ -229,9 +229,9 @@ class Servo:
         """Run one step of the control loop; needed while `busy`."""
         self.firmware.control(now, dt)
 
-    def watch(self, now: float, dt: float, heard: float) -> None:
-        """Check watchdog and health, periodically; `heard` is the last instruction's time, s."""
-        self.firmware.watch(now, dt, heard)
+    def watch(self, now: float, dt: float, last_instruction: float) -> None:
+        """Check watchdog and health, periodically; `last_instruction` is a time, s."""
+        self.firmware.watch(now, dt, last_instruction)
 
     def set_supply(self, volts: float, now: float) -> None:
         """Change the supply voltage, V; at 0 V the servo is off, and boots when powered again."""
@@ -239,9 +239,9 @@ class Servo:
             self._ready = now + BOOT_SECONDS
         self.firmware.set_supply(volts, now)
 
-    def _said(self, error: int, writes: Sequence[tuple[Item, int]] = ()) -> int:
+    def _error_byte(self, error: int, writes: Sequence[tuple[TableItem, int]] = ()) -> int:
         """Return the error byte of a status packet, in the present protocol."""
         firmware = self.firmware
         if self.protocol == 1:
-            return old_error(error, firmware.health.errors, {item.name for item, _ in writes})
+            return protocol1_error(error, firmware.health.errors, {item.name for item, _ in writes})
         return firmware.alert | error

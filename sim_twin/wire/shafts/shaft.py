@@ -28,22 +28,24 @@ class Shaft(Protocol):
         """Torque of the motor at the horn, N m."""
         ...
 
-    def drive(self, goal: float, stiffness: float, volts: float, torque: float = math.inf) -> None:
+    def hold_goal(
+        self, goal: float, stiffness: float, volts: float, torque: float = math.inf
+    ) -> None:
         """Hold `goal` rad by ``u = clip(stiffness R/K (goal - q), +-volts)``, within `torque` N m.
 
         The stiffness, N m/rad, is that before the effect of back-EMF.
         """
         ...
 
-    def push(self, volts: float) -> None:
+    def apply_voltage(self, volts: float) -> None:
         """Apply `volts` V to the motor."""
         ...
 
-    def pull(self, torque: float, volts: float) -> None:
+    def apply_torque(self, torque: float, volts: float) -> None:
         """Produce `torque` N m, as far as `volts` V suffice."""
         ...
 
-    def off(self) -> None:
+    def release(self) -> None:
         """Switch the motor off: no current flows."""
         ...
 
@@ -72,20 +74,22 @@ class InertiaShaft:
         self._goal = self._gain = self._volts = 0.0
         self._most = math.inf
 
-    def drive(self, goal: float, stiffness: float, volts: float, torque: float = math.inf) -> None:
+    def hold_goal(
+        self, goal: float, stiffness: float, volts: float, torque: float = math.inf
+    ) -> None:
         """See `Shaft`."""
         self._mode, self._goal, self._gain, self._volts = "drive", goal, stiffness, volts
         self._most = torque
 
-    def push(self, volts: float) -> None:
+    def apply_voltage(self, volts: float) -> None:
         """See `Shaft`."""
         self._mode, self._volts, self._most = "push", volts, math.inf
 
-    def pull(self, torque: float, volts: float) -> None:
+    def apply_torque(self, torque: float, volts: float) -> None:
         """See `Shaft`."""
         self._mode, self._gain, self._volts, self._most = "pull", torque, volts, math.inf
 
-    def off(self) -> None:
+    def release(self) -> None:
         """See `Shaft`."""
         self._mode = "off"
 

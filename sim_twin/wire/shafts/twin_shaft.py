@@ -54,8 +54,8 @@ class TwinShaft:
         self.miswired = False
         self._factor = twin.world.plant.stiffness
         self._damping = mount.model.damping(twin.supply) * mount.ratio**2
-        self._q, self._at = twin.data.qpos, int(twin.places.qpos[joint])
-        self._dq, self._dof = twin.data.qvel, int(twin.places.dofs[joint])
+        self._q, self._at = twin.data.qpos, int(twin.indices.qpos[joint])
+        self._dq, self._dof = twin.data.qvel, int(twin.indices.dofs[joint])
         self._ctrl, self._force = twin.data.ctrl, twin.data.actuator_force
 
     @property
@@ -73,16 +73,18 @@ class TwinShaft:
         """See `Shaft`."""
         return float(self._force[self.joint]) / self._turn
 
-    def drive(self, goal: float, stiffness: float, volts: float, torque: float = math.inf) -> None:
+    def hold_goal(
+        self, goal: float, stiffness: float, volts: float, torque: float = math.inf
+    ) -> None:
         """See `Shaft`."""
         if volts <= 0.0:
-            self.push(0.0)
+            self.apply_voltage(0.0)
             return
         gain = -self._factor if self.miswired else self._factor
         self._set(gain * stiffness * self._turn**2, self._damping, volts, torque)
         self._ctrl[self.joint] = (goal - self._zero) / self._turn
 
-    def push(self, volts: float) -> None:
+    def apply_voltage(self, volts: float) -> None:
         """See `Shaft`."""
         if volts == 0.0:
             self._set(0.0, self._damping, 0.0)
@@ -90,15 +92,15 @@ class TwinShaft:
             self._set(1.0, self._damping, abs(volts))
             self._ctrl[self.joint] = math.copysign(FAR, volts * self._turn)
 
-    def pull(self, torque: float, volts: float) -> None:
+    def apply_torque(self, torque: float, volts: float) -> None:
         """See `Shaft`."""
         if volts <= 0.0:
-            self.push(0.0)
+            self.apply_voltage(0.0)
             return
         self._set(SOFT, 0.0, volts)
         self._ctrl[self.joint] = torque * self._turn / SOFT
 
-    def off(self) -> None:
+    def release(self) -> None:
         """See `Shaft`."""
         self._set(0.0, 0.0, 0.0)
 
@@ -171,7 +173,7 @@ class TwinImu:
 
     def _feel(self) -> None:
         self._steps += 1
-        self._filter.follow(self._felt())
+        self._filter.update(self._felt())
 
     def _felt(self) -> Array:
         """Return angular velocity, rad/s, and acceleration, m/s2, (6,) before the filter."""
@@ -186,23 +188,23 @@ class TwinPhysics:
 
     A robot without torque would fall before its host has connected, so it is held: the base, and
     each joint whose servo has not been driven yet, keep their pose until all servos have been
-    driven once. From then on it is free, unless `again` is set: then it is held again whenever no
-    servo is driven, in its present pose or, if it has fallen, in its initial one.
+    driven once. From then on it is free, unless `hold_again` is set: then it is held again whenever
+    no servo is driven, in its present pose or, if it has fallen, in its initial one.
 
     Attributes:
         twin: The twin.
         driven: (n,) bool: whether the servo of this joint has been driven.
         held: Whether the robot is held now.
-        hangs: Whether the base stays held for ever, whatever the servos do.
-        again: Whether the robot is held again when none of its servos is driven any more.
+        stays_held: Whether the base stays held for ever, whatever the servos do.
+        hold_again: Whether the robot is held again when none of its servos is driven any more.
         jammed: (n,) bool: whether the joint is blocked.
         shafts: The horns of the servos.
     """
 
     twin: Twin
     held: bool = True
-    hangs: bool = False
-    again: bool = False
+    stays_held: bool = False
+    hold_again: bool = False
     shafts: Sequence[TwinShaft] = ()
 
     def __post_init__(self) -> None:
@@ -212,17 +214,17 @@ class TwinPhysics:
         self._qpos, self._qvel = self.twin.data.qpos.copy(), np.zeros(self.twin.model.nv)
         self._start = self._qpos.copy()
 
-    def grasp(self) -> None:
+    def store_held_pose(self) -> None:
         """Record the present pose as the one to hold, with no servo driven yet."""
         self._qpos[:] = self.twin.data.qpos
         self.driven[:] = False
 
     def step(self) -> None:
         """Advance by one step."""
-        if self.held or self.again:
+        if self.held or self.hold_again:
             prm = self.twin.model.actuator_gainprm
             driven = (prm[:, KP] != 0.0) | (prm[:, KD] != 0.0)
-            self._take_or_let_go(driven)
+            self._hold_or_release(driven)
         self.twin.step(1)
         if self.held:
             self._hold()
@@ -231,18 +233,18 @@ class TwinPhysics:
 
     def turn(self, joint: int, angle: float, rate: float) -> None:
         """Set a joint to `angle` rad and `rate` rad/s, as turned by hand."""
-        data, at = self.twin.data, self.twin.places.qpos[joint]
+        data, at = self.twin.data, self.twin.indices.qpos[joint]
         data.qpos[at] = self._qpos[at] = angle
-        data.qvel[self.twin.places.dofs[joint]] = rate
+        data.qvel[self.twin.indices.dofs[joint]] = rate
 
-    def _take_or_let_go(self, driven: Mask) -> None:
+    def _hold_or_release(self, driven: Mask) -> None:
         """Release the robot when all servos have been driven; hold it again when it is limp."""
         if self.held:
             self.driven |= driven
-            if self.driven.all() and not self.hangs:
+            if self.driven.all() and not self.stays_held:
                 self.held = False
         elif not driven.any():
-            self.grasp()
+            self.store_held_pose()
             if self.twin.fallen:
                 self._qpos[:] = self._start
             self.held = True
@@ -251,7 +253,7 @@ class TwinPhysics:
         """Restore the held base and joints to their pose."""
         data = self.twin.data
         free = np.flatnonzero(self.driven)
-        at, dofs = self.twin.places.qpos[free], self.twin.places.dofs[free]
+        at, dofs = self.twin.indices.qpos[free], self.twin.indices.dofs[free]
         kept_q, kept_v = data.qpos[at].copy(), data.qvel[dofs].copy()
         data.qpos[:], data.qvel[:] = self._qpos, self._qvel
         data.qpos[at], data.qvel[dofs] = kept_q, kept_v
@@ -259,7 +261,7 @@ class TwinPhysics:
     def _jam(self) -> None:
         """Restore the blocked joints to their position."""
         stuck = np.flatnonzero(self.jammed)
-        at, dofs = self.twin.places.qpos[stuck], self.twin.places.dofs[stuck]
+        at, dofs = self.twin.indices.qpos[stuck], self.twin.indices.dofs[stuck]
         self.twin.data.qpos[at] = self._qpos[at]
         self.twin.data.qvel[dofs] = 0.0
 

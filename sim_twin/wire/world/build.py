@@ -12,27 +12,27 @@ if TYPE_CHECKING:
     from windup.sim_twin.environment import Environment
 
 
-def build_world(address: Address, around: "Environment | None" = None) -> BusWorld:
+def build_world(address: Address, environment: "Environment | None" = None) -> BusWorld:
     """Return a new world.
 
     Args:
         address: Address of the world.
-        around: Ground and plant of a robot's twin.
+        environment: Ground and plant of a robot's twin.
 
     Raises:
         UnknownNameError: There is no such robot or servo.
-        UsageError: The robot has no servos on a bus, or `around` is given without a twin.
+        UsageError: The robot has no servos on a bus, or `environment` is given without a twin.
     """
-    if around is not None and (address.robot == BENCH or address.physics != "mujoco"):
-        raise UsageError("only a robot with physics=mujoco has another ground or plant")
-    world = bench_world(address) if address.robot == BENCH else _robot(address, around)
+    if environment is not None and (address.robot == BENCH or address.physics != "mujoco"):
+        raise UsageError("ground and plant options need a robot with physics=mujoco")
+    world = bench_world(address) if address.robot == BENCH else _robot(address, environment)
     for swing in parse_hands(address.hand):
         world.hand(swing)
     return world
 
 
-def _robot(address: Address, around: "Environment | None") -> BusWorld:
+def _robot(address: Address, environment: "Environment | None") -> BusWorld:
     """Return the world of a robot; the import here loads MuJoCo, which a bench does not need."""
     from windup.sim_twin.wire.world.robot_world import robot_world
 
-    return robot_world(address, around)
+    return robot_world(address, environment)

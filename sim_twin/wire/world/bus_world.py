@@ -10,7 +10,7 @@ from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.faults.faults import Faults
 from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
-from windup.sim_twin.wire.world.hand import Grip, Hand, Swing
+from windup.sim_twin.wire.world.hand import Hand, HandMotion, JointGrip
 
 WATCH_PERIOD = 0.010  # period of the checks of watchdogs and health, s
 EPSILON = 1e-9  # tolerance for times that are rounded, s
@@ -29,7 +29,7 @@ class Physics(Protocol):
         ...
 
 
-class Bench:
+class BenchPhysics:
     """Physics of separate shafts on a bench, each with its own inertia.
 
     Attributes:
@@ -77,7 +77,7 @@ class BusWorld:
         self._full: list[float] = []  # supplies before the present brown-outs, V
         self._sags: list[float] = []  # supplies during the present brown-outs, V
         self.dead: list[Device] = []
-        self.grips: dict[str, Grip] = {}
+        self.grips: dict[str, JointGrip] = {}
         self.hands: list[Hand] = []
         self._steps = 0
         self._watched = 0.0
@@ -130,7 +130,7 @@ class BusWorld:
         now, step = self.physics_time, self.physics.timestep
         if now - self._watched >= WATCH_PERIOD - EPSILON:
             for bus, device in self._devices:
-                device.watch(now, now - self._watched, bus.heard)
+                device.watch(now, now - self._watched, bus.last_instruction)
             self._watched = now
         for _, device in self._devices:
             if device.busy:
@@ -140,15 +140,15 @@ class BusWorld:
             hand.move(step)
         self._steps += 1
 
-    def hand(self, swing: Swing) -> None:
+    def hand(self, motion: HandMotion) -> None:
         """Add a hand that turns a joint to and fro from now on, while it is limp.
 
         Raises:
             UnknownNameError: There is no such joint.
         """
-        if swing.joint not in self.grips:
-            raise UnknownNameError("joint", swing.joint, self.grips)
-        self.hands.append(Hand(self.grips[swing.joint], swing))
+        if motion.joint not in self.grips:
+            raise UnknownNameError("joint", motion.joint, self.grips)
+        self.hands.append(Hand(self.grips[motion.joint], motion))
 
     def set_supply(self, volts: float) -> None:
         """Change the supply voltage of all devices, V."""

@@ -74,10 +74,10 @@ def make_servo(
     family = family_of(name)
     if protocol not in (None, family.protocol_name):
         spoken = family.protocol_name
-        raise UsageError(f"servo {name} {identifier} speaks {spoken}, its bus {protocol}")
+        raise UsageError(f"servo {name} {identifier} uses protocol {spoken}, its bus {protocol}")
     emulation = _emulation_of(family)
     if baud not in (emulation.bauds or family.bauds):
-        raise UsageError(f"servo {name} {identifier} has no baud rate of {baud}")
+        raise UsageError(f"servo {name} {identifier} does not support {baud} baud")
     return emulation.servo(servo_model(name), shaft, identifier, baud, supply, return_delay)
 
 

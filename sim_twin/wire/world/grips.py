@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
-from windup.sim_twin.wire.world.hand import Grip
+from windup.sim_twin.wire.world.hand import JointGrip
 
 
-def bench_grips(devices: Sequence[Device], shafts: Sequence[InertiaShaft]) -> dict[str, Grip]:
+def bench_grips(devices: Sequence[Device], shafts: Sequence[InertiaShaft]) -> dict[str, JointGrip]:
     """Return the grips of servos on a bench, by id."""
     return {
         str(device.identifier): grip_on_shaft(device, shaft, 1.0)
@@ -15,9 +15,9 @@ def bench_grips(devices: Sequence[Device], shafts: Sequence[InertiaShaft]) -> di
     }
 
 
-def grip_on_shaft(device: Device, shaft: InertiaShaft, ratio: float) -> Grip:
+def grip_on_shaft(device: Device, shaft: InertiaShaft, ratio: float) -> JointGrip:
     """Return a grip on a joint whose angle is the shaft's divided by `ratio`."""
-    return Grip(
+    return JointGrip(
         device,
         lambda: shaft.position / ratio,
         lambda angle, rate: shaft.turn(angle * ratio, rate * ratio),

@@ -14,7 +14,7 @@ SECONDS: Final = Range(0.01, 3600.0, "s")
 EXAMPLE: Final = "'r_knee:20:3s,l_knee:-20:3s'"
 
 
-class Swing(NamedTuple):
+class HandMotion(NamedTuple):
     """The motion of a hand.
 
     Attributes:
@@ -28,7 +28,7 @@ class Swing(NamedTuple):
     seconds: float
 
 
-class Grip(NamedTuple):
+class JointGrip(NamedTuple):
     """Access of a hand to one joint.
 
     Attributes:
@@ -42,11 +42,11 @@ class Grip(NamedTuple):
     turn: Callable[[float, float], None]
 
 
-def parse_hands(text: str) -> list[Swing]:
+def parse_hands(text: str) -> list[HandMotion]:
     """Return the motions of a text ``JOINT:DEGREES:SECONDS``, several joined by commas.
 
     >>> parse_hands("r_knee:180:3s")
-    [Swing(joint='r_knee', angle=3.141592653589793, seconds=3.0)]
+    [HandMotion(joint='r_knee', angle=3.141592653589793, seconds=3.0)]
 
     Raises:
         UsageError: The text is malformed or a number is out of range.
@@ -54,13 +54,13 @@ def parse_hands(text: str) -> list[Swing]:
     return [_parse(part.strip()) for part in text.split(",") if part.strip()]
 
 
-def _parse(part: str) -> Swing:
+def _parse(part: str) -> HandMotion:
     joint, *numbers = (word.strip() for word in part.split(":"))
     if not joint or len(numbers) != 2:
         raise UsageError(f"hand: {part!r}: a joint, degrees and seconds, as in {EXAMPLE}")
     angle = read_number(f"hand: {part!r}: degrees", numbers[0], DEGREES)
     seconds = read_number(f"hand: {part!r}: seconds", numbers[1].removesuffix("s"), SECONDS)
-    return Swing(joint, math.radians(angle), seconds)
+    return HandMotion(joint, math.radians(angle), seconds)
 
 
 @dataclass
@@ -71,17 +71,17 @@ class Hand:
 
     Attributes:
         grip: Access to the joint.
-        swing: The motion.
+        motion: The motion.
     """
 
-    grip: Grip
-    swing: Swing
+    grip: JointGrip
+    motion: HandMotion
     _start: float = 0.0
     _time: float | None = None  # time since it began to turn the joint, s; None while driven
 
     def move(self, dt: float) -> None:
         """Continue the motion by `dt` s."""
-        grip, (_, angle, seconds) = self.grip, self.swing
+        grip, (_, angle, seconds) = self.grip, self.motion
         if grip.device.driving:
             self._time = None
             return

@@ -10,7 +10,7 @@ from windup.sim_twin.wire.world.clocks import RealClock, VirtualClock, WireClock
 
 
 @dataclass
-class Running:
+class OpenWorld:
     """An open world.
 
     Attributes:
@@ -28,10 +28,10 @@ class Running:
     keep: bool = False
 
 
-_running: dict[str, Running] = {}
+_running: dict[str, OpenWorld] = {}
 
 
-def put_world(name: str, world: BusWorld, clock: str = "virtual") -> None:
+def register_world(name: str, world: BusWorld, clock: str = "virtual") -> None:
     """Register a world under ``twin://anything?world=NAME``; it stays until `drop_world`."""
     _running[name] = _start(world, clock, keep=True)
 
@@ -47,54 +47,52 @@ def find_world(name: str) -> BusWorld:
     return _running[name].world
 
 
-def drop_world(name: str) -> None:
+def unregister_world(name: str) -> None:
     """Remove a world from the registry; open ports keep it until they are closed."""
-    running = _running.pop(name, None)
-    if running is not None and not running.ports:
-        _end(running)
+    entry = _running.pop(name, None)
+    if entry is not None and not entry.ports:
+        _end(entry)
 
 
-def enter(address: Address) -> Running:
+def open_world(address: Address) -> OpenWorld:
     """Return the running world of an address, built if necessary, and count one more port."""
     name = address.world or f"{address.robot} ({address.clock})"
-    running = _running.get(name) or _running.pop(_lost_name(address), None)
-    if running is None:
-        running = _start(build_world(address), address.clock, keep=bool(address.world))
-    elif running.kind != address.clock:
-        raise UsageError(
-            f"world {name!r} runs on a {running.kind} clock, not a {address.clock} one"
-        )
-    if address.bus and address.bus not in running.world.buses:
-        raise UnknownNameError("bus", address.bus, running.world.buses)
-    _running[name] = running
-    running.ports += 1
-    return running
+    entry = _running.get(name) or _running.pop(_lost_name(address), None)
+    if entry is None:
+        entry = _start(build_world(address), address.clock, keep=bool(address.world))
+    elif entry.kind != address.clock:
+        raise UsageError(f"world {name!r} runs on a {entry.kind} clock, not a {address.clock} one")
+    if address.bus and address.bus not in entry.world.buses:
+        raise UnknownNameError("bus", address.bus, entry.world.buses)
+    _running[name] = entry
+    entry.ports += 1
+    return entry
 
 
-def leave(running: Running, lost: Address | None = None) -> None:
+def release_world(entry: OpenWorld, lost: Address | None = None) -> None:
     """Count one port less; an unnamed world ends with its last port.
 
     An exception is a port that was lost by unplugging: opening its address again finds the world.
     """
-    running.ports -= 1
-    if running.ports == 0 and not running.keep:
-        for name in [name for name, other in _running.items() if other is running]:
+    entry.ports -= 1
+    if entry.ports == 0 and not entry.keep:
+        for name in [name for name, other in _running.items() if other is entry]:
             del _running[name]
         if lost is not None:
-            _running[_lost_name(lost)] = running
-    if running.ports == 0 and not any(other is running for other in _running.values()):
-        _end(running)
+            _running[_lost_name(lost)] = entry
+    if entry.ports == 0 and not any(other is entry for other in _running.values()):
+        _end(entry)
 
 
-def _end(running: Running) -> None:
+def _end(entry: OpenWorld) -> None:
     """Clear the schedule of an unreachable world: its actions would keep the world alive."""
-    running.world.schedule.clear()
+    entry.world.schedule.clear()
 
 
 def _lost_name(address: Address) -> str:
     return repr(replace(address, bus=""))
 
 
-def _start(world: BusWorld, clock: str, keep: bool) -> Running:
+def _start(world: BusWorld, clock: str, keep: bool) -> OpenWorld:
     ticking: WireClock = VirtualClock(world) if clock == "virtual" else RealClock(world)
-    return Running(world, ticking, clock, keep=keep)
+    return OpenWorld(world, ticking, clock, keep=keep)

@@ -3,7 +3,7 @@ from math import pi
 from windup.hal.families import RequiredSetting, plain_family
 from windup.hal.families.servo_protocol import Feetech
 from windup.hal.registers import Register
-from windup.hal.servos.servo_model import OwnLimits, Row, ServoModel
+from windup.hal.servos.servo_model import DatasheetRow, ProtectionLimits, ServoModel
 
 COUNT = 2.0 * pi / 4096  # rad
 MODEL_NUMBER = Register("model_number", 0, 2, "eeprom", writable=False)
@@ -27,12 +27,14 @@ REGISTERS = (
 A1 = ServoModel(
     name="A1",
     model_number=4711,
-    rows=(Row.of(12.0, 2.0, 60, 1.5),),  # V, N m at stall, turns a minute without load, A at stall
+    rows=(
+        DatasheetRow.of(12.0, 2.0, 60, 1.5),
+    ),  # V, N m at stall, turns a minute without load, A at stall
     error_gain=0.16,  # duty per rad of error and unit of the P register
     p_default=32,
     armature=0.01,  # rotor inertia through the gearbox, kg m2
     friction_loss=0.03,  # dry friction, N m
-    limits=OwnLimits(70.0, 6.0, 14.0),  # where it protects itself: degrees C, V, V
+    limits=ProtectionLimits(70.0, 6.0, 14.0),  # where it protects itself: degrees C, V, V
 )
 FAMILY = plain_family(
     name="Acme",

@@ -12,9 +12,9 @@ from windup.control.falling.protection import (
     EFFORT,
     LONGEST,
     REST,
-    FallWay,
     Phase,
     Protected,
+    ProtectiveFall,
     bounded,
 )
 from windup.control.kinematics.body import Body
@@ -34,7 +34,7 @@ JOINTS = Joints(
 FORWARD, BACK = np.array([0.1, 0.1]), np.array([-0.1, -0.1])
 HALF = np.array([0.5, 0.5])
 SOFT = np.array([0.1, 0.2])
-WAYS = [FallWay(0.0, FORWARD, HALF, SOFT, 1.3), FallWay(pi, BACK, HALF, SOFT, 1.3)]
+WAYS = [ProtectiveFall(0.0, FORWARD, HALF, SOFT, 1.3), ProtectiveFall(pi, BACK, HALF, SOFT, 1.3)]
 
 
 def leaning(time: float, pitch: float, rate: float = 0.0) -> Observation:

@@ -87,7 +87,10 @@ def test_a_file_has_one_model_a_line_and_says_how_it_was_made() -> None:
         ("[", "no file of step models"),
         ('{"regulation":["up.forward"],"perturbations":["a"],"models":[]}', "Learn them anew"),
         (with_model(jacobian=[[1.0], [2.0]]), r"models\[0\].jacobian: give 2 x 2 numbers"),
-        (with_model(start=[1e300]), r"models\[0\].start\[0\]: no number is beyond 1e\+12"),
+        (
+            with_model(start=[1e300]),
+            r"models\[0\].start\[0\]: 1e\+300 is too large \(maximum 1e\+12",
+        ),
         (with_model(phase=-1), "Expected `int` >= 0"),
     ],
 )

@@ -72,7 +72,7 @@ def test_fast_sync_read_is_given_up_where_the_plain_one_is_answered() -> None:
 
 def test_an_id_that_is_taken_is_not_given_twice() -> None:
     serial, port = fake_port([1, 2])
-    with pytest.raises(UsageError, match="id 2 on fake://bus is taken"):
+    with pytest.raises(UsageError, match="id 2 on fake://bus belongs to another servo"):
         Bus(port).set_id(1, 2)
     assert serial.written == []
 
@@ -85,7 +85,7 @@ def test_a_servo_answers_to_its_new_id() -> None:
 
 def test_a_baud_rate_that_no_servo_has_is_refused() -> None:
     _, port = fake_port([1])
-    with pytest.raises(UsageError, match="baud rate 123 cannot be; there are 9600, 57600"):
+    with pytest.raises(UsageError, match="baud rate 123 is not supported; use one of 9600, 57600"):
         Bus(port).set_baud(1, 123)
 
 

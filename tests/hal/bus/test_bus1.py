@@ -61,9 +61,11 @@ def test_the_lock_is_closed_under_the_new_id_and_at_the_new_baud_rate() -> None:
     bus = Bus(port, FEETECH_STS)
     bus.set_id(1, 9)
     assert sorted(serial.memory) == [2, 9] and serial.show(9, "lock") == 1
-    with pytest.raises(UsageError, match="id 2 on fake://bus is taken"):
+    with pytest.raises(UsageError, match="id 2 on fake://bus belongs to another servo"):
         bus.set_id(9, 2)
-    with pytest.raises(UsageError, match="baud rate 57600 cannot be; there are 1000000, 500000"):
+    with pytest.raises(
+        UsageError, match="baud rate 57600 is not supported; use one of 1000000, 500000"
+    ):
         bus.set_baud(9, 57_600)
 
 
@@ -73,10 +75,10 @@ def test_the_present_position_becomes_the_middle_and_the_offset_has_a_sign() -> 
     assert set_middle(Bus(port, FEETECH_STS), 1) == -248
     assert serial.show(1, "lock") == 1
     serial.set(1, "torque_enable", 1)
-    with pytest.raises(HardwareError, match="torque is on; `windup stop` first"):
+    with pytest.raises(HardwareError, match="torque is on; switch it off with `windup stop` first"):
         set_middle(Bus(port, FEETECH_STS), 1)
     _, scs = fake_port1({1: SCS})
-    with pytest.raises(UsageError, match="a Feetech SCS servo cannot be told its middle"):
+    with pytest.raises(UsageError, match="a Feetech SCS servo has no homing offset"):
         set_middle(Bus(scs, FEETECH_SCS), 1)
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from tests.hal.fake_bus import FakeSerial, fake_port
-from windup.hal.bus.transactions import DOUBTS, STILL_COMING, TURNAROUND, BusTransactions
+from windup.hal.bus.transactions import LATE_ANSWER_TIME, MAX_DOUBTED, TURNAROUND, BusTransactions
 from windup.hal.port.port import Port
 from windup.hal.protocols import protocol2
 from windup.hal.protocols.batched import BlockRead
@@ -102,10 +102,10 @@ def test_servos_that_are_back_beside_a_dead_one_are_believed_behind_a_silence(
     for _ in range(missed):
         cycle(exchange, read)
     serial.silent = {20}
-    for _ in range(DOUBTS):
+    for _ in range(MAX_DOUBTED):
         cycle(exchange, read)
         assert not read.valid.any()
-    assert STILL_COMING < cycle(exchange, read) < 2 * STILL_COMING
+    assert LATE_ANSWER_TIME < cycle(exchange, read) < 2 * LATE_ANSWER_TIME
     assert read.valid[:19].all()
 
 
@@ -119,7 +119,7 @@ def test_a_doubt_ends_with_the_first_whole_answer(read: BlockRead) -> None:
     cycle(exchange, read)
     assert read.doubted
     serial.silent.clear()
-    cycles = [cycle(exchange, read) for _ in range(4 * DOUBTS)]
+    cycles = [cycle(exchange, read) for _ in range(4 * MAX_DOUBTED)]
     assert cycles[1:] == pytest.approx([wire_time(read)] * (len(cycles) - 1))
 
 

@@ -12,7 +12,7 @@ from windup.hal.families import family_of, servo_model
 from windup.hal.families.factory_default import protective_limits
 from windup.hal.families.feetech import PROTECTION_DEFAULTS
 from windup.hal.imu.opencr import OpenCr
-from windup.hal.servo_bus.servo_setup import power_up
+from windup.hal.servo_bus.servo_setup import switch_servo_power_on
 from windup.tools.testing.servo_bus import ServoBus
 
 KNEE = {"op3": 13, "duck": 23}
@@ -27,7 +27,7 @@ def left_with(bus: ServoBus, robot: str, **values: int) -> None:
     with bus.port(baud=BAUD[robot]) as port:
         host = Bus(port, family)
         if robot == "op3":
-            power_up(host, OpenCr("bus"))
+            switch_servo_power_on(host, OpenCr("bus"))
         if "lock" in table:
             host.write(KNEE[robot], table["lock"], 0)
         for name, value in values.items():
@@ -56,9 +56,7 @@ def test_a_servo_that_speaks_protocol_1_is_told_by_joint_and_id() -> None:
         left_with(bus, "op3", protocol_type=1)
         with pytest.raises(HardwareError) as caught:
             bus.robot()
-        assert "knee' id 13: XM430-W350 speaks protocol 1: set its Protocol Type" in str(
-            caught.value
-        )
+        assert "knee' id 13: XM430-W350 uses protocol 1: set its Protocol Type" in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -127,7 +125,7 @@ def test_what_is_written_is_said_first(caplog: pytest.LogCaptureFixture) -> None
     robot.serial.put(3, 63, 0, 1)
     robot.backend.configure()
     assert caplog.messages == [
-        "servo settings are changed: return_delay 250 -> 0 at all 4 joints; "
+        "changing servo settings: return_delay 250 -> 0 at all 4 joints; "
         "secondary_id 7 -> 255 at j1; shutdown 0 -> 52 at j2"
     ]
     caplog.clear()
@@ -164,7 +162,10 @@ def test_limits_of_its_owner_are_left_and_shown(caplog: pytest.LogCaptureFixture
     backend = robot(wires, [mount(sts, "body", 1), mount(sts, "body", 2)])
     backend.connect()
     backend.configure()
-    said = "protection limits differ from the factory's: overload_torque 25 (usual: 80) at j1"
+    said = (
+        "protection limits differ from the factory defaults: "
+        "overload_torque 25 (factory default: 80) at j1"
+    )
     assert said in caplog.messages
     assert wires["body"].show(2, "overload_torque") == 25
 
@@ -188,8 +189,9 @@ def test_a_temperature_limit_other_than_the_makers_is_shown(
     robot.serial.put(3, 31, 100, 1)
     robot.backend.configure()
     assert caplog.messages[-1] == (
-        "protection limits differ from the factory's: temperature_limit 30 (usual: 80) at j1; "
-        "temperature_limit 100 (usual: 80) at j2"
+        "protection limits differ from the factory defaults: "
+        "temperature_limit 30 (factory default: 80) at j1; "
+        "temperature_limit 100 (factory default: 80) at j2"
     )
 
 
@@ -204,6 +206,6 @@ def test_who_answers_half_of_what_is_asked_is_not_taken_for_one_without_power(ro
     half = f"drop:0.5:ids={KNEE[robot]}"
     with ServoBus(robot, seed=1, faults=half) as bus, pytest.raises(HardwareError) as raised:
         bus.robot()
-    assert "answers a ping, but not every question" in str(raised.value)
+    assert "answers pings, but not all other requests" in str(raised.value)
     assert "powered" not in str(raised.value)
     assert str(raised.value).count("windup scan") == 1

@@ -35,7 +35,7 @@ def test_the_rotation_between_two_orientations_is_the_shorter_one(
 ) -> None:
     wanted = (one.inv() * other).as_rotvec()
     for sign in (1.0, -1.0):
-        found = quaternion.between(wxyz(one), sign * wxyz(other))
+        found = quaternion.rotation_between(wxyz(one), sign * wxyz(other))
         np.testing.assert_allclose(found, wanted, atol=1e-9)
 
 

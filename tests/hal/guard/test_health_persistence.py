@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.hal.servo_state import MODEL, MOUNTS
-from windup.hal.guard.levels import HealthLevels, Kind
+from windup.hal.guard.levels import HealthKind, HealthLevels
 from windup.hal.guard.persistence import SIGNS, Persistence
 from windup.hal.joints import Array
 
@@ -30,8 +30,8 @@ def first(supply: Callable[[float, int], float], level: int = STOP) -> float | N
 
 
 def values_of(volts: Array) -> Array:
-    values = np.full((len(Kind), N), np.nan)
-    values[Kind.SUPPLY_LOW] = SIGNS[Kind.SUPPLY_LOW] * volts
+    values = np.full((len(HealthKind), N), np.nan)
+    values[HealthKind.SUPPLY_LOW] = SIGNS[HealthKind.SUPPLY_LOW] * volts
     return values
 
 
@@ -59,7 +59,7 @@ def test_one_joint_that_always_reads_low_is_only_warned_of() -> None:
 
 
 def test_a_supply_at_its_level_is_not_below_it() -> None:
-    assert first(lambda time, joint: float(LEVELS.warn[Kind.SUPPLY_LOW, 0]), WARNING) is None
+    assert first(lambda time, joint: float(LEVELS.warn[HealthKind.SUPPLY_LOW, 0]), WARNING) is None
 
 
 def test_supply_that_is_only_low_is_no_stop() -> None:
@@ -67,8 +67,8 @@ def test_supply_that_is_only_low_is_no_stop() -> None:
 
 
 def test_an_old_reading_is_not_a_second_one() -> None:
-    persistence, hot = Persistence(LEVELS), np.full((len(Kind), N), np.nan)
-    hot[Kind.TEMPERATURE] = 90.0
+    persistence, hot = Persistence(LEVELS), np.full((len(HealthKind), N), np.nan)
+    hot[HealthKind.TEMPERATURE] = 90.0
     for now in np.arange(0.0, 3.0, DT):
         due = persistence.due(hot, now, np.full(N, now))  # read at 0 s, and never again
         assert due is not None and not due.any()

@@ -37,7 +37,7 @@ def test_an_imu_that_repeats_itself_while_joints_move_is_frozen() -> None:
     first = found(ImuWatch(), frozen)
     assert first is not None
     assert first[0] == pytest.approx(0.5, abs=2 * DT)
-    assert str(first[1]) == "the IMU is stuck at one sample for 0.5 s (stop at 0.5 s)"
+    assert str(first[1]) == "the IMU is repeating one sample for 0.5 s (stop at 0.5 s)"
 
 
 def test_an_imu_that_repeats_itself_while_nothing_moves_is_only_warned_of() -> None:
@@ -69,7 +69,7 @@ def test_a_gyroscope_that_jumps_is_found_within_an_eighth_of_a_second(
     rate = speed * np.eye(3)[axis]
     first = found(watch, [*still(1.0), *still(1.0, 1.0, rate)])
     assert first is not None and first[0] == pytest.approx(1.1, abs=3 * DT)
-    assert "turning by its gyroscope alone" in str(first[1])
+    assert "without an acceleration" in str(first[1])
 
 
 def test_a_jump_is_doubted_from_its_first_sample_and_forgotten_when_it_was_one() -> None:
@@ -85,7 +85,7 @@ def test_a_gyroscope_that_drifts_away_is_found_by_gravity() -> None:
     drift = [seen(k * DT, (0.0, 1.5 * k * DT, 0.0), upright(k)) for k in range(300)]
     first = found(ImuWatch(), drift)
     assert first is not None and first[0] < 1.2
-    assert "turning by its gyroscope alone, by" in str(first[1])
+    assert "that accelerometer or joints contradict" in str(first[1])
 
 
 @pytest.mark.parametrize("height", [0.05, 0.15, 0.25, 0.3, 0.4])
@@ -174,7 +174,9 @@ def falling(rate: float | None) -> list[Observation]:
 def test_a_gyroscope_that_stays_at_one_rate_while_the_body_turns_as_fast_is_stuck() -> None:
     first = found(ImuWatch(), falling(3.0))
     assert first is not None and first[0] == pytest.approx(0.1, abs=2 * DT)
-    assert str(first[1]) == "the IMU is stuck about one axis, at 3.0 rad/s (stop above 0.7)"
+    assert (
+        str(first[1]) == "the IMU is repeating a rate of 3.0 rad/s about one axis (stop above 0.7)"
+    )
 
 
 def test_a_stuck_axis_is_one_fault_also_between_two_samples() -> None:

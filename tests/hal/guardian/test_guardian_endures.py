@@ -12,23 +12,23 @@ import pytest
 from tests.hal.guardian.two_servos import (
     NAMES,
     TORQUE,
-    charge,
     full_pipe,
     host,
+    record,
     runs,
     show,
     switch_on,
     wait_for_end,
 )
 from windup.hal.guardian import takeover
-from windup.hal.guardian.order import Order
+from windup.hal.guardian.order import GuardianOrder
 from windup.hal.guardian.remote_bus import RemoteBus
 from windup.hal.guardian.takeover import Takeover
 
 
-def order(path: Path, policy: str = "limp") -> Order:
-    whole = msgspec.structs.replace(charge(path), names=NAMES, crouch={1: 1800, 2: 2300})
-    return Order(host=os.getpid(), policy=policy, charges=(whole,))  # type: ignore[arg-type]
+def order(path: Path, policy: str = "limp") -> GuardianOrder:
+    whole = msgspec.structs.replace(record(path), names=NAMES, crouch={1: 1800, 2: 2300})
+    return GuardianOrder(host=os.getpid(), policy=policy, buses=(whole,))  # type: ignore[arg-type]
 
 
 def fails(*_: object) -> None:
@@ -58,14 +58,14 @@ def test_a_policy_that_fails_in_any_way_ends_with_torque_off(
     monkeypatch.setattr(takeover, policy, fails)
     switch_on(sts_bus)
     said: list[str] = []
-    Takeover(order(sts_bus, policy), said.append).carry_out("its program died")
+    Takeover(order(sts_bus, policy), said.append).carry_out("the program died")
     assert f"it cannot {policy} (AttributeError: a bug); torque goes off" in said
     assert show(sts_bus, TORQUE) == [0, 0]
 
 
 def test_whoever_cannot_speak_switches_off(sts_bus: Path) -> None:
     switch_on(sts_bus)
-    Takeover(order(sts_bus, "crouch"), fails).carry_out("its program died")
+    Takeover(order(sts_bus, "crouch"), fails).carry_out("the program died")
     assert show(sts_bus, TORQUE) == [0, 0]
 
 
@@ -81,7 +81,7 @@ def test_a_bus_that_fails_in_any_way_is_tried_until_it_does_not(
 
     switch_on(sts_bus)
     monkeypatch.setattr(RemoteBus, "torque", fails_at_first)
-    Takeover(order(sts_bus), print).carry_out("its program died")
+    Takeover(order(sts_bus), print).carry_out("the program died")
     assert not left
     monkeypatch.undo()
     assert show(sts_bus, TORQUE) == [0, 0]
@@ -97,7 +97,7 @@ def test_a_guardian_that_cannot_hear_its_host_ends_it_and_stops_the_servos(
                 with suppress(BrokenPipeError):
                     ours.write(b"?")
         assert program.stderr is not None
-        assert "its guardian cannot hear its program" in program.stderr.read()
+        assert "the guardian failed to read the heartbeats" in program.stderr.read()
         assert program.wait() == -signal.SIGKILL
     assert show(sts_bus, TORQUE) == [0, 0]
 
@@ -107,12 +107,12 @@ def test_joints_are_called_by_their_names_and_who_cuts_the_power_is_told_how_to_
 ) -> None:
     switch_on(sts_bus)
     lost = msgspec.structs.replace(
-        charge(sts_bus), servos={**charge(sts_bus).servos, 9: "STS3215-7.4V"},
+        record(sts_bus), servos={**record(sts_bus).servos, 9: "STS3215-7.4V"},
         names={**NAMES, 9: "neck"},
     )  # fmt: skip
     said: list[str] = []
-    taken = Takeover(Order(host=1, policy="limp", charges=(lost,)), said.append)
+    taken = Takeover(GuardianOrder(host=1, policy="limp", buses=(lost,)), said.append)
     assert taken.switch_off_once() == [str(sts_bus)]
-    taken._complain(inf)
+    taken._report_trouble(inf)
     assert "torque cannot be read at neck (id 9)" in said[0]
     assert said[0].endswith(f"; cut the servo power, then end this process: kill -9 {os.getpid()}")

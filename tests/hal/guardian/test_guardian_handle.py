@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from tests.hal.fake_bus1 import STS
-from tests.hal.guardian.two_servos import TORQUE, charge, emulated, patiently, show, switch_on
+from tests.hal.guardian.two_servos import TORQUE, emulated, patiently, record, show, switch_on
 from tests.hal.mixed_robot import Wires, mount, robot
 from windup.hal.errors import GuardianError, HardwareError, PortError, UsageError
 from windup.hal.families import servo_model
-from windup.hal.guard.levels import HealthLevels, Kind
-from windup.hal.guardian.charges import charge_of
+from windup.hal.guard.levels import HealthKind, HealthLevels
+from windup.hal.guardian.guarded_buses import guarded_bus
 from windup.hal.guardian.handle import Guardian, guardian_for
 from windup.hal.port.open_port import open_port
 from windup.tools.robot.robot import Robot
@@ -20,13 +20,13 @@ from windup.tools.robot.robot import Robot
 
 @pytest.fixture
 def guardian(sts_bus: Path) -> Iterator[Guardian]:
-    watching = Guardian([charge(sts_bus)], "limp")
+    watching = Guardian([record(sts_bus)], "limp")
     yield watching
     watching.release()
 
 
 def test_a_host_that_releases_it_leaves_the_servos_alone(sts_bus: Path) -> None:
-    guardian = Guardian([charge(sts_bus)], "limp")
+    guardian = Guardian([record(sts_bus)], "limp")
     assert guardian.alive
     switch_on(sts_bus)
     guardian.release()
@@ -43,7 +43,7 @@ def test_a_guardian_that_has_died_is_noticed_by_the_next_heartbeat(guardian: Gua
 
 def test_a_guardian_that_was_stopped_is_noticed_and_can_be_let_go(guardian: Guardian) -> None:
     os.kill(guardian.pid, signal.SIGSTOP)
-    with pytest.raises(GuardianError, match="does not react"):
+    with pytest.raises(GuardianError, match="read"):
         while True:
             guardian.tick()
             time.sleep(0.005)
@@ -51,7 +51,7 @@ def test_a_guardian_that_was_stopped_is_noticed_and_can_be_let_go(guardian: Guar
 
 def test_two_armed_runs_cannot_have_one_adapter(guardian: Guardian, sts_bus: Path) -> None:
     with pytest.raises(PortError, match="another armed run"):
-        Guardian([charge(sts_bus)], "limp")
+        Guardian([record(sts_bus)], "limp")
 
 
 def test_a_guardian_that_does_not_start_is_said(
@@ -59,7 +59,7 @@ def test_a_guardian_that_does_not_start_is_said(
 ) -> None:
     monkeypatch.setattr("sys.executable", "/bin/false")
     with pytest.raises(HardwareError, match="does not start; torque stays off"):
-        Guardian([charge(sts_bus)], "limp")
+        Guardian([record(sts_bus)], "limp")
 
 
 def test_servos_that_are_emulated_in_this_process_need_none() -> None:
@@ -91,9 +91,9 @@ def test_a_guardian_lets_go_at_the_stop_levels_of_the_run() -> None:
     wires.add("legs", {7: STS})
     backend = robot(wires, [mount(STS, "legs", 7)])
     backend.connect()
-    levels = HealthLevels.of([mount(STS, "legs", 7)], 7.4, {Kind.TEMPERATURE: (50.0, 55.0)})
-    charged = charge_of(backend.links[0], None, levels)
-    assert charged.levels == {7: (55.0, float(levels.stop[Kind.SUPPLY_LOW, 0]))}
+    levels = HealthLevels.of([mount(STS, "legs", 7)], 7.4, {HealthKind.TEMPERATURE: (50.0, 55.0)})
+    charged = guarded_bus(backend.links[0], None, levels)
+    assert charged.levels == {7: (55.0, float(levels.stop[HealthKind.SUPPLY_LOW, 0]))}
     backend.disconnect()
 
 
@@ -103,7 +103,7 @@ def test_feetech_servos_behind_a_network_are_refused() -> None:
     backend = robot(wires, [mount(STS, "legs", 1)])
     backend.connect()
     backend.links[0].bus.port.url = "socket://bridge:4000"
-    with pytest.raises(UsageError, match="cannot watch their bus"):
+    with pytest.raises(UsageError, match="have no bus watchdog"):
         guardian_for(backend, "limp")
     backend.disconnect()
 

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.hal.guardian.two_servos import TORQUE, charge, host, show, switch_on, wait_for_end
+from tests.hal.guardian.two_servos import TORQUE, host, record, show, switch_on, wait_for_end
 from windup.hal.guardian import handle
 from windup.hal.guardian.handle import Guardian
 from windup.hal.guardian.launch import launch
-from windup.hal.guardian.signals import IGNORED, held_back
+from windup.hal.guardian.signals import IGNORED, signals_blocked
 
 
 def send_all(number: int) -> None:
@@ -35,14 +35,14 @@ def test_a_guardian_that_only_starts_ignores_them(
         return process
 
     monkeypatch.setattr(handle, "launch", launch_and_send)
-    guardian = Guardian([charge(sts_bus)], "limp")
+    guardian = Guardian([record(sts_bus)], "limp")
     assert guardian.alive
     guardian.release()
     assert guardian._process.returncode == 0
 
 
 def test_a_guardian_that_watches_ignores_them(sts_bus: Path) -> None:
-    guardian = Guardian([charge(sts_bus)], "limp")
+    guardian = Guardian([record(sts_bus)], "limp")
     send_all(guardian.pid)
     switch_on(sts_bus)
     guardian.release()
@@ -66,7 +66,7 @@ def test_a_guardian_that_stops_a_robot_ignores_them(sts_bus: Path) -> None:
 def test_signals_to_this_process_wait_while_it_starts_one() -> None:
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        with pytest.raises(KeyboardInterrupt), held_back():
+        with pytest.raises(KeyboardInterrupt), signals_blocked():
             signal.pthread_kill(threading.get_ident(), signal.SIGINT)
             reached = True
     finally:

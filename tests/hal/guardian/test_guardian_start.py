@@ -10,19 +10,19 @@ from pathlib import Path
 
 import pytest
 
-from tests.hal.guardian.two_servos import charge
+from tests.hal.guardian.two_servos import record
 from windup.hal.errors import HardwareError, PortError
 from windup.hal.guardian import handle
 from windup.hal.guardian.handle import Guardian
 from windup.hal.guardian.launch import launch
-from windup.hal.guardian.order import Order
+from windup.hal.guardian.order import GuardianOrder
 from windup.hal.port.lock import AdapterLock
 
 
 def free(path: Path) -> bool:
     lock = AdapterLock(str(path))
     try:
-        return lock.free()
+        return lock.try_acquire()
     finally:
         lock.close()
 
@@ -48,14 +48,14 @@ def test_ctrl_c_that_the_program_catches_ends_the_one_that_starts(
         launched.append(launch(locks))
         return launched[0]
 
-    def interrupted(guardian: Guardian, order: Order) -> None:
+    def interrupted(guardian: Guardian, order: GuardianOrder) -> None:
         start(guardian, order)
         raise KeyboardInterrupt
 
     monkeypatch.setattr(handle, "launch", remember)
     monkeypatch.setattr(Guardian, "_start", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        Guardian([charge(sts_bus)], "limp")
+        Guardian([record(sts_bus)], "limp")
     assert launched[0].returncode is not None
     assert free(sts_bus)
 
@@ -64,9 +64,9 @@ def test_of_two_adapters_one_that_is_taken_leaves_the_other_free(
     sts_bus: Path, tmp_path: Path
 ) -> None:
     taken = AdapterLock(str(tmp_path / "taken"))
-    taken.take()
+    taken.acquire()
     with pytest.raises(PortError, match="another armed run"):
-        Guardian([charge(sts_bus), charge(tmp_path / "taken")], "limp")
+        Guardian([record(sts_bus), record(tmp_path / "taken")], "limp")
     assert free(sts_bus)
     taken.close()
 
@@ -78,7 +78,7 @@ def test_too_many_open_files_are_said_in_words_and_are_no_harm_later(sts_bus: Pa
     for more in range(7):
         try:
             with files(lowest + more):
-                Guardian([charge(sts_bus)], "limp").release()
+                Guardian([record(sts_bus)], "limp").release()
         except HardwareError as error:
             assert "too many open files: close some" in str(error)
             failed += 1
@@ -90,7 +90,7 @@ def test_a_program_with_more_than_1024_open_files_has_one_too(sts_bus: Path) -> 
     with files(1200):
         held = [os.dup(0) for _ in range(1100)]
         try:
-            guardian = Guardian([charge(sts_bus)], "limp")
+            guardian = Guardian([record(sts_bus)], "limp")
             assert guardian._descriptor >= 1024
             guardian.tick()
             guardian.release()
@@ -106,7 +106,7 @@ def test_a_guardian_is_given_no_file_that_took_the_number_of_standard_error(
     strange = os.open("/dev/zero", os.O_RDONLY)
     os.dup2(strange, 2, inheritable=False)
     try:
-        guardian = Guardian([charge(sts_bus)], "limp")
+        guardian = Guardian([record(sts_bus)], "limp")
         assert os.readlink(f"/proc/{guardian.pid}/fd/2") == os.devnull
         guardian.release()
     finally:

@@ -11,8 +11,8 @@ from tests.hal.guardian.two_servos import (
     GOAL,
     NAMES,
     TORQUE,
-    charge,
     host,
+    record,
     runs,
     show,
     switch_on,
@@ -21,7 +21,7 @@ from tests.hal.guardian.two_servos import (
 from windup.hal.errors import UnknownNameError
 from windup.hal.guardian.handle import Guardian
 from windup.hal.guardian.host import Host
-from windup.hal.guardian.order import Charge, Order
+from windup.hal.guardian.order import GuardedBus, GuardianOrder
 from windup.hal.guardian.takeover import Takeover
 
 
@@ -38,7 +38,7 @@ def test_a_host_that_hangs_says_where_is_killed_and_its_servos_go_off(sts_bus: P
         wait_for_end(guardian)
         assert program.wait() == -signal.SIGKILL
         assert program.stderr is not None
-        assert "its program hangs" in program.stderr.read()
+        assert "the program hangs" in program.stderr.read()
     assert show(sts_bus, TORQUE) == [0, 0]
 
 
@@ -70,7 +70,7 @@ def test_a_servo_beyond_the_stop_levels_of_its_robot_is_not_held(
     sts_bus: Path, capfd: pytest.CaptureFixture[str], levels: tuple[float, float], why: str
 ) -> None:
     guardian = Guardian(
-        [msgspec.structs.replace(charge(sts_bus), levels={2: levels}, names=NAMES)],
+        [msgspec.structs.replace(record(sts_bus), levels={2: levels}, names=NAMES)],
         "hold",
         60.0,
     )
@@ -82,7 +82,7 @@ def test_a_servo_beyond_the_stop_levels_of_its_robot_is_not_held(
 
 
 def test_a_host_that_gives_up_its_ports_lives_on_and_its_servos_go_off(sts_bus: Path) -> None:
-    guardian = Guardian([charge(sts_bus)], "limp")
+    guardian = Guardian([record(sts_bus)], "limp")
     switch_on(sts_bus)
     guardian.hand_over()
     guardian._process.wait()
@@ -92,7 +92,7 @@ def test_a_host_that_gives_up_its_ports_lives_on_and_its_servos_go_off(sts_bus: 
 def test_a_port_that_is_not_there_is_tried_until_it_is(sts_bus: Path, tmp_path: Path) -> None:
     later = tmp_path / "later"
     switch_on(sts_bus)
-    guardian = Guardian([charge(later)], "limp")
+    guardian = Guardian([record(later)], "limp")
     guardian.hand_over()
     assert runs(guardian.pid)
     later.symlink_to(sts_bus)
@@ -104,8 +104,8 @@ def test_a_bus_that_stays_away_does_not_keep_another_from_its_stop(
     sts_bus: Path, tmp_path: Path
 ) -> None:
     switch_on(sts_bus)
-    order = Order(
-        host=os.getpid(), policy="limp", charges=(charge(tmp_path / "no"), charge(sts_bus))
+    order = GuardianOrder(
+        host=os.getpid(), policy="limp", buses=(record(tmp_path / "no"), record(sts_bus))
     )
     takeover = Takeover(order, print)
     assert takeover.switch_off_once() == [str(tmp_path / "no")]
@@ -117,10 +117,10 @@ def test_a_host_that_has_been_gone_for_long_is_known_to_be_gone() -> None:
     if child == 0:
         os._exit(0)
     os.waitpid(child, 0)
-    assert Host(child).gone and not Host(os.getpid()).gone
+    assert Host(child).has_ended and not Host(os.getpid()).has_ended
 
 
 def test_servos_that_nobody_knows_are_refused_before_torque() -> None:
-    strange = Charge(url="x", baud=1, servos={1: "XX"})
+    strange = GuardedBus(url="x", baud=1, servos={1: "XX"})
     with pytest.raises(UnknownNameError, match="servo"):
-        Takeover(Order(host=1, policy="limp", charges=(strange,)), print)
+        Takeover(GuardianOrder(host=1, policy="limp", buses=(strange,)), print)

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import pytest
 
 from windup.hal.guardian.host import Host
-from windup.hal.guardian.order import FIRST, HAND_OVER, IDLE, RELEASE, SILENCE, TICK
-from windup.hal.guardian.process import Ending, watch
+from windup.hal.guardian.order import FIRST, HAND_OVER, IDLE, MAX_SILENCE, RELEASE, TICK
+from windup.hal.guardian.process import StopReason, watch
 
 Pipe = tuple[int, int]
 
@@ -28,15 +28,15 @@ def pipe() -> Iterator[Pipe]:
 @pytest.mark.parametrize(
     ("said", "ending"),
     [
-        (RELEASE, Ending.RELEASED),
-        (HAND_OVER, Ending.HANDED_OVER),
-        (TICK + RELEASE, Ending.RELEASED),
-        (TICK, Ending.SILENT),
-        (IDLE, Ending.SILENT),
+        (RELEASE, StopReason.RELEASED),
+        (HAND_OVER, StopReason.HANDED_OVER),
+        (TICK + RELEASE, StopReason.RELEASED),
+        (TICK, StopReason.SILENT),
+        (IDLE, StopReason.SILENT),
     ],
 )
 def test_what_is_heard_last_says_how_it_ends(
-    program: "subprocess.Popen[bytes]", pipe: Pipe, said: bytes, ending: Ending
+    program: "subprocess.Popen[bytes]", pipe: Pipe, said: bytes, ending: StopReason
 ) -> None:
     os.write(pipe[1], said)
     assert watch(pipe[0], Host(program.pid))[0] is ending
@@ -57,7 +57,7 @@ def test_a_robot_that_has_not_made_its_first_motion_does_not_crouch(
     program: "subprocess.Popen[bytes]", pipe: Pipe, said: bytes, moved: bool
 ) -> None:
     os.write(pipe[1], said + IDLE)
-    assert watch(pipe[0], Host(program.pid)) == (Ending.SILENT, moved)
+    assert watch(pipe[0], Host(program.pid)) == (StopReason.SILENT, moved)
     os.close(pipe[1])
 
 
@@ -66,7 +66,7 @@ def test_a_host_that_dies_is_seen_though_its_pipe_is_open(
 ) -> None:
     host = Host(program.pid)
     program.kill()
-    assert watch(pipe[0], host)[0] is Ending.DIED
+    assert watch(pipe[0], host)[0] is StopReason.DIED
     os.close(pipe[1])
 
 
@@ -75,8 +75,8 @@ def test_a_pipe_that_closes_while_the_host_lives_is_no_release(
 ) -> None:
     os.write(pipe[1], TICK)
     os.close(pipe[1])
-    assert watch(pipe[0], Host(program.pid))[0] is Ending.CLOSED
+    assert watch(pipe[0], Host(program.pid))[0] is StopReason.CLOSED
 
 
 def test_a_robot_that_moves_is_given_less_time_than_one_that_is_held() -> None:
-    assert SILENCE[TICK] == 0.15 < SILENCE[IDLE]
+    assert MAX_SILENCE[TICK] == 0.15 < MAX_SILENCE[IDLE]

@@ -13,7 +13,7 @@ from typing import TypeVar
 from windup.hal.bus.bus import Bus
 from windup.hal.errors import HardwareError
 from windup.hal.families import FEETECH_STS
-from windup.hal.guardian.order import Charge
+from windup.hal.guardian.order import GuardedBus
 from windup.hal.port.open_port import open_port
 from windup.hal.registers import Register
 
@@ -39,8 +39,8 @@ def emulated(*arguments: str) -> "Iterator[subprocess.Popen[str]]":
             process.kill()
 
 
-def charge(path: Path) -> Charge:
-    return Charge(url=str(path), baud=1_000_000, servos=IDS)
+def record(path: Path) -> GuardedBus:
+    return GuardedBus(url=str(path), baud=1_000_000, servos=IDS)
 
 
 def patiently(ask: Callable[[], T]) -> T:
@@ -97,12 +97,12 @@ def runs(number: int) -> bool:
 HOST = """
 import sys, time
 from windup.hal.guardian.handle import Guardian
-from windup.hal.guardian.order import Charge
+from windup.hal.guardian.order import GuardedBus
 from tests.hal.guardian.two_servos import IDS, switch_on
 path, policy, hold = sys.argv[1:]
 crouch = {1: 1800, 2: 2300}
-charge = Charge(url=path, baud=1_000_000, servos=IDS, crouch=crouch)
-guardian = Guardian([charge], policy, float(hold))
+record = GuardedBus(url=path, baud=1_000_000, servos=IDS, crouch=crouch)
+guardian = Guardian([record], policy, float(hold))
 switch_on(path)
 guardian.tick()
 print(guardian.pid, flush=True)

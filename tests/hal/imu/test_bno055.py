@@ -170,7 +170,7 @@ def test_a_chip_that_lost_its_power_is_set_again_without_a_wait_in_the_loop() ->
 def test_a_chip_that_never_measures_is_refused() -> None:
     chip = FakeChip()
     chip.stuck = True
-    with pytest.raises(PortError, match="does not take its mode: power it off and on"):
+    with pytest.raises(PortError, match="does not enter its IMU mode: switch its power off and on"):
         listening(chip)
 
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from tests.hal.fake_bus import FakeSerial, VirtualClock
 from tests.hal.fake_bus1 import STS
 from tests.hal.mixed_robot import Wires, mount, robot, ticks
-from windup.hal.imu.bno08x_rvc import ON_THE_WIRE, Bno08xRvc, FrameParser
+from windup.hal.imu.bno08x_rvc import WIRE_TIME, Bno08xRvc, FrameParser
 from windup.hal.port.port import Port
 
 EXAMPLE = bytes.fromhex("AAAADE010092FF25088DFEECFFD103000000E7")  # of the data sheet
@@ -44,7 +44,7 @@ def test_the_data_sheets_example_is_decoded_and_gravity_is_where_the_angles_say(
     up = [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]
     assert up == pytest.approx([-0.356, -0.019, 0.934], abs=1e-3)
     assert state.angular_velocity.tolist() == [0.0] * 3
-    assert state.age == pytest.approx(ON_THE_WIRE)
+    assert state.age == pytest.approx(WIRE_TIME)
 
 
 @given(st.lists(st.binary(max_size=12), min_size=4, max_size=4), st.integers(1, 60))
@@ -130,10 +130,10 @@ def test_a_turn_that_cannot_be_is_refused_and_the_sample_ages() -> None:
     send(serial, imu, rvc(1, (0, 120.0, 0)))
     assert imu.implausible == 2
     state = imu.state(serial.clock.now())
-    assert state is not None and state.age == pytest.approx(0.02 + ON_THE_WIRE)
+    assert state is not None and state.age == pytest.approx(0.02 + WIRE_TIME)
     send(serial, imu, rvc(3, (0.1, 0, 0)))
     again = imu.state(serial.clock.now())
-    assert again is not None and again.age == pytest.approx(ON_THE_WIRE)
+    assert again is not None and again.age == pytest.approx(WIRE_TIME)
 
 
 def test_the_backend_listens_beside_its_buses_and_survives_an_unplugged_imu() -> None:

@@ -10,7 +10,7 @@ PERIOD = 0.01
 def looks(clock: FrameClock, came: list[float], every: float) -> list[float]:
     """Return how wrong the dates are of frames that `came`, for a host that looks now and then."""
     return [
-        clock.date(number % 256, -(-time // every) * every) - time
+        clock.timestamp(number % 256, -(-time // every) * every) - time
         for number, time in enumerate(came)
     ]
 
@@ -30,11 +30,11 @@ def test_a_senders_clock_may_be_a_little_wrong(real: float) -> None:
 
 def test_a_sender_that_has_paused_is_dated_anew() -> None:
     clock = FrameClock(PERIOD)
-    clock.date(0, 1.0)
-    assert clock.date(1, 1.01 + 2.0 * LATEST) == 1.01 + 2.0 * LATEST
+    clock.timestamp(0, 1.0)
+    assert clock.timestamp(1, 1.01 + 2.0 * LATEST) == 1.01 + 2.0 * LATEST
 
 
 def test_lost_frames_are_counted_by_their_numbers() -> None:
     clock = FrameClock(PERIOD)
-    clock.date(254, 1.0)
-    assert clock.date(3, 1.057) == pytest.approx(1.05, abs=1e-4)
+    clock.timestamp(254, 1.0)
+    assert clock.timestamp(3, 1.057) == pytest.approx(1.05, abs=1e-4)

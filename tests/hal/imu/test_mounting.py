@@ -18,13 +18,13 @@ TURNED: list[Axes] = [
 @pytest.mark.parametrize("axes", TURNED, ids=" ".join)
 def test_vectors_and_orientations_are_turned_alike(axes: Axes) -> None:
     mounting, vector = Mounting(axes), np.array([1.0, 2.0, 3.0])
-    assert rotate(mounting.quaternion, vector) == pytest.approx(mounting.body(vector))
-    assert mounting.chip(mounting.body(vector)).tolist() == vector.tolist()
+    assert rotate(mounting.quaternion, vector) == pytest.approx(mounting.to_body(vector))
+    assert mounting.to_imu(mounting.to_body(vector)).tolist() == vector.tolist()
 
 
 def test_an_axis_says_what_of_the_board_points_there() -> None:
     # Its own y axis points backward: what it feels along y is behind the robot.
-    assert Mounting(("-y", "x", "z")).body(np.array([0.0, 1.0, 0.0])).tolist() == [-1, 0, 0]
+    assert Mounting(("-y", "x", "z")).to_body(np.array([0.0, 1.0, 0.0])).tolist() == [-1, 0, 0]
 
 
 def test_a_straight_board_is_turned_by_nothing_at_all() -> None:

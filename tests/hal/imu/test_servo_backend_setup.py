@@ -26,10 +26,11 @@ def test_configure_names_everything_that_is_wrong_and_writes_nothing() -> None:
     with pytest.raises(HardwareError) as caught:
         robot.backend.configure()
     assert str(caught.value) == (
-        "fake://bus: 3 things not as wired: "
+        "fake://bus: 3 things not as in robot.toml: "
         "joint 'j0' id 1: is a XL430-W250 where a XM430-W350 should be; "
         "joint 'j2' id 3: no answer; "
-        "joint 'j3' id 4: torque is on and return_delay 250 instead of 0; `windup stop` first; "
+        "joint 'j3' id 4: cannot correct return_delay 250 instead of 0 while torque is on; "
+        "switch it off with `windup stop` first; "
         "run `windup scan fake://bus`"
     )
     assert robot.serial.written == []
@@ -38,7 +39,7 @@ def test_configure_names_everything_that_is_wrong_and_writes_nothing() -> None:
 def test_two_servos_with_one_id_are_recognised_by_their_broken_answers() -> None:
     robot = Robot()
     robot.serial.spoil = lambda id, frame: frame[:-1] + b"\x00" if id == 2 else frame
-    with pytest.raises(HardwareError, match=r"joint 'j1' id 2: only broken answers \(two servos"):
+    with pytest.raises(HardwareError, match=r"joint 'j1' id 2: only corrupt answers \(two servos"):
         robot.backend.configure()
     assert robot.serial.written == []
 
@@ -116,6 +117,6 @@ def test_buses_of_two_worlds_are_refused() -> None:
     mounts = [ServoMount(XM430, name, 1, 1, 2048, 1.0) for name in ("left", "right")]
     ports = {name: BusPort(name, 1_000_000) for name in wires}
     backend = ServoBackend(joints_of(2), mounts, ports, opener=lambda url, baud: wires[url][1])
-    with pytest.raises(UsageError, match="one world, on one clock"):
+    with pytest.raises(UsageError, match="must share one clock"):
         backend.connect()
     assert not any(serial.is_open for serial, _ in wires.values())

@@ -31,7 +31,7 @@ def values(bus: Bus) -> list[int]:
 @makers
 def test_a_latency_that_nobody_tells_is_measured(maker: str) -> None:
     _, bus = on_bus(maker, held=16e-3)
-    bus.get_to_know_adapter(IDS)
+    bus.measure_adapter(IDS)
     assert 16e-3 <= bus.port.latency <= 25e-3
     assert values(bus) == [511, 512, 513] * 2
     assert not bus.port.echoes
@@ -40,14 +40,14 @@ def test_a_latency_that_nobody_tells_is_measured(maker: str) -> None:
 @makers
 def test_an_adapter_that_holds_nothing_back_stays_as_it_was_said_to_be(maker: str) -> None:
     _, bus = on_bus(maker)
-    bus.get_to_know_adapter(IDS)
+    bus.measure_adapter(IDS)
     assert bus.port.latency == 1e-3
 
 
 @makers
 def test_what_an_adapter_gives_back_is_never_read(maker: str) -> None:
     _, bus = on_bus(maker, echoes=True)
-    bus.get_to_know_adapter(IDS)
+    bus.measure_adapter(IDS)
     assert bus.port.echoes
     assert values(bus) == [511, 512, 513] * 2
     assert bus.exchange.errors == {}
@@ -57,7 +57,7 @@ def test_what_an_adapter_gives_back_is_never_read(maker: str) -> None:
 def test_an_echo_is_found_where_nobody_answers_and_the_latency_is_left(maker: str) -> None:
     serial, bus = on_bus(maker, echoes=True)
     serial.silent.update(IDS)
-    bus.get_to_know_adapter(IDS)
+    bus.measure_adapter(IDS)
     assert bus.port.echoes and bus.port.latency == 1e-3
     with pytest.raises(NoAnswerError):
         bus.ping(1)
@@ -113,7 +113,7 @@ def test_one_late_answer_is_not_taken_for_the_next(
 
 def test_a_port_that_is_back_is_known_already() -> None:
     _, bus = on_bus("STS", held=16e-3, echoes=True)
-    bus.get_to_know_adapter(IDS)
+    bus.measure_adapter(IDS)
     again, port, _ = adapter_port("STS", *IDS)
     again.held, again.echoes = 16e-3, True
     bus.move_to(port)
@@ -132,7 +132,7 @@ def test_one_request_that_comes_back_makes_no_echoing_adapter(
         return sent
 
     monkeypatch.setattr(serial, "write", once)
-    bus.get_to_know_adapter(IDS)
+    bus.measure_adapter(IDS)
     assert not bus.port.echoes
 
 

@@ -44,7 +44,7 @@ def test_a_port_that_is_pulled_out_is_an_error_whatever_is_going_on(
         "flush_input": port.flush_input,
     }
     os.close(master)
-    with pytest.raises(PortError, match="went away"):
+    with pytest.raises(PortError, match="was disconnected"):
         calls[doing]()
     port.close()
 
@@ -78,7 +78,7 @@ def test_a_port_is_found_from_every_working_folder(
     monkeypatch.chdir(tmp_path)
     with open_port("bus") as port:
         monkeypatch.chdir("/")
-        assert (port.url, port.place) == ("bus", str(tmp_path / "bus"))
+        assert (port.url, port.absolute_url) == ("bus", str(tmp_path / "bus"))
 
 
 def test_a_port_whose_number_select_does_not_take_is_read_all_the_same(
@@ -96,7 +96,7 @@ def test_a_port_whose_number_select_does_not_take_is_read_all_the_same(
 
 
 def test_a_port_that_is_not_there_lists_those_that_are() -> None:
-    with pytest.raises(PortError, match=r"no port /dev/ttyNONE; ports there are: "):
+    with pytest.raises(PortError, match=r"no port /dev/ttyNONE; serial ports here: "):
         open_port("/dev/ttyNONE")
 
 
@@ -133,7 +133,7 @@ def test_an_unplugged_device_is_one_error(pty: tuple[int, str]) -> None:
     master, path = pty
     port = open_port(path)
     os.close(master)
-    with pytest.raises(PortError, match=r"went away .*; check cable and power"):
+    with pytest.raises(PortError, match=r"was disconnected .*; check cable and power"):
         port.read(1, port.clock.now() + 1.0)
     port.close()
 
@@ -146,5 +146,5 @@ def test_any_url_of_pyserial_is_a_port() -> None:
 
 @pytest.mark.parametrize("path", ["/dev/null", "/dev/zero", __file__, "/"])
 def test_what_is_no_serial_port_is_told_so(path: str) -> None:
-    with pytest.raises(PortError, match=f"^{path} is no serial port; those that are there: "):
+    with pytest.raises(PortError, match=f"^{path} is not a serial port; serial ports here: "):
         open_port(path)

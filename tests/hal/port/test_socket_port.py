@@ -67,7 +67,7 @@ def test_a_connection_that_the_other_side_ends_is_a_port_that_went_away(
 ) -> None:
     port, other = ends
     other.close()
-    with pytest.raises(PortError, match="went away"):
+    with pytest.raises(PortError, match="was disconnected"):
         read(port, 1)
 
 

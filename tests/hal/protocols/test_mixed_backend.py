@@ -38,7 +38,7 @@ def test_counts_become_si_and_goals_become_counts(model: ServoModel) -> None:
     state = backend.read().joints
     count = 2 * pi / model.counts_per_rev
     assert state.position == pytest.approx([5 * count, -5 * count])
-    unit = backend.lines[0].bus.family.table(model.name)["present_velocity"].unit
+    unit = backend.readouts[0].bus.family.table(model.name)["present_velocity"].unit
     assert state.velocity == pytest.approx([-7 * unit, 7 * unit])
     assert np.isnan(state.torque).all() and state.age.tolist() == [0.0, 0.0]
     assert state.voltage == pytest.approx([7.4] * 2) and state.temperature.tolist() == [35.0] * 2
@@ -193,7 +193,8 @@ def test_a_wrong_model_and_a_torque_that_is_on_are_named_and_nothing_is_written(
     with pytest.raises(HardwareError) as caught:
         backend.configure()
     assert "id 1: is a STS3250 where a STS3215-7.4V should be" in str(caught.value)
-    assert "id 2: torque is on and return_delay 250 instead of 0" in str(caught.value)
+    said = "id 2: cannot correct return_delay 250 instead of 0"
+    assert said in str(caught.value)
     assert wires["body"].written == []
 
 

@@ -63,7 +63,7 @@ def test_a_frame_is_what_the_manual_prints(frame: bytes, printed: str) -> None:
 def test_a_frame_sums_to_255_and_comes_back(item: Status) -> None:
     frame = encoded(item)
     assert sum(frame[2:]) % 256 == 255
-    assert list(protocol1.salvage(frame)) == [item]
+    assert list(protocol1.find_packets(frame)) == [item]
 
 
 @given(st.lists(statuses, max_size=5), st.lists(st.binary(max_size=8), min_size=6, max_size=6))
@@ -72,7 +72,7 @@ def test_good_frames_are_found_between_noise(items: list[Status], noise: list[by
     stream = quiet[0]
     for item, part in zip(items, quiet[1:], strict=False):
         stream += encoded(item) + part
-    assert list(protocol1.salvage(stream)) == items
+    assert list(protocol1.find_packets(stream)) == items
 
 
 @given(st.lists(st.binary(min_size=6, max_size=6), min_size=3, max_size=3), st.binary(max_size=30))
@@ -81,7 +81,7 @@ def test_who_knows_what_he_asked_for_finds_it_behind_any_noise(
 ) -> None:
     # Noise may hold a whole frame of ours or eat a header: neither is likely, both are possible.
     frames = b"".join(protocol1.status(id + 1, part) for id, part in enumerate(data))
-    found = list(protocol1.salvage(noise + b"\x00" + frames, {1: 6, 2: 6, 3: 6}))
+    found = list(protocol1.find_packets(noise + b"\x00" + frames, {1: 6, 2: 6, 3: 6}))
     if not any(noise.count(bytes([id, 8])) for id in (1, 2, 3)):
         assert [item.params for item in found] == data
 
@@ -91,30 +91,30 @@ def test_a_corrupt_length_swallows_nothing() -> None:
     broken[3] = 60
     good = protocol1.status(2, bytes(6))
     stream = bytes(broken) + good + bytes(80)
-    assert [item.id for item in protocol1.salvage(stream, {1: 6, 2: 6})] == [2]
+    assert [item.id for item in protocol1.find_packets(stream, {1: 6, 2: 6})] == [2]
 
 
 def test_a_header_behind_a_stray_ff_is_seen() -> None:
     stream = b"\xff" + protocol1.status(3, b"\xff\xff")
-    assert list(protocol1.salvage(stream)) == [Status(3, 0, b"\xff\xff")]
+    assert list(protocol1.find_packets(stream)) == [Status(3, 0, b"\xff\xff")]
 
 
 def test_an_echo_of_the_request_is_no_answer() -> None:
     stream = protocol1.sync_read([1], 56, 6) + protocol1.status(1, bytes(6))
-    assert [item.id for item in protocol1.salvage(stream, {1: 6})] == [1]
+    assert [item.id for item in protocol1.find_packets(stream, {1: 6})] == [1]
 
 
 @given(st.binary(max_size=200))
 def test_no_stream_raises(stream: bytes) -> None:
-    list(protocol1.salvage(stream))
-    list(protocol1.salvage(stream, {1: 6, 255: 4}))
+    list(protocol1.find_packets(stream))
+    list(protocol1.find_packets(stream, {1: 6, 255: 4}))
 
 
 @given(statuses, st.integers(1, 60))
 def test_a_cut_frame_is_no_frame(item: Status, cut: int) -> None:
     frame = encoded(item)
     rest = frame[: -min(cut, len(frame))]
-    assert item not in list(protocol1.salvage(rest))
+    assert item not in list(protocol1.find_packets(rest))
 
 
 @given(st.integers(1, 60), st.integers(1, 6))

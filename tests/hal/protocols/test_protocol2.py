@@ -68,12 +68,12 @@ def test_each_block_of_a_fast_answer_is_checked_by_itself() -> None:
     answer += crc16(answer).to_bytes(2, "little")
     values = [
         int.from_bytes(item.params, "little")
-        for item in protocol2.salvage_fast(answer, 4, (3, 7, 4))
+        for item in protocol2.find_fast_packets(answer, 4, (3, 7, 4))
     ]
     assert values == [166, 2079, 1023]
     broken = bytearray(answer)
     broken[18] ^= 1  # a byte of id 7
-    assert [item.id for item in protocol2.salvage_fast(bytes(broken), 4, (3, 7, 4))] == [3, 4]
+    assert [item.id for item in protocol2.find_fast_packets(bytes(broken), 4, (3, 7, 4))] == [3, 4]
 
 
 @given(payloads)
@@ -100,7 +100,7 @@ def test_good_frames_are_found_between_noise(items: list[Status], noise: list[by
     stream = quiet[0]
     for item, part in zip(items, quiet[1:], strict=False):
         stream += encoded(item) + part
-    assert list(protocol2.salvage(stream)) == items
+    assert list(protocol2.find_packets(stream)) == items
 
 
 @given(st.lists(statuses, min_size=2, max_size=5), st.data())
@@ -113,29 +113,29 @@ def test_a_broken_frame_costs_no_other(items: list[Status], data: st.DataObject)
     broken[place] ^= flip
     frames[victim] = bytes(broken)
     rest = items[:victim] + items[victim + 1 :]
-    found = list(protocol2.salvage(b"".join(frames)))
+    found = list(protocol2.find_packets(b"".join(frames)))
     assert [item for item in found if item in rest] == rest
 
 
 @given(st.binary(max_size=200))
 def test_no_stream_raises(stream: bytes) -> None:
-    list(protocol2.salvage(stream))
-    list(protocol2.salvage_fast(stream, 4, range(9)))
+    list(protocol2.find_packets(stream))
+    list(protocol2.find_fast_packets(stream, 4, range(9)))
 
 
 @given(statuses, st.integers(1, 60))
 def test_a_cut_frame_is_no_frame(item: Status, cut: int) -> None:
     frame = encoded(item)
-    assert list(protocol2.salvage(frame[: -min(cut, len(frame))])) == []
+    assert list(protocol2.find_packets(frame[: -min(cut, len(frame))])) == []
 
 
 def test_a_corrupt_length_swallows_nothing() -> None:
     broken = bytearray(protocol2.status(1, bytes(4)))
     broken[5] = 60
     good = protocol2.status(2, bytes(4))
-    assert [item.id for item in protocol2.salvage(bytes(broken) + good)] == [2]
+    assert [item.id for item in protocol2.find_packets(bytes(broken) + good)] == [2]
 
 
 def test_an_echo_of_the_request_is_skipped() -> None:
     stream = protocol2.sync_read([1], 132, 4) + protocol2.status(1, bytes(4))
-    assert [item.id for item in protocol2.salvage(stream)] == [1]
+    assert [item.id for item in protocol2.find_packets(stream)] == [1]

@@ -9,7 +9,13 @@ from hypothesis import strategies as st
 from scservo_sdk.protocol_packet_handler import protocol_packet_handler
 
 from tests.hal.fake_bus1 import MX, SCS, STS, fake_port1
-from windup.hal.errors import CorruptAnswerError, NoAnswerError, PortError, RefusedError, UsageError
+from windup.hal.errors import (
+    CorruptAnswerError,
+    NoAnswerError,
+    PortError,
+    ServoRejectionError,
+    UsageError,
+)
 from windup.hal.families import DYNAMIXEL_1, FEETECH_SCS, FEETECH_STS, Family
 from windup.hal.families.configurator import SdkPort
 from windup.hal.protocols import protocol1
@@ -97,7 +103,7 @@ def test_silence_takes_virtual_time_only_and_noise_is_named(
 def test_a_short_answer_is_no_answer() -> None:
     serial, port = fake_port1({1: STS})
     serial.spoil = lambda id, frame: protocol1.status(id, b"\x07")
-    with pytest.raises(CorruptAnswerError, match="only broken answers"):
+    with pytest.raises(CorruptAnswerError, match="only corrupt answers"):
         FEETECH_STS.protocol.configurator(port).read(1, 56, 2)
 
 
@@ -105,7 +111,9 @@ def test_a_dynamixel_refuses_and_an_overload_is_no_refusal() -> None:
     serial, port = fake_port1({1: MX})
     serial.error[1] = 0x08
     configurator = DYNAMIXEL_1.protocol.configurator(port)
-    with pytest.raises(RefusedError, match="id 1 on fake://bus says the value is out of range"):
+    with pytest.raises(
+        ServoRejectionError, match="id 1 on fake://bus says the value is out of range"
+    ):
         configurator.write(1, 30, b"\xff\xff")
     serial.error[1] = 0x20
     assert configurator.ping(1) == 29
@@ -127,7 +135,7 @@ def test_an_exception_leaves_the_port_usable() -> None:
         raise OSError("device reports readiness to read but returned no data")
 
     read, serial.read = serial.read, unplugged  # type: ignore[method-assign]
-    with pytest.raises(PortError, match="went away"):
+    with pytest.raises(PortError, match="was disconnected"):
         configurator.ping(1)
     serial.read = read  # type: ignore[method-assign]
     assert configurator.ping(1) == 777

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.hal.fake_bus import fake_port
-from windup.hal.errors import CorruptAnswerError, NoAnswerError, PortError, RefusedError
+from windup.hal.errors import CorruptAnswerError, NoAnswerError, PortError, ServoRejectionError
 from windup.hal.families.configurator import DynamixelConfigurator, SdkPackets, SdkPort
 from windup.hal.protocols import protocol2
 from windup.hal.protocols.crc16 import crc16
@@ -84,7 +84,9 @@ def test_two_servos_with_one_id_are_named_as_such() -> None:
 def test_a_refusal_says_why() -> None:
     serial, port = fake_port(IDS)
     serial.error[2] = 7
-    with pytest.raises(RefusedError, match=r"id 2 on fake://bus says the register is locked"):
+    with pytest.raises(
+        ServoRejectionError, match=r"id 2 on fake://bus says the register is locked"
+    ):
         DynamixelConfigurator(port).write(2, 9, b"\x00")
 
 
@@ -98,7 +100,7 @@ def test_an_exception_leaves_the_port_usable() -> None:
     serial, port = fake_port(IDS)
     link = DynamixelConfigurator(port)
     read, serial.read = serial.read, _unplugged  # type: ignore[method-assign]
-    with pytest.raises(PortError, match="went away"):
+    with pytest.raises(PortError, match="was disconnected"):
         link.ping(1)
     serial.read = read  # type: ignore[method-assign]
     assert link.ping(1) == 1020

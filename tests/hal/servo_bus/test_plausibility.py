@@ -101,7 +101,7 @@ def test_a_forged_jump_is_counted_and_the_joint_coasts_with_its_age() -> None:
     state = backend.read().joints
     assert state.position.tolist() == [0.0, 0.0]
     assert state.age[0] == 0.0 and state.age[1] > 0.005
-    assert backend.lines[0].bus.exchange.errors["implausible"] == 2
+    assert backend.readouts[0].bus.exchange.errors["implausible"] == 2
     serial.set(2, "present_position", 512)
     ticks(backend, 1)
     assert backend.read().joints.age.tolist() == [0.0, 0.0]

@@ -175,7 +175,7 @@ def test_two_buses_are_read_side_by_side() -> None:
     backend.configure()
     start = clock.now()
     state = backend.read().joints
-    one_bus = backend.lines[0].bus.exchange
+    one_bus = backend.readouts[0].bus.exchange
     assert state.position.tolist() == pytest.approx([0.0, 100 * COUNT, 0.0, 0.0])
     assert clock.now() - start < 1.5 * (16 + 8 + 2 * 14 + 2) * 10 / one_bus.port.baud
 

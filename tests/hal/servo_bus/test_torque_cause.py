@@ -5,8 +5,8 @@ from math import nan
 import pytest
 
 from windup.hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FEETECH_SCS, FEETECH_STS, Family
-from windup.hal.servo_bus.torque_cause import Evidence, judge
-from windup.hal.torque_loss import UNPLUGGED, Loss, restarted, torque_lost
+from windup.hal.servo_bus.torque_cause import Evidence, torque_loss_of
+from windup.hal.torque_loss import UNPLUGGED, Loss, restart_loss, torque_lost
 
 HOT, LOADED = 0b100, 0b10_0000
 ALL = [DYNAMIXEL_X, DYNAMIXEL_1, FEETECH_STS, FEETECH_SCS]
@@ -14,14 +14,14 @@ names = [family.name for family in ALL]
 
 
 def cause(family: Family, **known: int) -> str:
-    seen = {"drives": False, "restarted": False, "errors": 0, "unloading": HOT | LOADED, **known}
-    return str(judge(family, Evidence(**seen), nan))  # type: ignore[arg-type]
+    seen = {"torque_on": False, "restarted": False, "errors": 0, "unloading": HOT | LOADED, **known}
+    return str(torque_loss_of(family, Evidence(**seen), nan))  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("family", ALL, ids=names)
 def test_an_alert_of_a_servo_that_drives_is_no_loss(family: Family) -> None:
-    assert cause(family, drives=True, errors=HOT) == "None"
-    assert cause(family, drives=True, errors=LOADED, unloading=HOT) == "None"
+    assert cause(family, torque_on=True, errors=HOT) == "None"
+    assert cause(family, torque_on=True, errors=LOADED, unloading=HOT) == "None"
 
 
 @pytest.mark.parametrize("family", ALL, ids=names)
@@ -32,16 +32,16 @@ def test_a_servo_that_signals_what_ends_its_torque_has_shut_down(family: Family)
 @pytest.mark.parametrize("family", ALL, ids=names)
 def test_a_restart_comes_before_all_other_causes(family: Family) -> None:
     assert cause(family, restarted=True, errors=HOT) == "its servo restarted"
-    assert cause(family, restarted=True, drives=True) == "its servo restarted"
+    assert cause(family, restarted=True, torque_on=True) == "its servo restarted"
 
 
 @pytest.mark.parametrize(
     ("family", "said"),
     [
-        (DYNAMIXEL_X, "somebody switched it off"),
-        (DYNAMIXEL_1, "somebody switched it off"),
-        (FEETECH_STS, "its servo, or somebody, switched it off"),
-        (FEETECH_SCS, "its servo, or somebody, switched it off"),
+        (DYNAMIXEL_X, "another program switched it off"),
+        (DYNAMIXEL_1, "another program switched it off"),
+        (FEETECH_STS, "its servo or another program switched it off"),
+        (FEETECH_SCS, "its servo or another program switched it off"),
     ],
 )
 def test_without_an_error_it_was_somebody_where_errors_stay_until_the_power_goes(
@@ -53,19 +53,20 @@ def test_without_an_error_it_was_somebody_where_errors_stay_until_the_power_goes
 
 @pytest.mark.parametrize("family", [FEETECH_STS, FEETECH_SCS])
 def test_an_overload_of_a_feetech_servo_leaves_a_part_of_its_torque(family: Family) -> None:
-    weak = "its servo pushes with a part of the torque only: overload"
-    assert cause(family, drives=True, errors=LOADED) == weak
+    weak = "its servo has reduced its torque: overload"
+    assert cause(family, torque_on=True, errors=LOADED) == weak
 
 
 def test_one_sentence_for_each_cause_names_the_joints_and_what_to_do() -> None:
-    dip = restarted(6.1)
+    dip = restart_loss(6.1)
     error = torque_lost({"knee": dip, "hip": UNPLUGGED, "ankle": dip, "toe": Loss("why", "do")})
     assert error.exit_status == 3
     assert str(error).split("; ") == [
         "knee, ankle lost their torque: their servos restarted "
         "(lowest supply that was read: 6.1 V)",
         "check battery, supply and connectors, then start again",
-        "hip lost its torque: the port went away, and when it was back torque was switched off",
+        "hip lost its torque: the port was disconnected, "
+        "and torque was switched off when it came back",
         "check the cable of the adapter, then start again",
         "toe lost its torque: why",
         "do",

@@ -179,7 +179,7 @@ def test_it_gets_goals_again_once_it_is_armed_again_from_where_it_is(model: Serv
     bench.restart(2)
     bench.cycles(1)
     bench.backend.set_torque(False)
-    with pytest.raises(HardwareError, match=r"j1 lost torque since .*; torque is off"):
+    with pytest.raises(HardwareError, match=r"j1 lost torque after arming; .*; torque is off"):
         bench.backend.set_torque(True)
     bench.put(2, "present_position", model.middle + 3)
     assert bench.backend.rearm().all_on

@@ -82,4 +82,6 @@ def write(writer: TelemetryWriter, ticks: range) -> None:
     """Write ticks whose numbers all follow from their number."""
     for k in ticks:
         asked = JointCommand.hold(JOINTS, np.array([0.1, 0.01 * k]))
-        writer.record(observation(0.1 * k), asked, asked.at(np.full(2, k)), 1e-3, 2e-3, k, 0)
+        writer.record(
+            observation(0.1 * k), asked, asked.with_position(np.full(2, k)), 1e-3, 2e-3, k, 0
+        )

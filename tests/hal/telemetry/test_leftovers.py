@@ -116,11 +116,11 @@ def test_a_lock_that_nobody_holds_goes_and_one_that_is_held_stays(
 ) -> None:
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     held, free = AdapterLock("socket://held:1"), AdapterLock("socket://free:1")
-    held.take()
+    held.acquire()
     remove_leftovers(tmp_path / "windup" / "new@twin.ring", time.time() + 2.0 * SPARE)
     assert len(list((tmp_path / "windup").iterdir())) == 1
-    assert not AdapterLock("socket://held:1").free()
-    free.take()
-    assert not AdapterLock("socket://free:1").free(), "it was made anew"
+    assert not AdapterLock("socket://held:1").try_acquire()
+    free.acquire()
+    assert not AdapterLock("socket://free:1").try_acquire(), "it was made anew"
     held.close()
     free.close()

@@ -42,7 +42,7 @@ def test_all_mistakes_of_robot_toml_are_found_at_once(tmp_path: Path) -> None:
     reading = read_folder(edited(tmp_path / "r", {"robot.toml": toml}))
     said = "\n".join(reading.mistakes)
     for words in (
-        "rate_hz: a period of 1/300 s is no whole number of physics steps",
+        "rate_hz: a period of 1/300 s is not a whole number of physics steps",
         "base: unknown body 'trnk'; did you mean 'trunk'?",
         "joint 'front_left_1': has id 2, which 'front_left_0' already has",
         "joint 'front_left_0': -1.5 to 9.5 rad is wider than the MJCF's -1.5 to 1.5 rad",

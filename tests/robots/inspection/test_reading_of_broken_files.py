@@ -26,11 +26,11 @@ def loads(folder: Path) -> bool:
 def test_what_cannot_be_loaded_has_mistakes_and_what_can_has_none(
     tmp_path: Path, file: str, seed: int
 ) -> None:
-    dice = random.Random(seed)
-    folder = write_shape(tmp_path / "r", dice.choice((ARM, QUADRUPED)))
+    rng = random.Random(seed)
+    folder = write_shape(tmp_path / "r", rng.choice((ARM, QUADRUPED)))
     path = folder / file
     breaks = broken_toml if file == "robot.toml" else broken_mjcf
-    path.write_text(breaks(dice, path.read_text()), encoding="utf-8")
+    path.write_text(breaks(rng, path.read_text()), encoding="utf-8")
     reading = read_folder(folder)
     assert loads(folder) == (not reading.mistakes)
     assert all("\n" not in line for line in reading.mistakes)

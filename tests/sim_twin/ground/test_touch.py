@@ -16,7 +16,7 @@ def test_feet_may_touch_and_are_not_noted() -> None:
 def test_what_a_lying_robot_lies_on_is_noted_once() -> None:
     robot = load_robot("op3")
     twin = Twin(robot)
-    twin.lay(True, twin.data.qpos[7:].copy())
+    twin.lay_down(True, twin.data.qpos[7:].copy())
     watch = TouchWatch(robot, twin.model, twin.data)
     for _ in range(400):
         twin.step(1)

@@ -10,7 +10,7 @@ import windup.sim_twin.wire  # noqa: F401 - makes twin:// known to pyserial
 from windup.sim_twin.wire.protocols.frames import BROADCAST, Frame, Parser, encode
 from windup.sim_twin.wire.servos.servo import Servo
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
-from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
+from windup.sim_twin.wire.world.bus_world import BenchPhysics, BusWorld
 
 
 class Host:
@@ -67,9 +67,9 @@ class Host:
         where = address.to_bytes(2, "little") + size.to_bytes(2, "little") + bytes(ids)
         return self.raw(encode(BROADCAST, 0x8A if fast else 0x82, where))
 
-    def bench(self) -> Bench:
+    def bench(self) -> BenchPhysics:
         physics = self.world.physics
-        assert isinstance(physics, Bench)
+        assert isinstance(physics, BenchPhysics)
         return physics
 
 

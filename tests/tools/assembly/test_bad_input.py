@@ -73,9 +73,9 @@ OPTIONS = {
     "negative steps": ("walk op3 --steps -3", "--steps -3: give 1 .. 1000000"),
     "rate": (
         "walk op3 --rate 300",
-        "a rate of 300 Hz is no whole number of physics steps of 2 ms; 250 Hz is",
+        "a rate of 300 Hz is not a whole number of physics steps of 2 ms; 250 Hz is",
     ),
-    "rate too high": ("walk op3 --rate 1000", "a rate of 1000 Hz is no whole number of physics"),
+    "rate too high": ("walk op3 --rate 1000", "a rate of 1000 Hz is not a whole number of physics"),
     "no rate": ("walk op3 --rate 0", "--rate 0: give more than 0, up to 10000 Hz"),
     "rate that is no number": ("walk op3 --rate nan", "--rate nan: give a finite number of Hz"),
     "no seeds": ("walk op3 --seeds 0", "--seeds 0: give 1 .. 100000"),
@@ -164,7 +164,7 @@ ROBOT = {
     "rate that does not divide": (
         "rate_hz = 250.0",
         "rate_hz = 300.0",
-        "rate_hz: a period of 1/300 s is no whole number of physics steps",
+        "rate_hz: a period of 1/300 s is not a whole number of physics steps",
     ),
     "unknown joint": ('"l_knee"', '"l_kne"', "unknown MJCF hinge 'l_kne'; did you mean 'l_knee'?"),
 }

@@ -53,7 +53,7 @@ def test_nan_in_mid_run_is_refused_and_the_stop_policy_runs(name: str) -> None:
             robot.run(NotANumber(robot), 1.0)
         joint = robot.description.joints.names[3]
         assert str(error.value) == (
-            f"the controller asked joint {joint!r} for position nan; refused"
+            f"the controller commanded position nan for joint {joint!r}; give finite values"
         )
         assert error.value.exit_status == 1
         assert robot.loop.reason == str(error.value)
@@ -92,7 +92,7 @@ def test_nan_in_mid_walk_is_status_1(shell: Windup, monkeypatch: pytest.MonkeyPa
 
         def broken(observation: Observation, dt: float) -> JointCommand:
             command = step(observation, dt)
-            return command.at(np.full(20, np.nan)) if observation.time > 0.5 else command
+            return command.with_position(np.full(20, np.nan)) if observation.time > 0.5 else command
 
         walker.step = broken  # type: ignore[method-assign]
         return walker
@@ -100,7 +100,7 @@ def test_nan_in_mid_walk_is_status_1(shell: Windup, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr("windup.tools.robot.motions.build_walk", build)
     ran = shell("walk", "op3", "--steps", 5, "--json", "-")
     assert ran.status == 1
-    message = "the controller asked joint 'head_pan' for position nan; refused"
+    message = "the controller commanded position nan for joint 'head_pan'; give finite values"
     assert ran.err.strip() == f"windup: {message}"
     assert ran.json["error"] == {"kind": "UnsafeCommand", "message": message, "exit_status": 1}
 

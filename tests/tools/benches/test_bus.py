@@ -2,7 +2,7 @@ import pytest
 
 from windup.tools.benches.bus import bench_memory, wire_bytes
 from windup.tools.benches.bus1 import Vendor
-from windup.tools.benches.wire import Maker, cycle_over_wire
+from windup.tools.benches.wire import BenchFamily, cycle_over_wire
 
 
 def test_a_cycle_of_20_servos_has_the_bytes_that_the_findings_count() -> None:
@@ -26,5 +26,5 @@ def test_protocol_1_is_measured_beside_its_makers_sdk(vendor: Vendor) -> None:
 
 
 @pytest.mark.parametrize("maker", ["feetech", "dynamixel1", "dynamixel2"])
-def test_a_cycle_over_an_emulated_wire_is_answered_and_measured(maker: Maker) -> None:
+def test_a_cycle_over_an_emulated_wire_is_answered_and_measured(maker: BenchFamily) -> None:
     assert cycle_over_wire(1_000_000, maker, servos=4, rounds=1, cycles=3) > 0.0

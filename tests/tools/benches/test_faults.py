@@ -53,7 +53,7 @@ def test_nothing_wrong_is_reported_fresh_while_everything_goes_wrong(family: str
 @pytest.mark.parametrize("kind", ["wrong_id", "late_byte", "echo", "twice", LATE_ADAPTER])
 def test_what_order_length_or_id_tells_is_never_believed(family: str, kind: str) -> None:
     rate = 0.01 if kind == "late_byte" else 0.05  # each of those costs three cycles
-    item = bench_faults.Item(bench_faults.Cell(family, kind, rate), 6000, 1)
+    item = bench_faults.WorkItem(bench_faults.FaultCase(family, kind, rate), 6000, 1)
     tally, _ = bench_faults._soak(item)
     assert sum(tally.faults.values()) > 10
     assert tally.fresh > 200

@@ -11,7 +11,7 @@ from windup.robots import load_robot
 from windup.sim_twin.environment import Environment
 from windup.sim_twin.ground.terrain import Ground
 from windup.sim_twin.wire.world.worlds import _running
-from windup.tools.benches.leaks import COUNTED, Traces, clean, leaks, open_once
+from windup.tools.benches.leaks import COUNTED, Resources, clean, leaks, open_once
 from windup.tools.robot.robot import Robot
 from windup.tools.robot.stack import torque_off
 
@@ -56,10 +56,10 @@ def test_a_robot_that_cannot_be_opened_leaves_no_world() -> None:
 
 
 def test_what_is_left_is_seen() -> None:
-    before = Traces.now()
+    before = Resources.now()
     read, write = os.pipe()
     (runtime_folder() / "left.ring").touch()
-    row = Traces.now().since(before)
+    row = Resources.now().since(before)
     for descriptor in (read, write):
         os.close(descriptor)
     (runtime_folder() / "left.ring").unlink()

@@ -16,7 +16,7 @@ def test_a_robot_is_found_again_each_time_with_torque_off_until_armed(robot: str
     backend.set_torque(True)
     seen = watch(backend, 3)
     backend.disconnect()
-    wire.drop_world("pulled")
+    wire.unregister_world("pulled")
     assert (seen.lost, seen.found, seen.off, seen.withheld, seen.armed) == (3, 3, 3, 3, 3)
     assert len(set(seen.descriptors)) == 1
 
@@ -30,7 +30,7 @@ def test_a_port_that_stays_away_ends_the_measure() -> None:
     with pytest.raises(WindupError, match="nothing happened for 20 s after 1 times"):
         watch(backend, 2)
     backend.disconnect()
-    wire.drop_world("away")
+    wire.unregister_world("away")
 
 
 def test_moments_are_random_and_the_same_for_a_seed() -> None:

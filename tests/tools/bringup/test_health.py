@@ -17,7 +17,7 @@ from windup.robots import load_robot
 from windup.sim_twin.backend import TwinBackend
 from windup.sim_twin.twin import Twin
 from windup.tools.bringup.diagnosis import Diagnosis, Limits
-from windup.tools.bringup.health import picture
+from windup.tools.bringup.health import format_health
 from windup.tools.cli import run
 from windup.tools.robot.robot import Robot
 
@@ -78,8 +78,8 @@ class Bench:
             assert newest is not None
             return Diagnosis.of(reader, LIMITS, float(newest["wall"]) + later)
 
-    def complaints(self) -> list[str]:
-        return [f"{complaint.who}: {complaint.what}" for complaint in self.diagnose().complaints]
+    def problems(self) -> list[str]:
+        return [f"{each.subject}: {each.problem}" for each in self.diagnose().problems]
 
 
 @pytest.fixture(autouse=True)
@@ -97,7 +97,7 @@ def bench(folder: Path) -> Iterator[Bench]:
     writer.close()
 
 
-def test_a_robot_that_is_well_has_no_complaints(bench: Bench) -> None:
+def test_a_robot_that_is_well_has_no_problems(bench: Bench) -> None:
     bench.ticks(100)
     found = bench.diagnose()
     assert found.healthy
@@ -107,9 +107,9 @@ def test_a_robot_that_is_well_has_no_complaints(bench: Bench) -> None:
     assert [row["name"] for row in result["joints"]] == list(OP3.joints.names)
 
 
-def test_complaints_name_the_joint_and_the_limit(bench: Bench) -> None:
+def test_problems_name_the_joint_and_the_limit(bench: Bench) -> None:
     bench.ticks(500, temperature=71.0, voltage=10.1, age=0.2)
-    assert bench.complaints() == [
+    assert bench.problems() == [
         "l_knee: silent for 0.20 s (limit 0.125 s)",
         "20 joints: on 10.1 V (stop below 10.2)",
         "l_knee: at 71 degrees C (warning at 65)",
@@ -123,21 +123,21 @@ def test_complaints_name_the_joint_and_the_limit(bench: Bench) -> None:
 
 def test_too_much_voltage_is_the_wrong_supply(bench: Bench) -> None:
     bench.ticks(500, voltage=16.8)
-    (complaint,) = bench.diagnose().complaints
-    assert complaint.do == "switch the power off: it is the wrong supply"
+    (problem,) = bench.diagnose().problems
+    assert problem.remedy == "switch the power off: it is the wrong supply"
 
 
-def test_a_dip_is_no_complaint(bench: Bench) -> None:
+def test_a_dip_is_no_problem(bench: Bench) -> None:
     bench.ticks(200)
     bench.ticks(50, first=201, voltage=9.0, temperature=90.0)
     bench.ticks(250, first=251)
-    assert bench.complaints() == []
+    assert bench.problems() == []
 
 
 def test_a_blocked_joint_is_told(bench: Bench) -> None:
     stall = OP3.joints.torque[KNEE]
     bench.ticks(500, torque=0.7 * stall, position=float(OP3.stance[KNEE]) - 0.3, velocity=0.0)
-    assert bench.complaints() == [
+    assert bench.problems() == [
         "l_knee: at 61 % of stall torque for a second (warning at 60 %)",
         "l_knee: blocked at full torque for 0.8 s (stop at 0.8 s)",
     ]
@@ -150,8 +150,8 @@ def test_the_imu_is_judged_where_the_base_is_estimated_from_it(folder: Path) -> 
         writer = TelemetryWriter("op3", guard, OP3.contacts, 1.0 / DT, estimated=estimated)
         bench = Bench(backend, guard, writer)
         bench.ticks(400)  # the same sample again and again
-        frozen = ["the IMU: stuck at one sample for 1.6 s (warning at 1.0 s)"]
-        assert bench.complaints() == (frozen if estimated else [])
+        frozen = ["the IMU: repeating one sample for 1.6 s (warning at 1.0 s)"]
+        assert bench.problems() == (frozen if estimated else [])
         writer.close()
 
 
@@ -159,24 +159,24 @@ def test_late_plans_are_told_with_what_to_do(bench: Bench) -> None:
     bench.ticks(100)
     bench.writer.block.plans, bench.writer.block.late_plans = 40, 7
     bench.ticks(1, first=101)
-    (complaint,) = bench.diagnose().complaints
-    assert str(complaint) == (
+    (problem,) = bench.diagnose().problems
+    assert str(problem) == (
         "loop: 7 of 40 plans came late; "
         "this computer is too slow for 250 Hz: try `--model library` or a lower --rate"
     )
 
 
-def test_what_is_not_measured_is_no_complaint(bench: Bench) -> None:
+def test_what_is_not_measured_is_no_problem(bench: Bench) -> None:
     bench.ticks(10, voltage=np.nan, temperature=np.nan, imu_age=np.nan)
-    assert bench.complaints() == []
+    assert bench.problems() == []
 
 
 def test_missed_ticks_count_above_one_in_a_hundred(bench: Bench) -> None:
     bench.ticks(99, missed=1)
-    assert bench.complaints() == []
+    assert bench.problems() == []
     bench.writer.begin()
     bench.ticks(97, missed=3)
-    assert bench.complaints() == ["loop: 3 % of the ticks came late"]
+    assert bench.problems() == ["loop: 3 % of the ticks came late"]
 
 
 def test_bus_errors_alerts_and_clamps_are_told(bench: Bench) -> None:
@@ -188,9 +188,9 @@ def test_bus_errors_alerts_and_clamps_are_told(bench: Bench) -> None:
     for _ in range(20):
         bench.guard.write(JointCommand.hold(OP3.joints, pose))
     bench.ticks(50, first=51)
-    assert bench.complaints() == [
+    assert bench.problems() == [
         "bus: 'no answer' 9 times in 100 ticks",
-        "l_knee: its servo signals: overload",
+        "l_knee: its servo reports: overload",
         "l_knee: clamped in 20% of the ticks",
     ]
     assert bench.diagnose().result()["clamps"] == {"position": 20}
@@ -205,7 +205,7 @@ def test_what_the_driver_clamps_is_told_apart_from_what_the_guard_does(bench: Be
     assert found.result()["clamps"] == {}
     console = Console(width=200)
     with console.capture() as said:
-        console.print(picture(found))
+        console.print(format_health(found))
     assert "driver clamps: goal 7" in said.get()
 
 
@@ -224,7 +224,7 @@ def test_a_silent_loop_stands_still_or_is_dead_or_has_ended(
     bench.ticks(10)
     still = bench.diagnose(later=3.0)
     assert still.state == "standing still"
-    assert still.complaints[0].what == "no tick for 3.0 s"
+    assert still.problems[0].problem == "no tick for 3.0 s"
 
     def gone(pid: int, signal: int) -> None:
         raise ProcessLookupError

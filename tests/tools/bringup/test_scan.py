@@ -13,8 +13,8 @@ from windup.hal.families import DYNAMIXEL_1, DYNAMIXEL_X, FAMILIES, FEETECH_STS
 from windup.hal.port.open_port import open_port
 from windup.hal.port.port import Port
 from windup.hal.protocols import protocol1, protocol2
-from windup.tools.bringup.scan_said import complaints, narrow_lines, table
-from windup.tools.bringup.survey import Survey, places
+from windup.tools.bringup.scan_text import narrow_lines, problems_found, table
+from windup.tools.bringup.survey import Survey, scan_targets
 
 BAUD = 1_000_000
 Answer = Any
@@ -69,7 +69,7 @@ def survey(answer: Answer, baud: int | None = BAUD, *, bridge: bool = False) -> 
 
 
 def said(found: Survey, missing: tuple[str, ...] = ()) -> str:
-    return " | ".join(complaints(found, "URL", list(missing)))
+    return " | ".join(problems_found(found, "URL", list(missing)))
 
 
 def clone(request: bytes) -> bytes:
@@ -92,14 +92,15 @@ def foreign(request: bytes) -> bytes:
 
 
 def test_silence_asks_for_the_power() -> None:
-    assert said(survey(lambda _: b"")).startswith("nobody answers on URL: is the servo power on")
+    assert said(survey(lambda _: b"")).startswith("no servo answers on URL: is the servo power on")
 
 
 def test_an_answer_that_is_none_is_no_silence() -> None:
     found = survey(clone)
     assert found.servos == []
     assert said(found) == (
-        "something answers on URL that is not understood (first bytes ff ff fd 00 01 08 00 55 ..)"
+        "something answers on URL with frames that no supported servo sends "
+        "(first bytes ff ff fd 00 01 08 00 55 ..)"
     )
 
 
@@ -107,7 +108,7 @@ def test_an_unknown_model_is_called_by_its_number() -> None:
     found = survey(foreign)
     assert "id 1 at 1000000 baud: unknown model " in said(found)
     assert "784 (Feetech STS)" in said(found)
-    assert "nobody answers" not in said(found)
+    assert "no servo answers" not in said(found)
 
 
 def test_somebody_who_talks_unasked_is_heard() -> None:
@@ -117,7 +118,7 @@ def test_somebody_who_talks_unasked_is_heard() -> None:
 
     found = Survey(Port(Chatter(lambda _: b""), "line"), {})
     found.update(4_000_000, lambda _: None)
-    assert "not understood (first bytes aa aa 07)" in said(found)
+    assert "sends (first bytes aa aa 07)" in said(found)
 
 
 def test_an_x_that_speaks_protocol_1_is_told_by_its_model() -> None:
@@ -127,22 +128,22 @@ def test_an_x_that_speaks_protocol_1_is_told_by_its_model() -> None:
         found = Survey(port, {})
         found.update(BAUD, lambda _: None)
     assert [row["id"] for row in found.servos] == [1]
-    assert (found.unknown, found.strange) == ([], [])
+    assert (found.unknown, found.invalid) == ([], [])
     assert said(found) == (
-        "id 2 at 1000000 baud: XM430-W350 speaks protocol 1: "
+        "id 2 at 1000000 baud: XM430-W350 uses protocol 1: "
         "set its Protocol Type (register 13) to 2 with DYNAMIXEL Wizard"
     )
 
 
 def test_protocol_1_is_looked_for_at_the_baud_rates_of_the_x_series_too() -> None:
-    rates = {rate for family, rate in places(port_of(lambda _: b"")) if family is DYNAMIXEL_1}
+    rates = {rate for family, rate in scan_targets(port_of(lambda _: b"")) if family is DYNAMIXEL_1}
     assert rates == {*DYNAMIXEL_1.bauds, *DYNAMIXEL_X.bauds}
 
 
 def test_an_echo_is_called_one_and_nothing_is_made_of_it() -> None:
     found = survey(lambda request: request)
     assert found.servos == []
-    assert said(found) == "URL sends back what it is sent: switch the echo of the adapter off"
+    assert said(found) == "URL echoes all bytes sent: switch the echo of the adapter off"
 
 
 def test_two_servos_with_one_id_are_named(shell: Windup) -> None:
@@ -150,7 +151,7 @@ def test_two_servos_with_one_id_are_named(shell: Windup) -> None:
     ran = shell("scan", url, "--baud", BAUD, "--json", "-")
     assert ran.status == 3
     assert (ran.json["doubled_ids"], [row["id"] for row in ran.json["servos"]]) == ([2], [1])
-    assert "id 2: only broken answers: are there two servos with this id?" in " ".join(
+    assert "id 2: only corrupt answers: are there two servos with this id?" in " ".join(
         ran.err.split()
     )
 
@@ -165,14 +166,14 @@ def test_behind_a_bridge_without_baud_rates_every_servo_is_one_row() -> None:
 
     found = survey(servo, None, bridge=True)
     assert [(row["id"], row["baud"]) for row in found.servos] == [(1, None)]
-    assert [family for family, _ in places(found.port)] == list(FAMILIES)
+    assert [family for family, _ in scan_targets(found.port)] == list(FAMILIES)
 
 
 def test_every_baud_rate_is_a_step_of_the_progress() -> None:
     steps: list[str] = []
     port = port_of(lambda _: b"")
     Survey(port, {}).update(None, steps.append)
-    assert len(steps) == len(list(places(port))) > 10
+    assert len(steps) == len(list(scan_targets(port))) > 10
     assert steps[0] == f"{DYNAMIXEL_X.name}, {next(iter(DYNAMIXEL_X.bauds))} baud"
     assert port.baud == BAUD
 

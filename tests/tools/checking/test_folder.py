@@ -70,8 +70,8 @@ def test_a_walk_takes_as_many_perturbations_as_variables(my_op3: Path) -> None:
 
 def test_step_models_without_a_gait_are_doubted(my_op3: Path) -> None:
     (my_op3 / "gaits" / "walk.toml").rename(my_op3 / "gaits" / "stroll.toml")
-    doubts = seen(my_op3).doubts
-    assert doubts == ["gaits/walk.models.json: there is no gait walk.toml beside it"]
+    warnings = seen(my_op3).warnings
+    assert warnings == ["gaits/walk.models.json: there is no gait walk.toml beside it"]
 
 
 def test_gaits_of_a_robot_that_cannot_be_read_have_their_keys_checked(tmp_path: Path) -> None:
@@ -91,9 +91,9 @@ def test_a_name_that_is_nearly_one_of_ours_is_doubted(tmp_path: Path, name: str)
     else:
         (folder / name).mkdir()
     (folder / "meshes").mkdir()
-    doubts = seen(folder).doubts
-    assert len(doubts) == 1
-    assert doubts[0].startswith(f"{name}: Windup reads no such file (did you mean ")
+    warnings = seen(folder).warnings
+    assert len(warnings) == 1
+    assert warnings[0].startswith(f"{name}: Windup reads no such file (did you mean ")
 
 
 def test_what_is_added_and_assumed_is_noted(tmp_path: Path) -> None:

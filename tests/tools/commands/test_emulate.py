@@ -93,7 +93,7 @@ def test_what_was_unplugged_can_be_opened_again(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([STS], "needs a --pty PATH or a --tcp PORT"),
+        ([STS], "give either --pty PATH or --tcp PORT"),
         (["--tcp", "0"], "give either a ROBOT, or servos without one: --servos STS3215:1-6"),
         (["op3", "--servos", "STS3215:1", "--tcp", "0"], "give either a ROBOT, or servos"),
         (["--servos", "STS3215", "--tcp", "0"], "a model and its ids, as in 'XM430-W350:1-20'"),
@@ -103,7 +103,7 @@ def test_what_was_unplugged_can_be_opened_again(tmp_path: Path) -> None:
         (["op3", "--tcp", "0", "--supply", "0"], "give more than 0, up to 60 V"),
         (["op3", "--tcp", "0", "--hand", "r_knee"], "a joint, degrees and seconds, as in"),
         (["op3", "--tcp", "0", "--hand", "r_kne:20:3s"], "did you mean 'r_knee'"),
-        ([STS, "--pty", "/dev/null"], "/dev/null exists and is not the link of an emulator"),
+        ([STS, "--pty", "/dev/null"], "/dev/null exists and is not the link of an emulated port"),
     ],
 )
 def test_what_cannot_be_is_said(

@@ -32,9 +32,9 @@ def test_a_skip_touches_twice_with_each_foot() -> None:
     order = [left, right, right, left, left, right, right]
     for tick, down in enumerate(down for foot in order for down in (air, air, air, foot)):
         gauges.update(seen(0.01 * tick, down))
-    assert gauges.touches == [0, 1, 1, 0, 0, 1, 1]
+    assert gauges.touchdowns == [0, 1, 1, 0, 0, 1, 1]
     assert gauges.skips == 1.0
-    gauges.touches += [0, 1, 0]  # it falls into a run
+    gauges.touchdowns += [0, 1, 0]  # it falls into a run
     assert gauges.skips == pytest.approx(6 / 8)
 
 
@@ -43,6 +43,6 @@ def test_work_has_no_sign_and_shake_is_a_root_mean_square() -> None:
     for tick in range(11):
         gauges.update(seen(0.01 * tick, turning=2.0 if tick % 2 else 0.0))
     assert gauges.work == pytest.approx(0.1 * (3.0 + 8.0))
-    assert gauges.shake == pytest.approx(np.sqrt(2.0))
+    assert gauges.angular_velocity_rms == pytest.approx(np.sqrt(2.0))
     assert gauges.cost_of_transport(2.0, 0.5) == pytest.approx(1.1 / (2.0 * 9.81 * 0.5))
     assert gauges.cost_of_transport(2.0, 0.0) is None

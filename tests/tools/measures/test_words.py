@@ -70,7 +70,7 @@ def test_a_walk_too_short_for_a_speed_has_none() -> None:
 
 def test_a_walk_that_did_not_begin_has_no_real_time() -> None:
     said = format_walk(WALKED | {"reason": LAY, "sim_time_s": 0.0, "wall_time_s": 0.0})
-    assert said == "op3 did not walk: it lay there before: put it on its feet"
+    assert said == "op3 did not walk: it was already lying down: put it on its feet"
 
 
 @pytest.mark.parametrize("way", ["walk", "stand", "play"])
@@ -89,7 +89,9 @@ def test_one_that_lay_there_before_did_not_fall(way: str) -> None:
 def test_a_load_beyond_the_stall_torque_is_no_percentage_of_it() -> None:
     assert format_fall(FALL | {"peak_load": 0.85}).endswith("peak load 85 % of stall at l_knee")
     said = format_fall(FALL | {"peak_load": 1.86})
-    assert said.endswith("l_knee bore 1.9 x its stall torque, more than it gives by itself")
+    assert said.endswith(
+        "l_knee was loaded with 1.9 x its stall torque, more than its motor can produce"
+    )
 
 
 def test_every_seed_of_a_stand_is_a_row(shell: Windup) -> None:

@@ -4,7 +4,7 @@ from tests.small_world import observation
 from windup.control.loop import LoopReport
 from windup.tools.robot.run_end import RunEnd
 from windup.tools.robot.stopping import INTERRUPTED, LAY
-from windup.tools.stopping.interrupts import Asked
+from windup.tools.stopping.interrupts import StopRequests
 
 
 class Way:
@@ -17,7 +17,7 @@ class Way:
 def ending(fallen: bool = False, **options: Any) -> RunEnd:
     loop = options.pop("loop", LoopReport())
     return RunEnd(
-        asked=options.pop("asked", Asked()),
+        asked=options.pop("asked", StopRequests()),
         wishes=options.pop("wishes", []),
         fallen=lambda: fallen,
         loop=loop,
@@ -43,7 +43,7 @@ def test_its_time_counts_from_the_end_of_the_first_motion() -> None:
 
 
 def test_whoever_asks_for_the_end_comes_before_everything_else() -> None:
-    asked, said = Asked(), [""]
+    asked, said = StopRequests(), [""]
     end = ending(fallen=True, asked=asked, wishes=[lambda: None, lambda: said[0]], down=True)
     assert end(observation(10.0)) is None
     said[0] = "the user button"

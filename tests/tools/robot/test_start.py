@@ -66,7 +66,7 @@ def test_a_joint_outside_of_its_limits_is_named_before_its_goal_would_jump() -> 
     with ServoBus("op3") as bus, bus.robot() as robot:
         joints, physics = robot.description.joints, physics_of(bus)
         robot.twin.data.qpos[7 + joints.index("r_knee")] = 0.6
-        physics.grasp()
+        physics.store_held_pose()
         bus.wait(0.1)
         with pytest.raises(
             PostureError, match=r"r_knee reads 34 degrees, outside of its limits \(-126 \.\. 18\)"
@@ -80,7 +80,7 @@ def test_a_jammed_joint_makes_the_whole_robot_limp_at_once_and_is_named() -> Non
         robot = bus.robot()
         knee, physics = robot.description.joints.index("left_knee"), physics_of(bus)
         robot.twin.reset(0.7 * robot.description.stance)
-        physics.grasp()
+        physics.store_held_pose()
         physics.jammed[knee] = True
         bus.wait(0.1)
         with pytest.raises(FirstMotionError, match="left_knee does not follow"):

@@ -74,7 +74,7 @@ def test_a_duck_that_loses_a_knee_does_not_crouch() -> None:
     with ServoBus("duck", seed=1, faults=f"overload:at=2.5:ids={KNEE}") as bus:
         robot = bus.robot()
         assert robot.backend.stop_policy == "crouch"
-        weak = "right_knee lost its torque: its servo pushes with a part of the torque only"
+        weak = "right_knee lost its torque: its servo has reduced its torque"
         assert stands_until(bus, robot, TorqueLostError, weak) < 0.1
         assert not any(device.driving for device in bus.world.devices)
 
@@ -107,8 +107,8 @@ CAUSES = {
     ("overload", "dynamixel2"): "its servo shut down: overload",
     ("overload", "dynamixel1"): "its servo shut down: overload",
     ("overload", "ax"): "its servo shut down: overload",
-    ("overload", "sts"): "its servo pushes with a part of the torque only: overload",
-    ("overload", "scs"): "its servo pushes with a part of the torque only: overload",
+    ("overload", "sts"): "its servo has reduced its torque: overload",
+    ("overload", "scs"): "its servo has reduced its torque: overload",
 }
 
 
@@ -139,7 +139,7 @@ def test_a_port_that_went_is_named_and_torque_is_read_as_off_if_it_comes_back(
 ) -> None:
     with ServoBus("duck", seed=1, faults=f"unplug:at=2.5:seconds={gone:g}:bus=body") as bus:
         robot = bus.robot()
-        said = "^no joint can be reached: port .* went away"
+        said = "^no joint can be reached: port .* was disconnected"
         assert stands_until(bus, robot, PortError, said) < 1.0
         assert robot.armed is not known
         drives = [device.driving for device in bus.world.bus("body").devices]

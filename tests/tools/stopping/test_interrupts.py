@@ -33,25 +33,25 @@ def press(number: int = signal.SIGINT, times: int = 1) -> None:
     [
         (signal.SIGINT, "Ctrl-C"),
         (signal.SIGTERM, "SIGTERM"),
-        (signal.SIGHUP, "the end of its terminal"),
+        (signal.SIGHUP, "the end of the terminal"),
         (signal.SIGQUIT, "Ctrl-\\"),
         (signal.SIGTSTP, "Ctrl-Z"),
     ],
 )
 def test_signals_are_counted_and_interrupt_nothing(number: int, words: str) -> None:
-    with counted_signals() as asked:
-        assert not asked()
+    with counted_signals() as requests:
+        assert not requests()
         press(number, 5)
-        assert asked() and asked.count == 5
-        assert asked.by == words
+        assert requests() and requests.count == 5
+        assert requests.by == words
 
 
 def test_the_third_signal_is_impatient() -> None:
-    with counted_signals() as asked:
+    with counted_signals() as requests:
         press(times=2)
-        assert not asked.impatient
+        assert not requests.skip_crouch
         press()
-        assert asked.impatient
+        assert requests.skip_crouch
 
 
 def test_afterwards_ctrl_c_is_an_exception_again_and_ctrl_z_suspends() -> None:
@@ -78,8 +78,8 @@ def test_another_thread_is_asked_by_the_end_of_the_main_thread_alone() -> None:
     heard: list[bool] = []
 
     def ask() -> None:
-        with counted_signals() as asked:
-            heard.append(asked())
+        with counted_signals() as requests:
+            heard.append(requests())
 
     thread = threading.Thread(target=ask)
     thread.start()

@@ -5,7 +5,7 @@ import sys
 
 STUBBORN = """
 import multiprocessing, os, signal, sys, time
-from windup.tools.terminal.parallel import side_by_side
+from windup.tools.terminal.parallel import run_parallel
 
 def work(item):
     signal.signal(signal.SIGTERM, lambda *_: None)  # as a robot's loop, which ends in its own time
@@ -15,7 +15,7 @@ def work(item):
 if __name__ == "__main__":
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        list(side_by_side(work, [1, 2, 3, 4], label="x", jobs=2))
+        list(run_parallel(work, [1, 2, 3, 4], label="x", jobs=2))
     except KeyboardInterrupt:
         sys.exit(130)
 """

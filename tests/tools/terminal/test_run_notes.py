@@ -1,7 +1,7 @@
 import pytest
 
-from windup.hal.guard.finding import SAYINGS, Finding
-from windup.hal.guard.levels import Kind
+from windup.hal.guard.finding import FINDING_TEXTS, Finding
+from windup.hal.guard.levels import HealthKind
 from windup.tools.terminal.run_notes import RunNotes
 from windup.tools.terminal.slowness import Slowness
 
@@ -9,20 +9,24 @@ WELL = Slowness(125.0)
 
 
 def warm(joint: str, degrees: float) -> Finding:
-    return Finding(SAYINGS[Kind.TEMPERATURE], degrees, 65.0, 1.0, joints=[joint], count=1)
+    return Finding(
+        FINDING_TEXTS[HealthKind.TEMPERATURE], degrees, 65.0, 1.0, joints=[joint], count=1
+    )
 
 
 def low(volts: float) -> Finding:
-    return Finding(SAYINGS[Kind.SUPPLY_LOW], volts, 11.0, 1.0, joints=["a", "b"], count=2)
+    return Finding(
+        FINDING_TEXTS[HealthKind.SUPPLY_LOW], volts, 11.0, 1.0, joints=["a", "b"], count=2
+    )
 
 
 def test_a_command_begins_without_warnings() -> None:
     notes = RunNotes()
-    assert (notes.ran, notes.said(), notes.records()) == (False, "", [])
+    assert (notes.ran, notes.summary(), notes.records()) == (False, "", [])
     notes.add([warm("l_knee", 66.0)], WELL)
     assert notes.ran
     notes.begin()
-    assert (notes.ran, notes.said(), notes.records()) == (False, "", [])
+    assert (notes.ran, notes.summary(), notes.records()) == (False, "", [])
 
 
 def test_the_same_cause_in_several_runs_is_one_warning() -> None:
@@ -30,7 +34,7 @@ def test_the_same_cause_in_several_runs_is_one_warning() -> None:
     for volts, degrees in ((10.8, 67.0), (10.5, 66.0)):
         notes.add([low(volts), warm("l_knee", degrees)], WELL)
     notes.add([warm("r_knee", 68.0)], WELL)
-    assert notes.said() == (
+    assert notes.summary() == (
         "a and b were on 10.5 V (warning below 11.0); "
         "l_knee and r_knee were at 68 degrees C (warning at 65)"
     )
@@ -43,7 +47,7 @@ def test_the_same_cause_in_several_runs_is_one_warning() -> None:
 def test_what_ended_the_run_is_not_said_twice() -> None:
     notes = RunNotes()
     notes.add([low(10.5), warm("l_knee", 66.0)], WELL)
-    assert notes.said("temperature") == "a and b were on 10.5 V (warning below 11.0)"
+    assert notes.summary("temperature") == "a and b were on 10.5 V (warning below 11.0)"
     assert len(notes.records()) == 2, "programs get all"
 
 
@@ -52,7 +56,7 @@ def test_a_slow_computer_is_part_of_the_line() -> None:
     notes.add([warm("l_knee", 66.0)], Slowness(125.0, ticks=50, missed=10))
     notes.add([], Slowness(125.0, ticks=40))
     said = "l_knee was at 66 degrees C (warning at 65); 10 % of the ticks came late"
-    assert notes.said().startswith(said)
+    assert notes.summary().startswith(said)
     assert notes.records()[-1]["kind"] == "late ticks"
 
 
@@ -61,7 +65,7 @@ def test_runs_in_other_processes_are_counted() -> None:
     record = warm("l_knee", 66.0).record()
     for seed, warnings in enumerate(([], [record], [record])):
         notes.add_row({"seed": seed, "warnings": warnings})
-    assert notes.said() == "2 of 3 runs had temperature"
+    assert notes.summary() == "2 of 3 runs had temperature"
     assert [row["seed"] for row in notes.records()] == [1, 2]
 
 

@@ -78,7 +78,7 @@ def test_ground_takes_a_floor_to_be_made_of(shell: Windup, tmp_path: Path) -> No
     model = write_shape(tmp_path / "r", QUADRUPED) / "model.xml"
     model.write_text(model.read_text().replace('type="plane" size="0 0 0.05"', 'size="0.1"'))
     ran = shell("stand", tmp_path / "r", "--slope", "5")
-    assert ran.status == 2 and "has no plane to make other ground of" in ran.err
+    assert ran.status == 2 and "has no plane that other ground could replace" in ran.err
 
 
 def test_the_arm_of_the_package_waves_and_folds_itself(shell: Windup) -> None:

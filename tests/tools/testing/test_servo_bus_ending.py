@@ -62,7 +62,7 @@ def test_a_trace_that_is_not_finished_does_not_hide_the_error(tmp_path: Path) ->
     with pytest.raises(ValueError, match="mine") as caught, ServoBus(servos="STS3215:1") as bus:
         bus.check(path)
         raise ValueError("mine")
-    assert "less happened than" in caught.value.__notes__[0]
+    assert "fewer bytes than" in caught.value.__notes__[0]
     with (
         pytest.raises(ValueError, match="mine") as caught,
         ServoBus.replay(path),
@@ -82,7 +82,7 @@ def test_the_first_of_several_errors_is_raised_and_all_is_closed(tmp_path: Path)
         bus.close()
     assert all(port.closed for port in ports)
     second, third = caught.value.__notes__
-    assert second.endswith("the second") and "less happened than" in third
+    assert second.endswith("the second") and "fewer bytes than" in third
     with pytest.raises(UnknownNameError):
         find_world(bus._name)
     bus.close()

@@ -66,7 +66,7 @@ def overloaded(port: serial.Serial) -> bool:
 
 def test_a_fault_that_cannot_happen_is_said() -> None:
     with ServoPty(servos="STS3215:1-3") as pty:
-        with pytest.raises(UsageError, match="nobody has id 9; there are 1, 2, 3"):
+        with pytest.raises(UsageError, match="no servo has id 9; ids here: 1, 2, 3"):
             pty.faults.drop(ids=[9])
         assert pty.driven() == 0
 
@@ -75,7 +75,7 @@ def test_what_cannot_be_served_is_said(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="unknown servo model 'STS3125'"):
         ServoPty(servos="STS3125:1")
     (tmp_path / "taken").touch()
-    with pytest.raises(UsageError, match="exists and is not the link of an emulator"):
+    with pytest.raises(UsageError, match="exists and is not the link of an emulated port"):
         ServoPty(servos="STS3215:1", path=tmp_path / "taken")
 
 

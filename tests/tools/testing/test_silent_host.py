@@ -15,8 +15,8 @@ def test_op3_freezes_with_torque_on_and_goes_on_when_its_host_is_back() -> None:
         (link,) = servos.links
         bus.wait(1.0)
         assert sum(device.driving for device in bus.world.devices) == 20
-        registers = link.line.bus.family.registers
-        counts, valid = link.line.bus.sync_read(link.line.ids, registers["bus_watchdog"])
+        registers = link.readout.bus.family.registers
+        counts, valid = link.readout.bus.sync_read(link.readout.ids, registers["bus_watchdog"])
         assert valid.all() and (counts == -1).all()
         assert link.torque.state().all_on
 

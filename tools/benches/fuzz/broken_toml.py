@@ -12,68 +12,68 @@ VALUE = re.compile(r"(?P<key>[A-Za-z_][\w.]*)\s*=\s*(?P<value>\"[^\"\n]*\"|[^,{}
 Mistake = Callable[[random.Random, str], str]
 
 
-def broken_toml(dice: random.Random, text: str) -> str:
+def broken_toml(rng: random.Random, text: str) -> str:
     """Return `text` with one to three mistakes."""
-    for _ in range(dice.randint(1, 3)):
-        text = dice.choice(MISTAKES)(dice, text)
+    for _ in range(rng.randint(1, 3)):
+        text = rng.choice(MISTAKES)(rng, text)
     return text
 
 
-def other_value(dice: random.Random, text: str) -> str:
+def other_value(rng: random.Random, text: str) -> str:
     """Give a key an odd value."""
     found = list(VALUE.finditer(text))
     if not found:
         return text
-    where = dice.choice(found)
-    value = dice.choice((odd.number(dice), f'"{odd.word(dice)}"', dice.choice(odd.TOML)))
+    where = rng.choice(found)
+    value = rng.choice((odd.number(rng), f'"{odd.word(rng)}"', rng.choice(odd.TOML)))
     return text[: where.start("value")] + value + text[where.end("value") :]
 
 
-def other_key(dice: random.Random, text: str) -> str:
+def other_key(rng: random.Random, text: str) -> str:
     """Misspell a key."""
     found = list(VALUE.finditer(text))
     if not found:
         return text
-    where = dice.choice(found)
+    where = rng.choice(found)
     key = where["key"]
     return (
         text[: where.start("key")]
-        + dice.choice((key[:-1], key + "_", key.upper()))
+        + rng.choice((key[:-1], key + "_", key.upper()))
         + text[where.end("key") :]
     )
 
 
-def without_line(dice: random.Random, text: str) -> str:
+def without_line(rng: random.Random, text: str) -> str:
     """Remove a line."""
     lines = text.splitlines(keepends=True)
     if lines:
-        del lines[dice.randrange(len(lines))]
+        del lines[rng.randrange(len(lines))]
     return "".join(lines)
 
 
-def line_twice(dice: random.Random, text: str) -> str:
+def line_twice(rng: random.Random, text: str) -> str:
     """Duplicate a line."""
     lines = text.splitlines(keepends=True)
     if lines:
-        at = dice.randrange(len(lines))
+        at = rng.randrange(len(lines))
         lines.insert(at, lines[at])
     return "".join(lines)
 
 
-def lines_swapped(dice: random.Random, text: str) -> str:
+def lines_swapped(rng: random.Random, text: str) -> str:
     """Move a line elsewhere."""
     lines = text.splitlines(keepends=True)
     if lines:
-        lines.insert(dice.randrange(len(lines)), lines.pop(dice.randrange(len(lines))))
+        lines.insert(rng.randrange(len(lines)), lines.pop(rng.randrange(len(lines))))
     return "".join(lines)
 
 
-def cut_off(dice: random.Random, text: str) -> str:
+def cut_off(rng: random.Random, text: str) -> str:
     """Truncate the file."""
-    return text[: dice.randrange(len(text) + 1)]
+    return text[: rng.randrange(len(text) + 1)]
 
 
-def with_mark(dice: random.Random, text: str) -> str:
+def with_mark(rng: random.Random, text: str) -> str:
     """Begin with a byte-order mark, as some editors do."""
     return "\ufeff" + text
 

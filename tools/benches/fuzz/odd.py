@@ -62,11 +62,11 @@ TOML = ('""', '"op3"', "true", "[]", "{}", "[[1]]", '"x" # x', "1979-05-27", "0x
 """TOML values of other types, and invalid ones."""
 
 
-def number(dice: random.Random) -> str:
+def number(rng: random.Random) -> str:
     """Return an odd number as text."""
-    return dice.choice(NUMBERS)
+    return rng.choice(NUMBERS)
 
 
-def word(dice: random.Random) -> str:
+def word(rng: random.Random) -> str:
     """Return an odd word."""
-    return dice.choice(WORDS)
+    return rng.choice(WORDS)

@@ -61,34 +61,34 @@ MILD = ("0.05", "0.1", "1", "3", "45", "-0.1")
 """Plausible numbers for options."""
 
 
-def odd_line(dice: random.Random, robot: str, folder: Path) -> list[str]:
+def odd_line(rng: random.Random, robot: str, folder: Path) -> list[str]:
     """Return the words of a command line on `robot`, with result files in `folder`."""
-    command = dice.choice(list(SHORT))
+    command = rng.choice(list(SHORT))
     words = [command, robot, *SHORT[command]]
-    for _ in range(dice.randint(0, OPTIONS)):
-        words += _option(dice, command)
-    if dice.random() < 0.3:
-        words += ["--port", _port(dice, robot)]
-    if dice.random() < 0.3:
-        words += [dice.choice(("--json", "--plot")), _target(dice, folder)]
-    if dice.random() < 0.1:
-        words.insert(dice.randrange(len(words)), odd.word(dice))
+    for _ in range(rng.randint(0, OPTIONS)):
+        words += _option(rng, command)
+    if rng.random() < 0.3:
+        words += ["--port", _port(rng, robot)]
+    if rng.random() < 0.3:
+        words += [rng.choice(("--json", "--plot")), _target(rng, folder)]
+    if rng.random() < 0.1:
+        words.insert(rng.randrange(len(words)), odd.word(rng))
     return _passed_on(words)
 
 
-def any_line(dice: random.Random, options: Mapping[str, Sequence[str]]) -> list[str]:
+def any_line(rng: random.Random, options: Mapping[str, Sequence[str]]) -> list[str]:
     """Return the words of any command, which may run for hours, with any of its `options`.
 
     Args:
-        dice: Random number generator.
+        rng: Random number generator.
         options: Options of every command by its name, such as "--speed".
     """
-    command = dice.choice(sorted(options))
-    words = [command, *dice.choices(odd.ROBOTS, k=dice.randint(0, 2))]
-    for _ in range(dice.randint(0, 3)):
-        option = dice.choice(options[command])
+    command = rng.choice(sorted(options))
+    words = [command, *rng.choices(odd.ROBOTS, k=rng.randint(0, 2))]
+    for _ in range(rng.randint(0, 3)):
+        option = rng.choice(options[command])
         values = odd.URLS if option in ("--port", "--url") else odd.VALUES
-        words += [option, *dice.choices(values, k=dice.randint(0, 2))]
+        words += [option, *rng.choices(values, k=rng.randint(0, 2))]
     return _passed_on(words)
 
 
@@ -97,33 +97,33 @@ def _passed_on(words: list[str]) -> list[str]:
     return [word.replace("\0", "") for word in words]
 
 
-def _option(dice: random.Random, command: str) -> list[str]:
+def _option(rng: random.Random, command: str) -> list[str]:
     """Return an option of a command, with a value that may be odd."""
-    kind = dice.random()
+    kind = rng.random()
     words = WORDS.get(command, "--state").split()
     if kind < 0.65:
-        value = odd.number(dice) if dice.random() < 0.5 else dice.choice(MILD)
-        return [dice.choice((*NUMBERS, *OWN.get(command, "").split())), value]
+        value = odd.number(rng) if rng.random() < 0.5 else rng.choice(MILD)
+        return [rng.choice((*NUMBERS, *OWN.get(command, "").split())), value]
     if kind < 0.9:
-        return [dice.choice((*words, "--faults", "--state")), odd.word(dice)]
-    return [dice.choice(SWITCHES)]
+        return [rng.choice((*words, "--faults", "--state")), odd.word(rng)]
+    return [rng.choice(SWITCHES)]
 
 
-def _port(dice: random.Random, robot: str) -> str:
+def _port(rng: random.Random, robot: str) -> str:
     """Return a port URL: odd, or emulated with an odd setting."""
-    if dice.random() < 0.2:
-        return dice.choice(odd.URLS)
-    return f"twin://{dice.choice((robot, 'op3', 'bench'))}?{_query(dice)}"
+    if rng.random() < 0.2:
+        return rng.choice(odd.URLS)
+    return f"twin://{rng.choice((robot, 'op3', 'bench'))}?{_query(rng)}"
 
 
-def _query(dice: random.Random) -> str:
+def _query(rng: random.Random) -> str:
     """Return the query of a twin:// URL."""
     keys = ("clock", "latency", "servos", "faults", "supply", "seed", "missing", "return_delay")
-    values = (odd.number(dice), odd.word(dice), "virtual", "XM430-W350:1-1000000000")
-    return f"clock=virtual&{dice.choice(keys)}={dice.choice(values)}"
+    values = (odd.number(rng), odd.word(rng), "virtual", "XM430-W350:1-1000000000")
+    return f"clock=virtual&{rng.choice(keys)}={rng.choice(values)}"
 
 
-def _target(dice: random.Random, folder: Path) -> str:
+def _target(rng: random.Random, folder: Path) -> str:
     """Return the path of a result file, writable or not."""
     names = ("/dev/full", str(folder), "/nowhere/x.json", str(folder / "x.json"), "-", "/dev/zero")
-    return dice.choice((*names, odd.word(dice)[:300] or "x"))
+    return rng.choice((*names, odd.word(rng)[:300] or "x"))

@@ -63,11 +63,11 @@ Run = Callable[[list[str]], int]
 
 def odd_run(run: Run, seed: int, robots: tuple[str, ...]) -> Trial:
     """Run one odd command line on one of `robots`, possibly a broken copy."""
-    dice = random.Random(seed)
+    rng = random.Random(seed)
     with tempfile.TemporaryDirectory(prefix="windup-fuzz-") as name:
         folder = Path(name)
-        robot = _robot(dice, dice.choice(robots), folder / "robot")
-        words = odd_line(dice, robot, folder)
+        robot = _robot(rng, rng.choice(robots), folder / "robot")
+        words = odd_line(rng, robot, folder)
         interrupted = False
 
         def interrupt(number: int, frame: object) -> None:
@@ -94,20 +94,20 @@ def odd_run(run: Run, seed: int, robots: tuple[str, ...]) -> Trial:
     return Trial(seed, tuple(words), status, trace, interrupted, memory)
 
 
-def _robot(dice: random.Random, name: str, folder: Path) -> str:
+def _robot(rng: random.Random, name: str, folder: Path) -> str:
     """Return the name of a robot, or the path of a broken copy of it."""
-    if dice.random() < 0.2:
+    if rng.random() < 0.2:
         return name
     shutil.copytree(load_robot(name).folder, folder)
     toml, mjcf = folder / "robot.toml", folder / "model.xml"
-    if dice.random() < 0.6:
-        toml.write_text(broken_toml(dice, toml.read_text()))
+    if rng.random() < 0.6:
+        toml.write_text(broken_toml(rng, toml.read_text()))
     else:
-        mjcf.write_text(broken_mjcf(dice, mjcf.read_text()))
+        mjcf.write_text(broken_mjcf(rng, mjcf.read_text()))
     gaits = list(gait_files(folder).values())
-    if gaits and dice.random() < 0.3:
-        gait = dice.choice(gaits)
-        gait.write_text(broken_toml(dice, gait.read_text()))
+    if gaits and rng.random() < 0.3:
+        gait = rng.choice(gaits)
+        gait.write_text(broken_toml(rng, gait.read_text()))
     return str(folder)
 
 

@@ -14,7 +14,7 @@ from windup.tools.benches.safety.emulated import Journal, serve
 from windup.tools.benches.safety.moment import Moment
 from windup.tools.benches.safety.processes import alive, child_with, guardian_of, is_guardian
 from windup.tools.benches.safety.program import Program, main
-from windup.tools.benches.safety.row import Row
+from windup.tools.benches.safety.row import Ending
 from windup.tools.benches.safety.standard_error import unread
 from windup.tools.benches.safety.trial import PATIENCE, NotMeasuredError, Trial
 
@@ -28,7 +28,7 @@ PRELOAD = [
 
 @contextmanager
 def trial(
-    name: str, row: Row, moment: Moment, arm: bool = True, faults: str = ""
+    name: str, row: Ending, moment: Moment, arm: bool = True, faults: str = ""
 ) -> Iterator[Trial]:
     """Start all processes, and end them at exit; `faults` are active on the bus from the start."""
     context = multiprocessing.get_context("forkserver")
@@ -84,7 +84,7 @@ def under_way(running: Trial) -> None:
     Raises:
         NotMeasuredError: It does not, or drives no motor.
     """
-    running.hear("doing")
+    running.wait_for_message("doing")
     assert running.program.pid is not None
     running.guardian = guardian_of(running.port)
     running.planner = child_with(running.program.pid, "plan_worker")

@@ -17,7 +17,7 @@ from windup.tools.benches.safety.attempt import trial, under_way
 from windup.tools.benches.safety.endings import own_fault
 from windup.tools.benches.safety.moment import Moment
 from windup.tools.benches.safety.refusals import measure_refusals
-from windup.tools.benches.safety.row import Row
+from windup.tools.benches.safety.row import Ending
 from windup.tools.benches.safety.rows import ROWS, SIGNALS
 from windup.tools.benches.safety.scripts import BY_ITSELF
 from windup.tools.benches.safety.trial import NotMeasuredError
@@ -76,13 +76,13 @@ def measure_safety(
 
 
 def _measure(
-    row: Row, moments: int, rng: np.random.Generator, robots: Sequence[str]
+    row: Ending, moments: int, rng: np.random.Generator, robots: Sequence[str]
 ) -> dict[str, Any]:
     """Return the results of one row."""
     failed: Counter[str] = Counter()
     todo = list(_moments(row, moments, rng, robots))
-    with ThreadPoolExecutor((cpu_count() or 1) + SPARE) as side_by_side:
-        tried = side_by_side.map(lambda item: _try(item[0], row, item[1], failed), todo)
+    with ThreadPoolExecutor((cpu_count() or 1) + SPARE) as pool:
+        tried = pool.map(lambda item: _try(item[0], row, item[1], failed), todo)
         both = zip(todo, tried, strict=True)
         seen = [(name, verdict) for (name, _), verdict in both if verdict is not None]
     times = [verdict.seconds for _, verdict in seen]
@@ -113,7 +113,7 @@ def _measure(
 
 
 def _moments(
-    row: Row, count: int, rng: np.random.Generator, robots: Sequence[str]
+    row: Ending, count: int, rng: np.random.Generator, robots: Sequence[str]
 ) -> Iterator[tuple[str, Moment]]:
     """Yield the robots in turn, with random moments of the row's activities."""
     mine = [name for name in robots if not row.robots or name in row.robots]
@@ -124,7 +124,7 @@ def _moments(
         yield mine[k % len(mine)], Moment(activity, float(rng.uniform(0.0, LONGEST[activity])))
 
 
-def _try(name: str, row: Row, moment: Moment, failed: Counter[str]) -> Verdict | None:
+def _try(name: str, row: Ending, moment: Moment, failed: Counter[str]) -> Verdict | None:
     """Return the verdict on one trial, or None if its program never got under way."""
     for _ in range(AGAIN):
         try:
@@ -134,14 +134,14 @@ def _try(name: str, row: Row, moment: Moment, failed: Counter[str]) -> Verdict |
     return None
 
 
-def _one(name: str, row: Row, moment: Moment) -> Verdict:
+def _one(name: str, row: Ending, moment: Moment) -> Verdict:
     with trial(name, row, moment) as running:
         under_way(running)
-        if row.do is not own_fault:
+        if row.carry_out is not own_fault:
             running.journal.listen(moment.after)
             if BY_ITSELF in (said := running.errors()):
                 raise NotMeasuredError(said)
-        verdict = judge(running, row, load_robot(name), row.do(running))
+        verdict = judge(running, row, load_robot(name), row.carry_out(running))
         if verdict.wrong and row in SIGNALS and BY_ITSELF in (said := running.errors()):
             raise NotMeasuredError(said)  # the robot fell at that very moment
         return verdict

@@ -40,7 +40,7 @@ def kill_unread(trial: Trial) -> float:
 
 def own_fault(trial: Trial) -> float:
     """Wait until the fault of the program itself happens."""
-    return trial.hear("fault")[1]
+    return trial.wait_for_message("fault")[1]
 
 
 def inject(faults: dict[str, str]) -> Do:

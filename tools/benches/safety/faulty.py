@@ -14,13 +14,13 @@ from windup.hal.controller import Controller
 from windup.hal.observation import ImuState, Observation
 from windup.hal.servo_bus.bus_connection import BusConnection
 from windup.hal.servo_bus.servo_backend import ServoBackend
-from windup.tools.benches.safety.begin import Begin
+from windup.tools.benches.safety.fault_timer import FaultTimer
 from windup.tools.robot.robot import Robot
 
 Fault = Callable[[JointCommand], JointCommand]
 
 
-class Faulty:
+class FaultyController:
     """A controller that becomes faulty at some time.
 
     Args:
@@ -29,7 +29,7 @@ class Faulty:
         begin: Determines when that is.
     """
 
-    def __init__(self, controller: Controller, fault: Fault, begin: Begin) -> None:
+    def __init__(self, controller: Controller, fault: Fault, begin: FaultTimer) -> None:
         self._controller, self._fault, self._begin = controller, fault, begin
 
     def __getattr__(self, name: str) -> Any:
@@ -88,15 +88,15 @@ FAULTS: dict[str, Fault] = {
 }
 
 
-def make_faulty(robot: Robot, fault: Fault, begin: Begin) -> None:
+def make_faulty(robot: Robot, fault: Fault, begin: FaultTimer) -> None:
     """Make every controller of a robot faulty when the fault is due."""
     run = robot.run
     robot.run = lambda controller, *given, **more: run(  # type: ignore[method-assign]
-        Faulty(controller, fault, begin), *given, **more
+        FaultyController(controller, fault, begin), *given, **more
     )
 
 
-def break_imu(robot: Robot, begin: Begin) -> None:
+def break_imu(robot: Robot, begin: FaultTimer) -> None:
     """Make the IMU's driver return NaN when the fault is due."""
     servos = robot.backend.backend
     assert isinstance(servos, ServoBackend)

@@ -9,7 +9,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 
 from windup.hal.errors import WindupError
-from windup.tools.benches.safety.begin import Begin
+from windup.tools.benches.safety.fault_timer import FaultTimer
 from windup.tools.benches.safety.faulty import FAULTS, break_imu, make_faulty
 from windup.tools.benches.safety.moment import Activity
 from windup.tools.benches.safety.scripts import LEFT_OPEN, SCRIPTS, move
@@ -63,7 +63,7 @@ def main(program: Program, tell: Connection) -> None:
 
 
 def _run(program: Program, tell: Connection) -> None:
-    begin = Begin(tell, program.after)
+    begin = FaultTimer(tell, program.after)
     robot = Robot.open(program.robot, port=program.port, arm=program.arm)
     with ExitStack() as stack:
         if program.fault not in LEFT_OPEN:

@@ -6,7 +6,7 @@ from typing import Any
 
 from windup.tools.benches.safety.attempt import trial
 from windup.tools.benches.safety.moment import Moment
-from windup.tools.benches.safety.row import Row
+from windup.tools.benches.safety.row import Ending
 from windup.tools.benches.safety.trial import PATIENCE
 from windup.tools.terminal.output import console
 
@@ -49,7 +49,7 @@ REFUSALS = (
         "(stop below ",
     ),
 )
-NETWORK = Refusal("Feetech behind a network", {}, 2, "cannot watch their bus", network=True)
+NETWORK = Refusal("Feetech behind a network", {}, 2, "have no bus watchdog", network=True)
 
 
 def measure_refusals(robots: Sequence[str]) -> dict[str, Any]:
@@ -64,7 +64,7 @@ def measure_refusals(robots: Sequence[str]) -> dict[str, Any]:
 
 
 def _refused(robot: str, refusal: Refusal) -> dict[str, Any]:
-    row = Row("refusal", _nothing, (refusal.status,), network=refusal.network)
+    row = Ending("refusal", _nothing, (refusal.status,), network=refusal.network)
     faults = refusal.faults.get(robot, refusal.faults.get("", ""))
     with trial(robot, row, AT_REST, refusal.arm, faults) as running:
         running.program.join(PATIENCE)

@@ -22,12 +22,12 @@ SLACK = 0.15
 
 
 @dataclass(frozen=True)
-class Row:
+class Ending:
     """A way to end a run.
 
     Attributes:
         name: Name in the table.
-        do: Ends the run; returns t0, s on the monotonic clock.
+        carry_out: Ends the run; returns t0, s on the monotonic clock.
         status: The correct exit statuses; a negative one is the number of a signal.
         within: Longest time from t0 until no motor is driven, without a crouch, s.
         crouch: Whether a robot whose stop policy is a crouch may take the additional time for it.
@@ -41,7 +41,7 @@ class Row:
     """
 
     name: str
-    do: Callable[[Trial], float]
+    carry_out: Callable[[Trial], float]
     status: tuple[int, ...]
     within: float = STOP
     crouch: bool = True

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from windup.hal.errors import WindupError
 from windup.hal.observation import Observation
-from windup.tools.benches.safety.begin import Begin
+from windup.tools.benches.safety.fault_timer import FaultTimer
 from windup.tools.benches.safety.moment import Activity
 from windup.tools.robot.robot import Robot
 
@@ -17,10 +17,10 @@ FOR_EVER = 3600.0
 WARM_UP = 0.4
 """Time from the end of the first motion until the robot stands still, s."""
 
-Body = Callable[[Robot, Activity, Begin], None]
+Body = Callable[[Robot, Activity, FaultTimer], None]
 
 
-def move(robot: Robot, activity: Activity, begin: Begin) -> None:
+def move(robot: Robot, activity: Activity, begin: FaultTimer) -> None:
     """Stand, walk, or perform the closing crouch."""
     if activity == "walking":
         robot.walk(steps=1000, on_step=[lambda number, _: begin.now("walking")])
@@ -33,7 +33,7 @@ def move(robot: Robot, activity: Activity, begin: Begin) -> None:
         robot.stand(FOR_EVER)
 
 
-def _goes_on(robot: Robot, activity: Activity, begin: Begin) -> None:
+def _goes_on(robot: Robot, activity: Activity, begin: FaultTimer) -> None:
     """Catch Ctrl-C, and try to continue."""
     try:
         move(robot, activity, begin)
@@ -41,21 +41,21 @@ def _goes_on(robot: Robot, activity: Activity, begin: Begin) -> None:
         robot.stand(FOR_EVER)
 
 
-def _in_a_thread(robot: Robot, activity: Activity, begin: Begin) -> None:
+def _in_a_thread(robot: Robot, activity: Activity, begin: FaultTimer) -> None:
     """Run in another thread, while the main thread only waits."""
     thread = threading.Thread(target=move, args=(robot, activity, begin))
     thread.start()
     thread.join()
 
 
-def _leaves(robot: Robot, activity: Activity, begin: Begin) -> None:
+def _leaves(robot: Robot, activity: Activity, begin: FaultTimer) -> None:
     """Exit between two calls, without closing the robot."""
     robot.stand(WARM_UP)
     begin.now("standing")
     _sleep(begin)
 
 
-def _leaves_at_once(robot: Robot, activity: Activity, begin: Begin) -> None:
+def _leaves_at_once(robot: Robot, activity: Activity, begin: FaultTimer) -> None:
     """Exit between two calls by `os._exit`, without any clean-up of Python."""
     robot.stand(WARM_UP)
     begin.now("standing")
@@ -63,12 +63,12 @@ def _leaves_at_once(robot: Robot, activity: Activity, begin: Begin) -> None:
     os._exit(7)
 
 
-def _sleep(begin: Begin) -> None:
+def _sleep(begin: FaultTimer) -> None:
     while not begin.due():
         time.sleep(0.01)
 
 
-def _nobody_reads(robot: Robot, activity: Activity, begin: Begin) -> None:
+def _nobody_reads(robot: Robot, activity: Activity, begin: FaultTimer) -> None:
     """Print to a pipe whose reader has closed it."""
     reading, writing = os.pipe()
     os.close(reading)
@@ -84,7 +84,7 @@ def _nobody_reads(robot: Robot, activity: Activity, begin: Begin) -> None:
 def _loop_over_ticks(fault: Callable[[], None] | None = None) -> Body:
     """Return a program whose controller is the body of a `for` loop, and fails there."""
 
-    def loop(robot: Robot, activity: Activity, begin: Begin) -> None:
+    def loop(robot: Robot, activity: Activity, begin: FaultTimer) -> None:
         robot.stand(WARM_UP)
         for _ in robot.ticks():
             begin.now(activity)

@@ -104,7 +104,7 @@ class Trial:
                 return found[0].time
         raise NotMeasuredError(f"the emulator said nothing of {kind!r}")
 
-    def hear(self, kind: str, seconds: float = PATIENCE) -> tuple[str, float]:
+    def wait_for_message(self, kind: str, seconds: float = PATIENCE) -> tuple[str, float]:
         """Wait for a message of a kind from the program; return its content and time, s.
 
         Raises:
@@ -125,7 +125,7 @@ class Trial:
             self.said = f"({what})"
         raise NotMeasuredError(f"the program did not get so far in {seconds:g} s")
 
-    def words(self) -> str:
+    def last_lines(self) -> str:
         """Return the last lines that program and guardian have printed."""
         with suppress(OSError):
             if not self.log.is_file():

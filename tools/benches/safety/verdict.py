@@ -10,7 +10,7 @@ from serial import SerialException
 from windup.robots import RobotDescription
 from windup.tools.benches.safety.independent import torque_of
 from windup.tools.benches.safety.processes import alive
-from windup.tools.benches.safety.row import Row
+from windup.tools.benches.safety.row import Ending
 from windup.tools.benches.safety.trial import AFTERWARDS, LONGEST, Trial
 
 READS, BETWEEN = 4, 0.3
@@ -40,7 +40,7 @@ class Verdict:
     words: str = ""
 
 
-def judge(trial: Trial, row: Row, robot: RobotDescription, t0: float) -> Verdict:
+def judge(trial: Trial, row: Ending, robot: RobotDescription, t0: float) -> Verdict:
     """Wait for the end of the trial and return its result."""
     gone = row.end in ("unknown", "unattended")
     seconds = 0.0 if gone or row.end == "frozen" else _undriven(trial, t0)
@@ -55,7 +55,7 @@ def judge(trial: Trial, row: Row, robot: RobotDescription, t0: float) -> Verdict
         found * (found != row.end),
     ]
     said, moment = ", ".join(filter(None, wrong)), trial.moment
-    words = trial.words() if said else ""
+    words = trial.last_lines() if said else ""
     return Verdict(moment.activity, moment.after, seconds, status, found, said, words)
 
 
@@ -69,7 +69,7 @@ def _undriven(trial: Trial, t0: float) -> float:
     return max([0.0, *(time - t0 for time in let_go)]) if trial.journal.driven == 0 else inf
 
 
-def _watched(trial: Trial, row: Row) -> bool:
+def _watched(trial: Trial, row: Ending) -> bool:
     """Return whether a guardian is still running after the time in which it should end."""
     until = time.monotonic() + (LONGEST if row.end == "off" else 0.0)
     while alive(trial.guardian) and time.monotonic() < until:
@@ -86,7 +86,7 @@ def _read(trial: Trial, robot: RobotDescription) -> dict[str, int | None]:
     return torque_of(robot, trial.port)
 
 
-def _found(trial: Trial, row: Row, robot: RobotDescription) -> str:
+def _found(trial: Trial, row: Ending, robot: RobotDescription) -> str:
     """Return the state that an independent client reads, and whether a guardian is left."""
     watched = _watched(trial, row)
     if row.end in ("unknown", "unattended"):

@@ -17,7 +17,7 @@ IN_THE_FILE: tuple[Fault, ...] = ("sign", "swap")
 
 
 @dataclass(frozen=True)
-class Broken:
+class FaultyJoints:
     """One fault.
 
     Attributes:
@@ -30,7 +30,9 @@ class Broken:
     joints: tuple[int, ...]
 
     @classmethod
-    def random(cls, robot: RobotDescription, fault: Fault, rng: np.random.Generator) -> "Broken":
+    def random(
+        cls, robot: RobotDescription, fault: Fault, rng: np.random.Generator
+    ) -> "FaultyJoints":
         """Return the fault at random joints.
 
         Faults in the file concern the legs: nothing reveals where other limbs really are. Ids are

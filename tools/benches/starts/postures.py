@@ -39,7 +39,7 @@ TURNS: dict[str, tuple[str, float]] = {
 
 
 @dataclass(frozen=True)
-class Placed:
+class StartPosture:
     """The initial state of a robot.
 
     Attributes:
@@ -47,17 +47,17 @@ class Placed:
         turn: Orientation of the base.
         lift: Height of its lowest point above the floor, m.
         held: Whether it is held until its servos are driven; else it lies, limp.
-        hangs: Whether its base is held for ever.
+        stays_held: Whether its base is held for ever.
     """
 
     pose: Array
     turn: Rotation
     lift: float = 0.0
     held: bool = True
-    hangs: bool = False
+    stays_held: bool = False
 
 
-def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator) -> Placed:
+def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator) -> StartPosture:
     """Return a random posture of a robot, with a random heading."""
     joints = robot.joints
     jitter = JITTER * rng.normal(size=len(joints))
@@ -70,18 +70,20 @@ def random_posture(robot: RobotDescription, kind: Kind, rng: np.random.Generator
         low = robot.stance if robot.crouch is None else robot.crouch
         depth = float(rng.uniform(0.3, 1.0)) if kind == "squatting" else 0.0
         pose, level = on_feet(robot, robot.stance + depth * (low - robot.stance) + jitter)
-        return Placed(inside(pose), around * level)
+        return StartPosture(inside(pose), around * level)
     if kind == "hanging":
         towards = float(rng.uniform(-np.pi, np.pi))
         angle = float(rng.uniform(0.0, LEAN))
         tilt = Rotation.from_rotvec([angle * np.cos(towards), angle * np.sin(towards), 0.0])
         pose = float(rng.uniform(0.0, 1.0)) * robot.stance + 2.0 * jitter
-        return Placed(inside(pose), around * tilt, lift=0.2, hangs=True)
+        return StartPosture(inside(pose), around * tilt, lift=0.2, stays_held=True)
     if kind == "sitting":
         pose = inside(np.asarray(find_gait(robot, "sit").graph.pose[-1]) + jitter)
-        return Placed(pose, around * _leaning_back(robot, pose))
+        return StartPosture(pose, around * _leaning_back(robot, pose))
     side = str(rng.choice([name for name, _ in SIDES], p=[share for _, share in SIDES]))
-    return Placed(inside(2.0 * jitter), around * Rotation.from_euler(*TURNS[side]), held=False)
+    return StartPosture(
+        inside(2.0 * jitter), around * Rotation.from_euler(*TURNS[side]), held=False
+    )
 
 
 def on_feet(robot: RobotDescription, pose: Array) -> tuple[Array, Rotation]:

@@ -17,20 +17,20 @@ from windup.sim_twin.twin import Twin
 from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics
 from windup.sim_twin.wire.world.bus_world import BusWorld
 from windup.tools.behaviours.rise import rise
-from windup.tools.benches.starts.faults import Broken, Fault
-from windup.tools.benches.starts.postures import KINDS, Kind, Placed, random_posture
+from windup.tools.benches.starts.faults import Fault, FaultyJoints
+from windup.tools.benches.starts.postures import KINDS, Kind, StartPosture, random_posture
 from windup.tools.robot.robot import Robot
 from windup.tools.testing.servo_bus import ServoBus
 
-LIE = 2.0
+SETTLE_TIME = 2.0
 """Time for limp limbs to come to rest, s."""
 STAND = 1.0
 """Duration of standing, s."""
 CLOSE = np.radians(8.0)
 """Largest deviation of a standing robot from its stance, rad: loads hold joints back."""
-CAUGHT_WITHIN = 15.0
+MAX_FAULT_MOTION = 15.0
 """Largest allowed motion of a joint with a fault, degrees."""
-SHOWS = np.radians(10.0)
+JAM_ANGLE = np.radians(10.0)
 """Smallest commanded motion that reveals a jammed joint, rad."""
 
 
@@ -65,7 +65,7 @@ def try_start(start: Start) -> dict[str, Any]:
     """
     truth, rng = load_robot(start.robot), start.generator()
     placed = random_posture(truth, start.kind, rng)
-    broken = None if start.fault is None else Broken.random(truth, start.fault, rng)
+    broken = None if start.fault is None else FaultyJoints.random(truth, start.fault, rng)
     row: dict[str, Any] = {**asdict(start), "joints": [], "moved": 0.0, "told": None}
     with ExitStack() as stack:
         bus = stack.enter_context(ServoBus(start.robot, seed=start.seed))
@@ -88,12 +88,14 @@ def try_start(start: Start) -> dict[str, Any]:
     return row
 
 
-def _does_harm(robot: Robot, broken: Broken, placed: Placed, row: dict[str, Any]) -> bool:
+def _does_harm(
+    robot: Robot, broken: FaultyJoints, placed: StartPosture, row: dict[str, Any]
+) -> bool:
     """Return whether a fault had an effect: a fall, a large motion, a joint that did not move."""
     way = np.abs(robot.description.stance - placed.pose)[list(broken.joints)].max()
     if broken.fault == "jam":
-        return bool(row["outcome"] != "done" or way > SHOWS)
-    return bool(row["outcome"] != "done" or row["moved"] > CAUGHT_WITHIN)
+        return bool(row["outcome"] != "done" or way > JAM_ANGLE)
+    return bool(row["outcome"] != "done" or row["moved"] > MAX_FAULT_MOTION)
 
 
 @dataclass
@@ -123,7 +125,7 @@ def _close(robot: Robot) -> None:
         robot.close()
 
 
-def _place(robot: Robot, world: BusWorld, placed: Placed) -> None:
+def _place(robot: Robot, world: BusWorld, placed: StartPosture) -> None:
     """Place the twin in a posture, and let limp limbs come to rest and sensors settle."""
     physics, twin = world.physics, robot.twin
     assert isinstance(physics, TwinPhysics)
@@ -132,18 +134,18 @@ def _place(robot: Robot, world: BusWorld, placed: Placed) -> None:
     mujoco.mj_forward(twin.model, twin.data)
     twin.data.qpos[2] += placed.lift - lowest_point(twin.model, twin.data)
     mujoco.mj_forward(twin.model, twin.data)
-    physics.held, physics.hangs = placed.held, placed.hangs
-    physics.grasp()
+    physics.held, physics.stays_held = placed.held, placed.stays_held
+    physics.store_held_pose()
     clock = robot.backend.clock
-    clock.wait_until(clock.now() + LIE)
+    clock.wait_until(clock.now() + SETTLE_TIME)
 
 
-def _break(world: BusWorld, broken: Broken) -> None:
+def _break(world: BusWorld, broken: FaultyJoints) -> None:
     """Jam a joint, or invert a motor; faults in the file need no change of the world."""
     physics = world.physics
     assert isinstance(physics, TwinPhysics)
     if broken.fault == "jam":
-        physics.grasp()
+        physics.store_held_pose()
         physics.jammed[list(broken.joints)] = True
     if broken.fault == "motor":
         for shaft in physics.shafts:

@@ -8,8 +8,8 @@ from typing import Any
 from windup.tools.reproduce.study.figure import Figure, Result, Results, Study, distinct
 from windup.tools.reproduce.study.page import Entry, page
 from windup.tools.reproduce.study.store import Store
-from windup.tools.terminal.output import plain
-from windup.tools.terminal.parallel import side_by_side
+from windup.tools.terminal.output import to_json_types
+from windup.tools.terminal.parallel import run_parallel
 from windup.tools.terminal.picture import load_pyplot
 from windup.tools.terminal.writing import writing
 
@@ -27,7 +27,7 @@ def reproduce(
     results = collect(study, figures, Store(folder / "data", study.sources), quick, jobs)
     entries = [_entry(pyplot, figure, results, folder, quick) for figure in figures]
     text = page(study, entries, quick=quick)
-    summary = json.dumps(plain(record(study, entries, quick=quick)), indent=2)
+    summary = json.dumps(to_json_types(record(study, entries, quick=quick)), indent=2)
     with writing(folder):
         (folder / "report.html").write_text(text, encoding="utf-8")
         (folder / "report.json").write_text(summary + "\n", encoding="utf-8")
@@ -44,9 +44,9 @@ def collect(
         if (kept := store.get(job)) is not None:
             results[job] = kept
     todo = [job for job in wanted if job not in results]
-    for job, result in side_by_side(study.work, todo, label="runs", jobs=jobs):
+    for job, result in run_parallel(study.work, todo, label="runs", jobs=jobs):
         store.put(job, result)
-        results[job] = plain(result)
+        results[job] = to_json_types(result)
     return results
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from windup.hal.errors import UsageError
 from windup.tools.reproduce.study.figure import Job, Result
-from windup.tools.terminal.output import plain
+from windup.tools.terminal.output import to_json_types
 from windup.tools.terminal.writing import writing
 
 SUFFIXES = (".py", ".toml", ".xml")
@@ -46,7 +46,7 @@ class Store:
     def put(self, job: Job, result: Result) -> None:
         """Keep the result of a job."""
         path = self._path(job)
-        text = json.dumps({"job": self._identity(job), "result": plain(result)})
+        text = json.dumps({"job": self._identity(job), "result": to_json_types(result)})
         with writing(path):
             path.with_suffix(".new").write_text(text, encoding="utf-8")
             replace(path.with_suffix(".new"), path)

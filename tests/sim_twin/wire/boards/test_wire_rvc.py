@@ -9,7 +9,7 @@ from windup.hal.geometry.gravity import STANDARD_GRAVITY
 from windup.hal.geometry.quaternion import euler_zxy
 from windup.hal.imu.bno08x_rvc import decode
 from windup.sim_twin.twin import Twin
-from windup.sim_twin.wire import drop_world
+from windup.sim_twin.wire import unregister_world
 from windup.sim_twin.wire.boards.rvc import encode_rvc
 
 EXAMPLE = "AA AA DE 01 00 92 FF 25 08 8D FE EC FF D1 03 00 00 00 E7"  # of the data sheet
@@ -80,7 +80,7 @@ def test_it_feels_the_twin_and_shares_its_clock() -> None:
         angles = np.frombuffer(frame[3:9], "<i2") / 100.0
         assert angles == pytest.approx([30.0, 10.0, -20.0], abs=1.0)
         assert body.now == imu.now
-    drop_world("rvc")
+    unregister_world("rvc")
 
 
 def test_faults_hit_it_too() -> None:

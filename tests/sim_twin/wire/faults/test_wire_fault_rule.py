@@ -27,7 +27,7 @@ BENCH = "twin://bench?servos=STS3215:1-4&faults="
         ("heat:degrees=inf", "heat: degrees inf: give a finite number of degrees C"),
         ("imu_spin:degrees=3", "imu_spin: takes no degrees; only heat does"),
         ("drop:speed=3", "drop: takes no speed; only imu_spin does"),
-        ("echo:ids=3", "echo: takes no ids; it concerns all that the host sends"),
+        ("echo:ids=3", "echo: takes no ids; it applies to all bytes that the host sends"),
     ],
 )
 def test_a_key_that_means_nothing_is_refused_by_name(text: str, message: str) -> None:
@@ -38,10 +38,10 @@ def test_a_key_that_means_nothing_is_refused_by_name(text: str, message: str) ->
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("drop:ids=99", "drop: nobody has id 99; there are 1, 2, 3, 4"),
+        ("drop:ids=99", "drop: no servo has id 99; ids here: 1, 2, 3, 4"),
         ("drop:bus=legs", "drop: unknown bus 'legs'; known: bench"),
-        ("imu_frozen", "imu_frozen: there is no IMU that it could hit"),
-        ("button", "button: there is no OpenCR that it could hit"),
+        ("imu_frozen", "imu_frozen: there is no IMU in this world"),
+        ("button", "button: there is no OpenCR in this world"),
     ],
 )
 def test_a_fault_of_nobody_is_refused_when_the_world_is_built(text: str, message: str) -> None:
@@ -82,7 +82,7 @@ def test_a_text_for_a_world_that_runs_means_its_events_now() -> None:
         ("dorp:1", "unknown kind 'dorp'; did you mean 'drop'?"),
         ("drop:2", "drop: rate 2: give 0 .. 1"),
         ("drop:x", "'drop:x': a rate from 0 to 1, keys, ids up to 253, as in"),
-        ("drop:0.1:at=3", "a rate or a time, not both"),
+        ("drop:0.1:at=3", "give a rate or a time, not both"),
         ("drop:0.1:id=3", "'drop:0.1:id=3': unknown key 'id'; did you mean 'ids'?"),
         ("unplug:at=-1", "unplug: at -1: give 0 .. 1000000000 s"),
     ],

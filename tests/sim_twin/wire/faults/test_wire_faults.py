@@ -7,7 +7,7 @@ import pytest
 import serial
 
 from tests.sim_twin.wire.wire_host1 import PING, READ, Host1, open_host1, statuses
-from windup.sim_twin.wire import drop_world
+from windup.sim_twin.wire import unregister_world
 from windup.sim_twin.wire.faults.fault_rule import KINDS, make_rule
 from windup.sim_twin.wire.faults.faults import Faults
 from windup.sim_twin.wire.protocols.frames import Frame, Parser
@@ -211,7 +211,7 @@ def test_what_befalls_servos_can_come_by_rate_too(kind: str) -> None:
             got = host.port.read(ANSWER)
             assert whole(got) if kind == "overload" else got == b""
         assert faults_of(host).counts[kind] == 1
-    drop_world(kind)
+    unregister_world(kind)
 
 
 def test_unplugging_kills_the_port_and_plugging_in_lets_it_be_opened_again() -> None:
@@ -244,7 +244,7 @@ def test_an_adapter_that_never_comes_back() -> None:
         faults_of(host).unplug(at=0.1, seconds=math.inf)
         host.wait(100.0)
         assert not host.port.bus.plugged
-    drop_world("gone")
+    unregister_world("gone")
 
 
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "button"])
@@ -258,7 +258,7 @@ def test_the_same_seed_brings_the_same_bytes(kind: str) -> None:
             except serial.SerialException:
                 got.append(b"unplugged")
             got.append(repr([*faults_of(host).hits]).encode())
-        drop_world("again")
+        unregister_world("again")
         return got
 
     one, other = run(), run()

@@ -10,7 +10,7 @@ from windup.hal.imu.bno08x_rvc import decode
 from windup.hal.imu.opencr import OpenCr
 from windup.hal.joints import Array
 from windup.sim_twin.twin import Twin
-from windup.sim_twin.wire import drop_world
+from windup.sim_twin.wire import unregister_world
 
 BOARD = 200
 MOTION = bytes((30, 0, 20, 0))
@@ -98,4 +98,4 @@ def test_the_buses_of_a_world_fail_each_with_its_own_imu() -> None:
         host.wait(0.2)
         assert len(host.ask(BOARD, 1)) == 1
         assert host.world.buses["imu"].imu is not None and host.world.buses["imu"].imu.silent
-    drop_world("both")
+    unregister_world("both")

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pytest
 
 from tests.sim_twin.wire.wire_host import Host, open_host
-from windup.sim_twin.wire.protocols.frames import BROADCAST, encode, seal
+from windup.sim_twin.wire.protocols.frames import BROADCAST, encode, with_checksum
 from windup.sim_twin.wire.servos.register_file import BAD_CRC, OK
 
 GROUP = 100
@@ -64,7 +64,7 @@ def test_a_wrong_crc_is_answered_by_its_id_and_not_obeyed(host: Host) -> None:
     frame = encode(2, WRITE, LED + b"\1")
     wrong = frame[:-1] + bytes((frame[-1] ^ 1,))
     answer = host.raw(wrong)
-    assert answer == seal(bytes.fromhex("FFFFFD00 02 0400 55 03 0000")) and BAD_CRC == 3
+    assert answer == with_checksum(bytes.fromhex("FFFFFD00 02 0400 55 03 0000")) and BAD_CRC == 3
     assert host.read(2, "led") == 0
     for level in (0, 1):
         host.ask(2, WRITE, bytes((68, 0, level)))

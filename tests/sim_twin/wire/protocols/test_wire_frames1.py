@@ -4,7 +4,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from windup.sim_twin.wire.protocols.frames1 import Frame1, Frame1Error, Parser1, encode, seal
+from windup.sim_twin.wire.protocols.frames1 import (
+    Frame1,
+    Frame1Error,
+    Parser1,
+    encode,
+    with_checksum,
+)
 
 # ROBOTIS e-Manual, protocol 1; Feetech's manual of its serial protocol.
 MANUALS = [
@@ -83,5 +89,5 @@ def test_a_third_ff_before_the_id_is_skipped() -> None:
 def test_sealing_makes_any_frame_good() -> None:
     frame = bytearray(encode(1, 0, b"\1\2"))
     frame[2] = 9
-    (found,) = Parser1().feed(seal(bytes(frame)))
+    (found,) = Parser1().feed(with_checksum(bytes(frame)))
     assert isinstance(found, Frame1) and found.identifier == 9

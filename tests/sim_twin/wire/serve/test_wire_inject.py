@@ -68,7 +68,7 @@ def test_times_count_from_the_order_and_orders_come_one_after_the_other(tmp_path
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [("unplg", "unknown kind 'unplg'"), ("reset:ids=9", "nobody has id 9"), ("button", "OpenCR")],
+    [("unplg", "unknown kind 'unplg'"), ("reset:ids=9", "no servo has id 9"), ("button", "OpenCR")],
 )
 def test_what_cannot_happen_is_said_to_who_orders_it(text: str, message: str) -> None:
     with (

@@ -3,7 +3,7 @@
 import time
 
 from windup.sim_twin.wire import build_world, parse_address
-from windup.sim_twin.wire.serve.journal import Event, Watcher
+from windup.sim_twin.wire.serve.journal import Event, WorldWatcher
 from windup.sim_twin.wire.world.bus_world import BusWorld
 
 TORQUE = 64
@@ -13,14 +13,14 @@ def bench() -> BusWorld:
     return build_world(parse_address("twin://bench?servos=XM430-W350:1-3&imu=rvc"))
 
 
-def look(watcher: Watcher, world: BusWorld, until: float) -> None:
+def look(watcher: WorldWatcher, world: BusWorld, until: float) -> None:
     world.advance(until)
     watcher.update(world.now)
 
 
 def test_a_world_in_which_nothing_happens_has_no_events() -> None:
     world, seen = bench(), list[Event]()
-    watcher = Watcher(world, events=seen.append)
+    watcher = WorldWatcher(world, events=seen.append)
     for step in range(10):
         look(watcher, world, 0.1 * step)
     assert seen == []
@@ -28,7 +28,7 @@ def test_a_world_in_which_nothing_happens_has_no_events() -> None:
 
 def test_driven_motors_are_counted() -> None:
     world, seen = bench(), list[Event]()
-    watcher = Watcher(world, events=seen.append)
+    watcher = WorldWatcher(world, events=seen.append)
     for device in world.devices[:2]:
         device.write(TORQUE, b"\x01", world.now)
         watcher.update(world.now)
@@ -41,7 +41,7 @@ def test_driven_motors_are_counted() -> None:
 
 def test_adapters_and_supply_come_and_go_with_their_names_and_dates() -> None:
     world, seen = bench(), list[Event]()
-    watcher = Watcher(world, events=seen.append)
+    watcher = WorldWatcher(world, events=seen.append)
     world.faults.unplug(at=0.15, seconds=0.1, bus="imu").brown_out(at=0.35, seconds=0.1)
     before = time.monotonic()
     for step in range(6):
@@ -56,7 +56,7 @@ def test_adapters_and_supply_come_and_go_with_their_names_and_dates() -> None:
 
 def test_the_journal_says_at_first_how_many_are_driven_and_then_what_changes() -> None:
     world, seen = bench(), list[tuple[float, int]]()
-    watcher = Watcher(world, journal=lambda now, driven: seen.append((now, driven)))
+    watcher = WorldWatcher(world, journal=lambda now, driven: seen.append((now, driven)))
     look(watcher, world, 0.1)
     world.devices[0].write(TORQUE, b"\x01", world.now)
     look(watcher, world, 0.2)

@@ -169,7 +169,7 @@ def test_a_link_that_somebody_has_changed_stays_behind(tmp_path: Path) -> None:
 
 def test_a_file_and_a_folder_that_is_not_there_are_told(tmp_path: Path) -> None:
     (tmp_path / "bus").write_text("mine")
-    with pytest.raises(UsageError, match="exists and is not the link of an emulator"):
+    with pytest.raises(UsageError, match="exists and is not the link of an emulated port"):
         Pty(tmp_path / "bus")
     with pytest.raises(UsageError, match=r"cannot make .*: No such file or directory"):
         Pty(tmp_path / "nowhere" / "bus")

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from windup.sim_twin.wire.protocols.frames import encode
-from windup.sim_twin.wire.serve.outlet import ON_THE_WIRE, WAITING, Outlet
+from windup.sim_twin.wire.serve.outlet import ON_THE_WIRE, WAITING, BusOutlet
 from windup.sim_twin.wire.world.address import parse_address
 from windup.sim_twin.wire.world.build import build_world
 from windup.sim_twin.wire.world.bus_world import BusWorld
@@ -45,13 +45,13 @@ def world() -> BusWorld:
     return build_world(parse_address("twin://bench?servos=XM430-W350:1&return_delay=0"))
 
 
-def outlet_of(world: BusWorld, program: Program) -> Outlet:
-    outlet = Outlet(world.bus(), lambda: program)
-    outlet.settle()
+def outlet_of(world: BusWorld, program: Program) -> BusOutlet:
+    outlet = BusOutlet(world.bus(), lambda: program)
+    outlet.update_link()
     return outlet
 
 
-def serve(world: BusWorld, outlet: Outlet, seconds: float) -> None:
+def serve(world: BusWorld, outlet: BusOutlet, seconds: float) -> None:
     """Let time pass as an emulator does."""
     end = world.now + seconds
     while world.now < end:
@@ -91,8 +91,8 @@ def test_what_waited_is_lost_with_the_adapter(world: BusWorld) -> None:
     program = Program(HEADERS)
     outlet = outlet_of(world, program)
     outlet.receive()
-    outlet.bus.plug(False)
-    outlet.settle()
+    outlet.bus.set_plugged(False)
+    outlet.update_link()
     assert not outlet.waiting and outlet.descriptors() == []
 
 

@@ -4,14 +4,14 @@ import serial
 
 from tests.sim_twin.wire.wire_host import open_host
 from windup.hal.errors import UnknownNameError, UsageError
-from windup.sim_twin.wire import drop_world, find_world, parse_address, put_world
+from windup.sim_twin.wire import find_world, parse_address, register_world, unregister_world
 from windup.sim_twin.wire.boards.opencr import ACCELERATION_UNIT, GYRO_UNIT, OpenCr
 from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.imu.imu import RestingImu
 from windup.sim_twin.wire.protocols.dynamixel2 import Dynamixel2
 from windup.sim_twin.wire.protocols.frames import encode
 from windup.sim_twin.wire.schedule import Schedule
-from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
+from windup.sim_twin.wire.world.bus_world import BenchPhysics, BusWorld
 
 
 @pytest.mark.parametrize(
@@ -27,7 +27,7 @@ from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
         ("twin://bench?faults=drop:2", "rate 2: give 0 .. 1"),
         ("twin://bench?bus=legs", "unknown bus 'legs'"),
         ("twin://opp3", "unknown robot 'opp3'; did you mean 'op3'?"),
-        ("twin://human", "has no servos on a wire"),
+        ("twin://human", "has no servos on a bus"),
     ],
 )
 def test_a_wrong_address_says_what_is_wrong(url: str, message: str) -> None:
@@ -47,7 +47,7 @@ def test_two_opens_of_one_world_share_it_and_its_time() -> None:
     with open_host("twin://bench?world=shared") as again:
         assert again.read(1, "led") == 1
         assert find_world("shared") is again.world
-    drop_world("shared")
+    unregister_world("shared")
     with pytest.raises(UnknownNameError):
         find_world("shared")
 
@@ -62,7 +62,7 @@ def test_a_world_without_a_name_ends_with_its_last_port() -> None:
 def test_one_world_has_one_clock() -> None:
     with open_host("twin://bench?world=clocked"), pytest.raises(serial.SerialException):
         serial.serial_for_url("twin://bench?world=clocked&clock=real")
-    drop_world("clocked")
+    unregister_world("clocked")
 
 
 def test_writes_only_schedule_and_reads_let_time_pass() -> None:
@@ -85,7 +85,7 @@ def test_writes_only_schedule_and_reads_let_time_pass() -> None:
 def test_a_read_that_can_never_end_is_an_error() -> None:
     with open_host() as host:
         host.port.timeout = None
-        with pytest.raises(serial.SerialException, match="nobody answers"):
+        with pytest.raises(serial.SerialException, match="without an answer"):
             host.port.read(1)
 
 
@@ -102,7 +102,7 @@ def test_two_buses_do_not_wait_for_each_other() -> None:
             assert len(one.port.read(420)) == 420
             assert len(two.port.read(420)) == 420
             assert one.now - began == pytest.approx((len(request) + 420) * 1e-5)
-    drop_world("a")
+    unregister_world("a")
 
 
 def test_a_closed_port_says_so() -> None:
@@ -142,7 +142,7 @@ def test_the_opencr_reports_its_imu_and_switches_the_servo_power() -> None:
         servo, schedule = host.servo(1), Schedule()
         board = OpenCr(Turning(), [servo], supply=11.3)
         bus = Bus("body", [servo, board], Dynamixel2(), schedule)
-        put_world("opencr", BusWorld(Bench([host.shaft(1)]), schedule, {"body": bus}))
+        register_world("opencr", BusWorld(BenchPhysics([host.shaft(1)]), schedule, {"body": bus}))
     with open_host("twin://anything?world=opencr") as host:
         board.buttons = 2
         assert host.ask(1, 1) == []  # no power
@@ -157,4 +157,4 @@ def test_the_opencr_reports_its_imu_and_switches_the_servo_power() -> None:
         assert host.ask(1, 1) == []  # it boots
         host.wait(0.4)
         assert len(host.ask(1, 1)) == 1
-    drop_world("opencr")
+    unregister_world("opencr")

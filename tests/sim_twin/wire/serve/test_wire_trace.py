@@ -67,7 +67,7 @@ def test_less_than_recorded_is_a_difference_too(trace: Path) -> None:
     bus = ServoBus("bench", servos=SERVOS)
     bus.check(trace)
     talk(bus, reads=19)
-    with pytest.raises(TraceError, match="nothing happens any more"):
+    with pytest.raises(TraceError, match="no further bytes"):
         bus.close()
 
 

@@ -1,11 +1,11 @@
 import pytest
 
 from windup.hal.families import servo_model, servo_names
-from windup.hal.servos.servo_model import OwnLimits
+from windup.hal.servos.servo_model import ProtectionLimits
 from windup.sim_twin.wire.servos import dynamixel1_tables, feetech_tables, x_series
 
 
-def factory_limits(name: str) -> OwnLimits:
+def factory_limits(name: str) -> ProtectionLimits:
     """Return what the limit registers of an emulated servo hold when it is new."""
     if name in x_series.MODELS:
         get = x_series.MODELS[name].registers().get
@@ -17,7 +17,7 @@ def factory_limits(name: str) -> OwnLimits:
     heat = "max_temperature" if plain else "temperature_limit"
     low, high = ("min_voltage", "max_voltage") if plain else ("min_voltage_limit",
                                                               "max_voltage_limit")  # fmt: skip
-    return OwnLimits(float(get(heat)), get(low) / 10.0, get(high) / 10.0)
+    return ProtectionLimits(float(get(heat)), get(low) / 10.0, get(high) / 10.0)
 
 
 @pytest.mark.parametrize("name", servo_names())

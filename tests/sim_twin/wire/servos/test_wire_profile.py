@@ -9,18 +9,18 @@ def test_a_trapezoid_takes_distance_over_top_and_top_over_acceleration() -> None
     profile = Profile(0.0, 0.0, 10.0, 2.0, 4.0)
     assert profile.kind == TRAPEZOIDAL
     assert profile.duration == pytest.approx(10.0 / 2.0 + 2.0 / 4.0)
-    assert profile.at(0.5) == pytest.approx((0.5, 2.0))
-    assert profile.at(2.75) == pytest.approx((5.0, 2.0))
-    assert profile.at(9.0) == (10.0, 0.0)
+    assert profile.state_at(0.5) == pytest.approx((0.5, 2.0))
+    assert profile.state_at(2.75) == pytest.approx((5.0, 2.0))
+    assert profile.state_at(9.0) == (10.0, 0.0)
 
 
 def test_short_ways_are_triangles_and_a_missing_limit_a_rectangle_or_a_step() -> None:
     assert Profile(0.0, 0.0, 1.0, 9.0, 4.0).kind == TRIANGULAR
     assert Profile(0.0, 0.0, 1.0, 9.0, 4.0).duration == pytest.approx(1.0)
     assert Profile(0.0, 0.0, -3.0, 2.0, 0.0).kind == RECTANGULAR
-    assert Profile(0.0, 0.0, -3.0, 2.0, 0.0).at(0.75) == (-1.5, -2.0)
+    assert Profile(0.0, 0.0, -3.0, 2.0, 0.0).state_at(0.75) == (-1.5, -2.0)
     assert Profile(0.0, 0.0, 1.0, 0.0, 4.0).kind == STEP
-    assert Profile(0.0, 0.0, 1.0, 0.0, 4.0).at(0.0) == (1.0, 0.0)
+    assert Profile(0.0, 0.0, 1.0, 0.0, 4.0).state_at(0.0) == (1.0, 0.0)
 
 
 def test_a_timed_profile_takes_its_time() -> None:
@@ -38,15 +38,15 @@ def test_from_any_start_it_is_smooth_within_its_limits_and_ends_at_the_goal(
     if start == goal:
         return
     dt = profile.duration / 400
-    before = profile.at(0.0)
+    before = profile.state_at(0.0)
     assert before == pytest.approx((start, velocity), abs=1e-6)
     for k in range(1, 400):
-        position, speed = profile.at(k * dt)
+        position, speed = profile.state_at(k * dt)
         assert abs(speed) <= max(top, abs(velocity)) + 1e-6
         assert abs(speed - before[1]) <= acceleration * dt + 1e-6
         assert position - before[0] == pytest.approx(
             0.5 * dt * (speed + before[1]), abs=1e-6 + acceleration * dt * dt
         )
         before = (position, speed)
-    assert profile.at(profile.duration) == pytest.approx((goal, 0.0), abs=1e-6)
+    assert profile.state_at(profile.duration) == pytest.approx((goal, 0.0), abs=1e-6)
     assert before[0] == pytest.approx(goal, abs=1e-6 + (abs(before[1]) + acceleration * dt) * dt)

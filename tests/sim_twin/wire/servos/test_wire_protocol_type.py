@@ -17,7 +17,7 @@ from tests.sim_twin.wire.wire_host import Host
 from windup.hal.families.configurator import SdkPort
 from windup.hal.port.open_port import open_port
 from windup.sim_twin.wire.servos.health import OVERHEATING
-from windup.sim_twin.wire.servos.old_errors import ANGLE_LIMIT, INSTRUCTION, RANGE
+from windup.sim_twin.wire.servos.protocol1_errors import ANGLE_LIMIT, INSTRUCTION, RANGE
 
 PROTOCOL, SHADOW, TORQUE, LED, GOAL, POSITION, FURTHER = 13, 12, 64, 65, 116, 132, 634
 OLD, NEW = Protocol1PacketHandler(), Protocol2PacketHandler()

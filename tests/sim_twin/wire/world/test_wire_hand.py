@@ -13,7 +13,7 @@ from windup.sim_twin.wire.protocols.frames import encode
 from windup.sim_twin.wire.shafts.twin_shaft import TwinPhysics
 from windup.sim_twin.wire.world.address import parse_address
 from windup.sim_twin.wire.world.build import build_world
-from windup.sim_twin.wire.world.hand import Swing, parse_hands
+from windup.sim_twin.wire.world.hand import HandMotion, parse_hands
 
 KNEE = 13  # the id of op3's right knee
 IDS = tuple(range(1, 21))
@@ -21,8 +21,8 @@ IDS = tuple(range(1, 21))
 
 def test_a_text_says_joints_degrees_and_seconds() -> None:
     assert parse_hands(" r_knee:90:3s , 7:-180:0.5 ") == [
-        Swing("r_knee", math.pi / 2.0, 3.0),
-        Swing("7", -math.pi, 0.5),
+        HandMotion("r_knee", math.pi / 2.0, 3.0),
+        HandMotion("7", -math.pi, 0.5),
     ]
     assert parse_hands("") == []
 
@@ -79,7 +79,7 @@ def test_a_robots_joint_is_turned_as_its_file_counts_angles(physics: str) -> Non
         grip = host.world.grips["r_knee"]
         others = {name: other.angle() for name, other in host.world.grips.items()}
         before, counts = grip.angle(), host.read(KNEE, "present_position")
-        host.world.hand(Swing("r_knee", math.radians(20.0), 1.0))
+        host.world.hand(HandMotion("r_knee", math.radians(20.0), 1.0))
         host.wait(1.0)
         assert grip.angle() - before == pytest.approx(math.radians(20.0), abs=1e-4)
         moved = abs(host.read(KNEE, "present_position") - counts)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from tests.sim_twin.wire.wire_host1 import PING, open_host1, statuses
 from windup.hal.families import servo_model
-from windup.sim_twin.wire import drop_world, put_world
+from windup.sim_twin.wire import register_world, unregister_world
 from windup.sim_twin.wire.bus.bus import Bus
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.protocols.frames import encode as encode2
@@ -16,7 +16,7 @@ from windup.sim_twin.wire.schedule import Schedule
 from windup.sim_twin.wire.shafts.shaft import InertiaShaft
 from windup.sim_twin.wire.world.address import parse_address
 from windup.sim_twin.wire.world.build import build_world
-from windup.sim_twin.wire.world.bus_world import Bench, BusWorld
+from windup.sim_twin.wire.world.bus_world import BenchPhysics, BusWorld
 from windup.sim_twin.wire.world.families import make_protocol, make_servo
 from windup.sim_twin.wire.world.own_emulations import PROTOCOLS
 
@@ -32,11 +32,11 @@ def mixed() -> BusWorld:
         servo = make_servo(name, shafts[-1], 1, 1_000_000, supply, 0)
         devices: list[Device] = [servo]
         buses[bus] = Bus(bus, devices, make_protocol(PROTOCOLS[name]), schedule)
-    return BusWorld(Bench(shafts), schedule, buses)
+    return BusWorld(BenchPhysics(shafts), schedule, buses)
 
 
 def test_four_families_on_four_buses_of_one_world() -> None:
-    put_world("mix", mixed())
+    register_world("mix", mixed())
     try:
         for bus in ("legs", "arms", "face"):
             with open_host1(f"twin://any?world=mix&bus={bus}") as host:
@@ -46,11 +46,11 @@ def test_four_families_on_four_buses_of_one_world() -> None:
             assert len(host.raw(encode2(1, 1))) == 14
             assert host.raw(encode(1, 1)) == b""
     finally:
-        drop_world("mix")
+        unregister_world("mix")
 
 
 def test_buses_of_different_protocols_do_not_wait_for_each_other() -> None:
-    put_world("mix", mixed())
+    register_world("mix", mixed())
     try:
         with (
             open_host1("twin://any?world=mix&bus=legs") as legs,
@@ -62,14 +62,17 @@ def test_buses_of_different_protocols_do_not_wait_for_each_other() -> None:
             assert len(legs.port.read(12)) == len(arms.port.read(12)) == 12
             assert legs.now - began == pytest.approx(20e-5)
     finally:
-        drop_world("mix")
+        unregister_world("mix")
 
 
 @pytest.mark.parametrize(
     ("url", "message"),
     [
-        ("twin://bench?servos=STS3215:1,AX-12A:2", "AX-12A 2 speaks dynamixel1, its bus feetech"),
-        ("twin://bench?servos=STS3215:1&baud=2000000", "has no baud rate of 2000000"),
+        (
+            "twin://bench?servos=STS3215:1,AX-12A:2",
+            "AX-12A 2 uses protocol dynamixel1, its bus feetech",
+        ),
+        ("twin://bench?servos=STS3215:1&baud=2000000", "does not support 2000000 baud"),
         ("twin://bench?servos=STS3216:1", "unknown servo model 'STS3216'; did you mean"),
     ],
 )
@@ -80,7 +83,7 @@ def test_what_cannot_hang_on_a_bus_is_refused(url: str, message: str) -> None:
 
 def test_a_robot_may_be_shafts_alone_in_its_stance() -> None:
     world = build_world(parse_address("twin://op3?physics=inertia"))
-    assert isinstance(world.physics, Bench)
+    assert isinstance(world.physics, BenchPhysics)
     assert len(world.physics.shafts) == 20
     assert any(shaft.position for shaft in world.physics.shafts)
 

@@ -37,7 +37,7 @@ def test_a_plants_servos_are_stiffer_and_have_its_supply() -> None:
     assert world.devices[0].supply == 10.8
     mount = OP3.servos[0]
     assert mount is not None
-    TwinShaft(twin, 0, mount).drive(0.0, 10.0, 10.8)
+    TwinShaft(twin, 0, mount).hold_goal(0.0, 10.0, 10.8)
     assert twin.model.actuator_gainprm[0, KP] == pytest.approx(12.0)
 
 
@@ -53,5 +53,5 @@ def test_a_plants_mass_is_heavier() -> None:
 
 @pytest.mark.parametrize("url", ["twin://op3?physics=inertia", "twin://bench?servos=XM430-W350:1"])
 def test_what_stands_on_no_ground_has_no_other_ground(url: str) -> None:
-    with pytest.raises(UsageError, match="only a robot with physics=mujoco"):
+    with pytest.raises(UsageError, match="need a robot with physics=mujoco"):
         build_world(parse_address(url), Environment(Ground(slope=1.0)))

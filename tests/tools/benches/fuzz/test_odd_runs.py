@@ -27,10 +27,10 @@ def test_an_odd_run_ends_with_a_status_and_without_a_traceback(seed: int) -> Non
 def test_a_seed_makes_the_same_mistakes_again() -> None:
     toml, mjcf = (OP3 / "robot.toml").read_text(), (OP3 / "model.xml").read_text()
     for seed in range(20):
-        dice, again = random.Random(seed), random.Random(seed)
-        assert broken_toml(dice, toml) == broken_toml(again, toml)
-        assert broken_mjcf(dice, mjcf) == broken_mjcf(again, mjcf)
-        assert odd_line(dice, "op3", Path("x")) == odd_line(again, "op3", Path("x"))
+        rng, again = random.Random(seed), random.Random(seed)
+        assert broken_toml(rng, toml) == broken_toml(again, toml)
+        assert broken_mjcf(rng, mjcf) == broken_mjcf(again, mjcf)
+        assert odd_line(rng, "op3", Path("x")) == odd_line(again, "op3", Path("x"))
 
 
 def test_every_kind_of_mistake_changes_a_file() -> None:

@@ -5,8 +5,8 @@ from multiprocessing.connection import Connection
 import pytest
 
 from windup.sim_twin.wire.serve.journal import Event
-from windup.tools.benches.safety.begin import Begin
 from windup.tools.benches.safety.emulated import Journal
+from windup.tools.benches.safety.fault_timer import FaultTimer
 
 Pipe = tuple[Connection, Connection]
 
@@ -42,7 +42,7 @@ def test_an_emulator_that_is_gone_says_nothing_more(pipe: Pipe) -> None:
 
 
 def test_a_fault_is_due_after_the_activity_has_begun_and_is_told_once(pipe: Pipe) -> None:
-    begin = Begin(pipe[1], 0.0)
+    begin = FaultTimer(pipe[1], 0.0)
     assert not begin.due()
     began = time.monotonic()
     begin.now("walking")

@@ -6,7 +6,7 @@ from windup.hal.guard import CROUCH_SECONDS
 from windup.tools.benches.safety import bench
 from windup.tools.benches.safety.bench import _moments, measure_safety
 from windup.tools.benches.safety.moment import Moment
-from windup.tools.benches.safety.row import HANG, STOP, Row
+from windup.tools.benches.safety.row import HANG, STOP, Ending
 from windup.tools.benches.safety.rows import ROWS
 from windup.tools.benches.safety.trial import NotMeasuredError
 from windup.tools.benches.safety.verdict import Verdict
@@ -47,7 +47,7 @@ def test_what_is_not_safe_is_counted_told_and_ends_with_status_1(
 ) -> None:
     said = iter(["", "driven for 0.31 s"])
 
-    def one(name: str, row: Row, moment: Moment) -> Verdict:
+    def one(name: str, row: Ending, moment: Moment) -> Verdict:
         wrong = next(said)
         return Verdict(moment.activity, moment.after, 0.31 if wrong else 0.1, 130, "off", wrong)
 
@@ -63,7 +63,7 @@ def test_a_program_that_was_not_under_way_is_tried_again_and_counted(
 ) -> None:
     tries: list[Moment] = []
 
-    def one(name: str, row: Row, moment: Moment) -> Verdict:
+    def one(name: str, row: Ending, moment: Moment) -> Verdict:
         tries.append(moment)
         if len(tries) == 1:
             raise NotMeasuredError("it fell")
@@ -77,7 +77,7 @@ def test_a_program_that_was_not_under_way_is_tried_again_and_counted(
 def test_what_could_not_be_measured_is_not_met_and_is_said(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    def one(name: str, row: Row, moment: Moment) -> Verdict:
+    def one(name: str, row: Ending, moment: Moment) -> Verdict:
         if name == "duck":
             raise NotMeasuredError("it fell")
         return Verdict(moment.activity, moment.after, 0.1, 130, "off", "")
@@ -96,7 +96,7 @@ def test_what_could_not_be_measured_is_not_met_and_is_said(
 def test_nothing_planned_is_not_met_and_all_measured_and_safe_is(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def one(name: str, row: Row, moment: Moment) -> Verdict:
+    def one(name: str, row: Ending, moment: Moment) -> Verdict:
         return Verdict(moment.activity, moment.after, 0.1, 130, "off", "")
 
     monkeypatch.setattr(bench, "_one", one)

@@ -31,6 +31,6 @@ def test_somebody_switches_the_robot_off(name: str, robot: str) -> None:
     row = next(row for row in ROWS if row.name == name)
     with trial(robot, row, Moment("standing", 0.1)) as running:
         under_way(running)
-        verdict = judge(running, row, load_robot(robot), row.do(running))
+        verdict = judge(running, row, load_robot(robot), row.carry_out(running))
     assert verdict.status in row.status
     assert verdict.found == row.end

@@ -8,7 +8,7 @@ import pytest
 from windup.control.kinematics.legs import legs_of
 from windup.robots import load_robot
 from windup.tools.benches.random_starts import measure_starts
-from windup.tools.benches.starts.faults import Broken
+from windup.tools.benches.starts.faults import FaultyJoints
 from windup.tools.benches.starts.postures import KINDS, kinds_of, on_feet, random_posture
 from windup.tools.benches.starts.trial import Start, try_start
 
@@ -44,8 +44,8 @@ def test_who_cannot_sit_does_not() -> None:
 def test_a_wrong_sign_and_swapped_ids_stand_in_a_copy_of_the_file(tmp_path: Path) -> None:
     op3 = load_robot("op3")
     knees = op3.joints.index("l_knee"), op3.joints.index("r_knee")
-    flipped = load_robot(Broken("sign", knees[:1]).folder(op3, tmp_path / "a"))
-    swapped = load_robot(Broken("swap", knees).folder(op3, tmp_path / "b"))
+    flipped = load_robot(FaultyJoints("sign", knees[:1]).folder(op3, tmp_path / "a"))
+    swapped = load_robot(FaultyJoints("swap", knees).folder(op3, tmp_path / "b"))
     for joint, (right, wrong, other) in enumerate(
         zip(op3.servos, flipped.servos, swapped.servos, strict=True)
     ):
@@ -58,7 +58,7 @@ def test_a_wrong_sign_and_swapped_ids_stand_in_a_copy_of_the_file(tmp_path: Path
 def test_faults_of_the_file_are_in_legs() -> None:
     duck = load_robot("duck")
     for seed in range(20):
-        broken = Broken.random(duck, "swap", np.random.default_rng(seed))
+        broken = FaultyJoints.random(duck, "swap", np.random.default_rng(seed))
         names = [duck.joints.names[joint] for joint in broken.joints]
         assert len(set(names)) == 2 and not any("head" in name or "neck" in name for name in names)
 
