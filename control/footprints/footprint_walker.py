@@ -12,8 +12,8 @@ from windup.control.footprints.directed_file import ServoDirected
 from windup.control.footprints.footprints import Footprint, between, onto, seen_from
 from windup.control.footprints.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
 from windup.control.footprints.swing import gaussian_progress, lift, smooth_progress
-from windup.control.kinematics.body import Body
 from windup.control.kinematics.limb_ik import LimbIk, Pose
+from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.rotation import turn, way_round
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
@@ -26,8 +26,7 @@ class FootprintWalker(LegMotion):
 
     Args:
         joints: The robot's joints.
-        body: Kinematics of the robot.
-        base: Name of the body with the free joint.
+        state: The robot's state.
         limbs: Inverse kinematics of the two legs, in the order of the soles.
         stance: (n,) rad, the pose to start from; joints outside the legs keep it.
         prints: Footprints to walk, in order.
@@ -45,14 +44,13 @@ class FootprintWalker(LegMotion):
     def __init__(
         self,
         joints: Joints,
-        body: Body,
-        base: str,
+        state: RobotState,
         limbs: Sequence[LimbIk],
         stance: Array,
         prints: Sequence[Footprint],
         how: ServoDirected,
     ) -> None:
-        super().__init__(joints, body, base, limbs, stance, how)
+        super().__init__(joints, state, limbs, stance, how)
         self.prints, self.how = prints, how
         self.finished, self.landed, self.stood = False, 0, 0
 

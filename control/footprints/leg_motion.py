@@ -13,11 +13,10 @@ import numpy as np
 
 from windup.control.footprints.footprints import ground_places
 from windup.control.footprints.weight import holding_torque
-from windup.control.kinematics.body import Body, heading
 from windup.control.kinematics.limb_ik import LimbIk, Pose
-from windup.control.kinematics.rotation import quaternion_matrix, turn, turn_between
+from windup.control.kinematics.robot_state import RobotState
+from windup.control.kinematics.rotation import heading, turn, turn_between
 from windup.hal.command import JointCommand
-from windup.hal.errors import StateMissingError
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
 
@@ -97,8 +96,7 @@ class LegMotion(ABC):
 
     Args:
         joints: The robot's joints.
-        body: Kinematics of the robot.
-        base: Name of the body with the free joint.
+        state: The robot's state.
         limbs: Inverse kinematics of the two legs, in the order of the soles.
         stance: (n,) rad, the pose to start from; joints outside the legs keep it.
         gains: Feedback gains.
@@ -112,13 +110,12 @@ class LegMotion(ABC):
     def __init__(
         self,
         joints: Joints,
-        body: Body,
-        base: str,
+        state: RobotState,
         limbs: Sequence[LimbIk],
         stance: Array,
         gains: Gains,
     ) -> None:
-        self.joints, self.body, self.base, self.limbs = joints, body, base, limbs
+        self.joints, self.state, self.limbs = joints, state, limbs
         self.stance, self.gains = stance, gains
 
     @abstractmethod
@@ -156,7 +153,7 @@ class LegMotion(ABC):
         block = self._hold.block.copy()
         np.clip(goals, self.joints.lower, self.joints.upper, out=block[0])
         block[1] = self._run_ahead(block[0], dt)
-        torque = holding_torque(self.body, self.base, (1.0 - aim.right_load, aim.right_load))
+        torque = holding_torque(self.state, (1.0 - aim.right_load, aim.right_load))
         self._torque += min(dt / self.gains.slow, 1.0) * (torque - self._torque)
         block[2] = self._torque
         return JointCommand(block)
@@ -167,17 +164,14 @@ class LegMotion(ABC):
         Raises:
             StateMissingError: The observation has no base.
         """
-        state = observation.base
-        if state is None:
-            raise StateMissingError("the base state is missing; run with `--state estimated`")
-        out = self.body.measure(observation)
-        axes = self.body.data.site_xmat[self.body.soles]
-        self.places = ground_places(out.feet[0], axes)
-        self.mass, self.speed = out.com[0], out.com_velocity[0, :2]
-        self.pose = Pose(state.position, quaternion_matrix(state.orientation))
-        self._rate = self.pose.rotation @ state.angular_velocity * np.array([1.0, 1.0, 0.0])
-        self.turned = float(heading(state.orientation))
-        self.heights = out.feet[0, :, 2]
+        state = self.state.update(observation)
+        self.places = ground_places(state.feet_position, state.feet_axes)
+        self.mass, self.speed = state.com, state.com_velocity[:2]
+        self.pose = state.pose
+        rate = state.base.angular_velocity
+        self._rate = self.pose.rotation @ rate * np.array([1.0, 1.0, 0.0])
+        self.turned = float(heading(state.base.orientation))
+        self.heights = state.feet_position[:, 2]
         self.ground = float(self.heights.min())
 
     def _base(self, aim: Aim, dt: float) -> Pose:

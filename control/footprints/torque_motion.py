@@ -134,7 +134,7 @@ class TorqueMotion(ABC):
 
     def _middle(self, foot: int) -> Array:
         """Return the centre (2,) of a sole on the ground, m."""
-        return np.asarray(self.dynamics.ground(foot)[:, :2].mean(axis=0))
+        return self.dynamics.middle(foot)
 
     def _objectives(self, now: float) -> Objectives:
         """Return the objectives of the optimisation at `now`."""

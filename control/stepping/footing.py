@@ -7,20 +7,17 @@ from math import atan2
 import mujoco
 import numpy as np
 
-from windup.control.kinematics.body import Body
 from windup.control.kinematics.limb_ik import LimbIk, Pose
 from windup.control.kinematics.momenta import Momenta
+from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.rotation import (
-    facing,
     heading_between,
     quaternion_matrix,
     turn,
     turn_about_y,
     yaw_of,
 )
-from windup.control.kinematics.soles import Soles
 from windup.control.kinematics.support import SupportRegion
-from windup.hal.errors import StateMissingError
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
 
@@ -58,10 +55,9 @@ class Footing:
     """Measured feet and base of a robot, and inverse kinematics of its legs.
 
     Args:
-        body: Kinematics of the robot.
+        state: The robot's state, with the points of its soles.
         base: Name of the body with the free joint.
         sites: Names of the sites at the soles' centres, one per foot.
-        soles: Points of the soles that can touch the ground.
         stance: (n,) rad, joint positions of the pose to stand in, with both soles flat.
 
     Attributes:
@@ -82,12 +78,11 @@ class Footing:
     places: Array
     down: list[bool]
 
-    def __init__(
-        self, body: Body, base: str, sites: Sequence[str], soles: Soles, stance: Array
-    ) -> None:
-        self._body, self._soles = body, soles
+    def __init__(self, state: RobotState, base: str, sites: Sequence[str], stance: Array) -> None:
+        self.state, self._rows = state, state.soles.rows
         self.rounded = False
-        self._limbs = [LimbIk(body.model, base, site) for site in sites]
+        self._home_of: Planted | None = None
+        self._limbs = [LimbIk(state.model, base, site) for site in sites]
         self._last = [stance.copy() for _ in sites]
         homes = [limb.forward(stance) for limb in self._limbs]
         front = homes[0].rotation
@@ -102,35 +97,21 @@ class Footing:
         Raises:
             StateMissingError: The observation has no base.
         """
-        self._body.measure(observation)
-        state = observation.base
-        if state is None:
-            raise StateMissingError("the base state is missing; run with `--state estimated`")
-        data = self._body.data
-        self.momenta = self._body.momenta()
-        self.base = Pose(state.position, quaternion_matrix(state.orientation))
-        self._state = state
-        self.yaw = facing(self.base.rotation)
-        sites = self._body.soles
-        self.feet = [
-            Pose(data.site_xpos[site].copy(), data.site_xmat[site].reshape(3, 3).copy())
-            for site in sites
-        ]
-        self.places = data.site_xpos[sites, :2].copy()
-        self._ground = self._soles.seen(data)
-        heights = [self._ground[self._soles.foot == k, 2].min() for k in range(len(sites))]
+        state = self.state.update(observation)
+        self.momenta, self.base, self.yaw = state.momenta, state.pose, state.yaw
+        self.feet, self.places = state.feet, state.feet_position[:, :2]
+        heights = [self.ground(foot)[:, 2].min() for foot in range(len(self.feet))]
         self.down = [height < min(heights) + DOWN for height in heights]
 
     def ground(self, foot: int) -> Array:
         """Return the points (p, 3) of a sole in the world frame, m."""
-        return self._ground[self._soles.foot == foot]
+        return self.state.ground[self._rows[foot]]
 
     def support(self, feet: Sequence[int]) -> SupportRegion:
         """Return the support region of these feet's soles, whether or not they bear load."""
         if self.rounded:
             return SupportRegion.rounded([self.ground(foot) for foot in feet])
-        of_these = self._soles.members[list(feet)].any(axis=0)
-        return SupportRegion.hull(self._ground[of_these])
+        return self.state.support(feet)
 
     def planted(self) -> Planted:
         """Return the measured places of the feet, to hold them there."""
@@ -140,7 +121,11 @@ class Footing:
 
     def home(self, planted: Planted) -> Array:
         """Return the base's position (2,) m in the stance, for feet at these places."""
-        return planted.places[:, :2].mean(axis=0) + turn(planted.front)[:2, :2] @ self._offset
+        if planted is not self._home_of:
+            middle = planted.places[:, :2].mean(axis=0)
+            self._home = middle + turn(planted.front)[:2, :2] @ self._offset
+            self._home_of = planted
+        return self._home
 
     def upright(
         self, place: Array, heading: float, pitch: float = 0.0, height: float | None = None
@@ -158,7 +143,7 @@ class Footing:
 
     def ahead(self, time: float) -> Pose:
         """Return the pose of the base in `time` s, extrapolated at its present velocities."""
-        state = self._state
+        state = self.state.base
         orientation = state.orientation.copy()
         mujoco.mju_quatIntegrate(orientation, state.angular_velocity, time)
         position = state.position + time * state.linear_velocity

@@ -8,6 +8,7 @@ steps bring the feet back to the stance (Kenwright 2012, section IV).
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import hypot
 
 import numpy as np
 from shapely.geometry.base import BaseGeometry
@@ -78,6 +79,7 @@ class Stepper:
         steps: Number of steps taken to prevent a fall.
         comforts: Number of comfort steps.
         phase: Present phase.
+        state: The robot's state.
         published: Names of what `publish` fills in.
     """
 
@@ -93,6 +95,7 @@ class Stepper:
         no_step: KeepOutRegions | None = None,
     ) -> None:
         self.joints, self.footing, self.stance = joints, footing, stance
+        self.state = footing.state
         self.rule, self.stepping = rule, stepping
         self.no_step = no_step or KeepOutRegions()
         self._reach = stepping.reach.reach()
@@ -227,7 +230,7 @@ class Stepper:
     def _settle(self, now: float) -> None:
         """Start a comfort step if one is needed and the robot has stood still long enough."""
         footing, stepping = self.footing, self.stepping
-        if np.linalg.norm(footing.momenta.velocity[:2]) > STILL:
+        if hypot(*footing.momenta.velocity[:2]) > STILL:
             self._moved = now
         if now - self._moved < stepping.patience:
             return
@@ -248,7 +251,7 @@ class Stepper:
         if self.phase == "swing":
             self._swing(goals, now)
             return
-        against = self._against(footing.places.mean(axis=0))
+        against = self._against((footing.places[0] + footing.places[1]) / 2.0)
         place = self._centre(now) - against
         base = footing.upright(place, self._heading(now), height=self._height)
         for foot in (0, 1):
@@ -289,4 +292,4 @@ class Stepper:
     def _against(self, middle: Array) -> Array:
         """Return the displacement (2,) m to subtract from the base against the capture point."""
         away = self.stepping.balance * (capture_point(self.footing.momenta) - middle)
-        return np.clip(away, -MOST_SHIFT, MOST_SHIFT)
+        return np.minimum(np.maximum(away, -MOST_SHIFT), MOST_SHIFT)

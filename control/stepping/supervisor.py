@@ -80,10 +80,12 @@ class Supervisor:
     Attributes:
         holder: The part in control: the walk, the stepper, or the return to the walk.
         catches: Records of all takeovers.
+        state: The robot's state, which the walk and the stepper share.
     """
 
     def __init__(self, walker: Balancer, stepper: Stepper, start: Array, table: CatchTable) -> None:
         self.walker, self.stepper, self.table = walker, stepper, table
+        self.state = walker.state
         self._back = PoseHolder(walker.joints, start, RETURN)
         self._throw = CapturePointDeviation()
         self.holder: Holder = "walk"
@@ -144,8 +146,8 @@ class Supervisor:
         walker = self.walker
         if (moment := walker.moment) is None:
             return np.zeros(2)
-        here = walker.body.measure(observation)
-        away = capture_point(walker.body.momenta()) - here.feet[0, moment.stance, :2]
+        here = self.state.update(observation)
+        away = capture_point(here.momenta) - here.feet_position[moment.stance, :2]
         heading = turn(walker.heading)[:2, :2].T
         tick = round(moment.elapsed / dt) - 1  # `elapsed` includes the tick of the entry
         return self._throw.detect(moment.state, tick, heading @ away)

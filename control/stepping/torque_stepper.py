@@ -4,6 +4,7 @@ Wu & Zordan 2010, section 4: the momentum supervisor decides when and where to s
 """
 
 from dataclasses import replace
+from math import hypot
 from typing import Literal
 
 import numpy as np
@@ -107,7 +108,7 @@ class TorqueStepper(TorqueMotion):
     def _settle(self, comfort: TorqueComfort, observation: Observation) -> None:
         """Start a comfort step if one is needed and the robot has stood still long enough."""
         now = observation.time
-        if np.linalg.norm(self.dynamics.momenta.velocity[:2]) > STILL:
+        if hypot(*self.dynamics.momenta.velocity[:2]) > STILL:
             self._moved = now
         if now - self._moved < self._stepping.patience:
             return

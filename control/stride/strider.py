@@ -15,8 +15,8 @@ import numpy as np
 from windup.control.footprints.footprints import between, onto, seen_from
 from windup.control.footprints.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
 from windup.control.footprints.swing import gaussian_progress, lift
-from windup.control.kinematics.body import Body
 from windup.control.kinematics.limb_ik import LimbIk, Pose
+from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.rotation import lying, turn, way_round
 from windup.control.stride.pendulum import (
     PressureSegment,
@@ -47,8 +47,7 @@ class Strider(LegMotion):
 
     Args:
         joints: The robot's joints.
-        body: Kinematics of the robot.
-        base: Name of the body with the free joint.
+        state: The robot's state.
         limbs: Inverse kinematics of the two legs, in the order of the soles.
         stance: (n,) rad, the pose to start from; joints outside the legs keep it.
         orders: Returns the command for the time since the start, s; its headings are relative to
@@ -63,14 +62,13 @@ class Strider(LegMotion):
     def __init__(
         self,
         joints: Joints,
-        body: Body,
-        base: str,
+        state: RobotState,
         limbs: Sequence[LimbIk],
         stance: Array,
         orders: Callable[[float], VelocityCommand],
         how: Stride,
     ) -> None:
-        super().__init__(joints, body, base, limbs, stance, how)
+        super().__init__(joints, state, limbs, stance, how)
         self.orders, self.how = orders, how
         self.steps = 0
         self.phase: Phase = "stand"
@@ -260,8 +258,7 @@ class Strider(LegMotion):
     def _feel(self, dt: float) -> None:
         """Update the ground's normal and height from the stance foot's sole."""
         if self.phase == "swing":
-            site = int(self.body.soles[self._bears])
-            up = self.body.data.site_xmat[site].reshape(3, 3)[:, 2]
+            up = self.state.feet[self._bears].rotation[:, 2]
             normal = self._normal + min(dt / self.how.feel, 1.0) * (up - self._normal)
             normal[:2] = np.clip(normal[:2], -STEEPEST, STEEPEST)
             self._normal = normal / np.linalg.norm(normal)

@@ -129,7 +129,7 @@ class WholeBody:
             moment = (lever - lever.T)[[1, 2, 0], [2, 0, 1]]
             wrench = np.concatenate((forces.sum(axis=0), moment))
             force -= wrench @ dynamics.jacobian(end)
-        return np.clip(force[6:], -self._limit, self._limit)
+        return np.minimum(np.maximum(force[6:], -self._limit), self._limit)
 
     def _spread(self, stance: Sequence[int]) -> Array:
         """Return the matrix (v, edges) from edge force magnitudes to generalised forces."""

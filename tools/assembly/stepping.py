@@ -10,7 +10,7 @@ from shapely.geometry.base import BaseGeometry
 from windup.control.footprints.directed_file import Directed
 from windup.control.footprints.footprints import Footprint
 from windup.control.footprints.keep_out import KeepOutRegions
-from windup.control.kinematics.soles import Soles
+from windup.control.kinematics.robot_state import RobotState
 from windup.control.motions.play import PoseHolder
 from windup.control.stepping.footing import Footing
 from windup.control.stepping.step_decision import RULES
@@ -24,9 +24,9 @@ from windup.hal.controller import Controller
 from windup.hal.errors import UnknownNameError
 from windup.hal.joints import Array
 from windup.robots import RobotDescription
-from windup.tools.assembly.build import body_of
 from windup.tools.assembly.robot_file import load_beside
 from windup.tools.assembly.shape import check_walks
+from windup.tools.assembly.state import state_of
 
 STEPPING: Final = "stepping.toml"
 FOOTPRINTS: Final = "footprints.toml"
@@ -60,19 +60,16 @@ def stepping_stance(robot: RobotDescription, name: str | None = None) -> Array:
     return robot.poses[name]
 
 
-def footing_of(robot: RobotDescription, stance: Array) -> Footing:
-    """Return the feet of `robot`, for a pose (n,) rad to stand in."""
-    body = body_of(robot)
-    soles = Soles(body.model, [foot.body for foot in robot.feet], robot.contacts)
-    return Footing(body, robot.base, [foot.site for foot in robot.feet], soles, stance)
+def footing_of(robot: RobotDescription, stance: Array, state: RobotState | None = None) -> Footing:
+    """Return the feet of `robot`, for a pose (n,) rad to stand in; `state` may be shared."""
+    sites = [foot.site for foot in robot.feet]
+    return Footing(state or state_of(robot), robot.base, sites, stance)
 
 
 def whole_body_of(robot: RobotDescription, delay: float = 0.0) -> WholeBody:
     """Return the whole-body control of a robot with torque joints; `delay` of its commands, s."""
-    ends = [foot.site for foot in robot.feet]
-    dynamics = Dynamics(robot.model, robot.base, ends, delay)
     limit = np.minimum(robot.joints.torque, find_stepping(robot).torque)
-    return WholeBody(dynamics, limit, FRICTION)
+    return WholeBody(Dynamics(state_of(robot, delay)), limit, FRICTION)
 
 
 def build_stepper(
@@ -82,6 +79,7 @@ def build_stepper(
     forbid: Sequence[BaseGeometry] = (),
     support: Support | None = None,
     delay: float = 0.0,
+    state: RobotState | None = None,
 ) -> Controller:
     """Return the controller that meets pushes in one of the `WAYS`, standing in a pose (n,) rad.
 
@@ -92,6 +90,7 @@ def build_stepper(
         forbid: Ground where no foot may come down; see `KeepOutRegions`.
         support: What the soles are taken to support; what its stepping says by default.
         delay: From a state being measured to a command for it acting, s; where torques are.
+        state: The robot's state, if it is shared with other controllers.
 
     Raises:
         UnknownNameError: There is no such way.
@@ -110,7 +109,8 @@ def build_stepper(
         body = whole_body_of(robot, delay)
         comfort = comfort_of(robot, body, stance, stepping)
         return TorqueStepper(robot.joints, body, stance, rule, stepping, no_step, comfort)
-    return Stepper(robot.joints, footing_of(robot, stance), stance, rule, stepping, no_step)
+    footing = footing_of(robot, stance, state)
+    return Stepper(robot.joints, footing, stance, rule, stepping, no_step)
 
 
 def comfort_of(

@@ -24,7 +24,7 @@ def build_supervisor(
         raise UsageError(
             f"{robot.name} does not hand its walk over to steps: its {STEPPING} has no [catch]"
         )
-    stepper = build_stepper(robot, way, stepping_stance(robot))
+    stepper = build_stepper(robot, way, stepping_stance(robot), state=walker.state)
     if not isinstance(stepper, Stepper) or stepper.rule is None:
         raise UsageError(f"--way {way}: a walk is caught by steps; give the name of a step rule")
     start = walker.gait.file.start

@@ -12,7 +12,6 @@ from windup.control.footprints.footprint_checks import FootprintChecks, outline
 from windup.control.footprints.footprint_walker import FootprintWalker
 from windup.control.footprints.footprints import Footprint, between, ground_places, seen_from
 from windup.control.footprints.torque_directed import TorqueDirected
-from windup.control.kinematics.body import Body
 from windup.control.kinematics.limb_ik import LimbIk
 from windup.control.kinematics.soles import Soles
 from windup.hal.controller import Controller
@@ -20,9 +19,9 @@ from windup.hal.errors import UnknownNameError
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
 from windup.robots import RobotDescription
-from windup.tools.assembly.build import body_of
 from windup.tools.assembly.robot_file import load_beside
 from windup.tools.assembly.shape import check_walks
+from windup.tools.assembly.state import state_of
 from windup.tools.assembly.stepping import FOOTPRINTS, find_stepping, whole_body_of
 from windup.tools.robot.robot import Robot
 
@@ -80,9 +79,9 @@ def feet_of(robot: RobotDescription) -> tuple[str, ...]:
     return tuple(foot.name for foot in robot.feet)
 
 
-def limbs_of(robot: RobotDescription, body: Body) -> list[LimbIk]:
+def limbs_of(robot: RobotDescription) -> list[LimbIk]:
     """Return the inverse kinematics of its legs."""
-    return [LimbIk(body.model, robot.base, foot.site) for foot in robot.feet]
+    return [LimbIk(robot.model, robot.base, foot.site) for foot in robot.feet]
 
 
 def loop_rate(robot: RobotDescription) -> float | None:
@@ -96,9 +95,9 @@ def build_checks(robot: RobotDescription) -> FootprintChecks:
     Raises:
         UsageError: It has not two feet, or no footprints.toml.
     """
-    names, how, body = feet_of(robot), find_directed(robot), body_of(robot)
-    stance, limbs = robot.poses[how.stance], limbs_of(robot, body)
-    soles = Soles(body.model, [foot.body for foot in robot.feet], robot.contacts)
+    names, how, model = feet_of(robot), find_directed(robot), robot.model
+    stance, limbs = robot.poses[how.stance], limbs_of(robot)
+    soles = Soles(model, [foot.body for foot in robot.feet], robot.contacts)
     soles.update(stance, np.zeros_like(stance), np.array([0.0, 0.0, 1.0]))
     poses = [limb.forward(stance) for limb in limbs]
     seen = [
@@ -107,11 +106,12 @@ def build_checks(robot: RobotDescription) -> FootprintChecks:
     ]
     middle = np.mean([pose.position for pose in poses], axis=0)
     homes = [np.array([*(pose.position - middle)[:2], 0.0]) for pose in poses]
-    body.data.qpos[:7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
-    body.data.qpos[7:] = stance
-    mujoco.mj_kinematics(body.model, body.data)
-    mujoco.mj_comPos(body.model, body.data)
-    com = body.data.subtree_com[body.model.body(robot.base).id, :2].copy()
+    data = mujoco.MjData(model)
+    data.qpos[:7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
+    data.qpos[7:] = stance
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    com = data.subtree_com[model.body(robot.base).id, :2].copy()
     outlines = [outline(points[:, :2]) for points in seen]
     return FootprintChecks(names, limbs, outlines, homes, stance, -com, how.height)
 
@@ -128,9 +128,8 @@ def build_directed(robot: RobotDescription, prints: Sequence[Footprint]) -> Dire
     if not isinstance(how, ServoDirected):
         body = whole_body_of(robot)
         return TorqueDirected(robot.joints, body, stance, prints, how, robot.contacts)
-    kinematics = body_of(robot)
-    limbs = limbs_of(robot, kinematics)
-    return FootprintWalker(robot.joints, kinematics, robot.base, limbs, stance, prints, how)
+    limbs = limbs_of(robot)
+    return FootprintWalker(robot.joints, state_of(robot), limbs, stance, prints, how)
 
 
 @dataclass

@@ -125,7 +125,7 @@ class Runner(Watched):
         approach = None if self.start is None else self.start.before(controller, down)
         protected = None
         if self.protect and self._protection.possible and not down:
-            protected = self._protection.around(approach or controller)
+            protected = self._protection.around(approach or controller, controller)
         wishes = stop_requests(self.backend.backend, keys=self.stack.real)
         with (
             counted_signals(self.stack.wired) as asked,

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
@@ -66,8 +68,8 @@ def test_a_foot_comes_where_it_is_put(footing: Footing, yaw: float) -> None:
     goals = STANCE.copy()
     for _ in range(10):
         footing.put(goals, 0, at, yaw, footing.base)
-    observation.joints.position[:] = goals
-    footing.update(observation)
+    joints = replace(observation.joints, position=goals)
+    footing.update(replace(observation, joints=joints))
     assert footing.feet[0].position == pytest.approx(at, abs=2e-3)
     assert footing.down == [False, True]
 

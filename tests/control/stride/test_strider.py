@@ -9,7 +9,7 @@ from tests.control.stepping.test_footing import OP3, seen
 from windup.control.stride.pendulum import VelocityCommand
 from windup.control.stride.strider import Phase, Strider
 from windup.hal.observation import Observation
-from windup.tools.assembly.build import body_of
+from windup.tools.assembly.state import state_of
 from windup.tools.assembly.stepping import stepping_stance
 from windup.tools.behaviours.directed import limbs_of
 from windup.tools.behaviours.striding import find_stride
@@ -19,8 +19,8 @@ HOW = find_stride(OP3)
 
 
 def strider(order: VelocityCommand) -> Strider:
-    body, stance = body_of(OP3), stepping_stance(OP3)
-    return Strider(OP3.joints, body, OP3.base, limbs_of(OP3, body), stance, lambda _: order, HOW)
+    state, stance = state_of(OP3), stepping_stance(OP3)
+    return Strider(OP3.joints, state, limbs_of(OP3), stance, lambda _: order, HOW)
 
 
 def play(robot: Strider, still: Observation, seconds: float) -> list[Phase]:

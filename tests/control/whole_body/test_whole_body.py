@@ -8,6 +8,7 @@ from windup.control.whole_body.whole_body import FASTEST, Objectives, Weights, W
 from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.observation import BaseState, JointState, Observation
 from windup.robots import load_robot
+from windup.tools.assembly.state import state_of
 
 HUMAN = load_robot("human")
 STANCE = HUMAN.poses["ready"]
@@ -22,8 +23,7 @@ def seen() -> Observation:
 
 @pytest.fixture
 def dynamics() -> Dynamics:
-    feet = [foot.site for foot in HUMAN.feet]
-    dynamics = Dynamics(HUMAN.spec().compile(), HUMAN.base, feet)
+    dynamics = Dynamics(state_of(HUMAN))
     dynamics.update(seen())
     return dynamics
 

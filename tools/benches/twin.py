@@ -1,6 +1,5 @@
-"""Measures the duration of a tick, and the cost of the guarded twin beside bare physics."""
+"""Measures the cost of the guarded twin beside bare physics."""
 
-import gc
 import time
 from statistics import median
 from typing import Any
@@ -8,28 +7,9 @@ from typing import Any
 import mujoco
 
 from windup.hal.command import JointCommand
-from windup.tools.assembly.build import build_walk
-from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.robot.robot import Robot
 
 ROUNDS = 20
-
-
-def measure_tick(name: str) -> dict[str, Any]:
-    """Return the duration of a tick with guard and tracker: read, step, write, without physics."""
-    with Robot.open(name) as robot:
-        options = WalkOptions(open_loop=True)
-        walker = build_walk(robot.description, options, None)
-        gc.collect()
-        robot.run(walker, 1.0)
-        robot.twin.reset()
-        robot.run(walker, 20.0)
-        return {
-            "rate_hz": 1.0 / robot.period,
-            "ticks": robot.loop.ticks,
-            "tick_p50_ms": robot.loop.tick_ms()["p50"],
-            "tick_p99_ms": robot.loop.tick_ms()["p99"],
-        }
 
 
 def measure_twin(name: str) -> dict[str, Any]:
