@@ -12,10 +12,10 @@ from typing import Literal
 
 import numpy as np
 
-from windup.control.footprints.footprints import between, onto, seen_from
-from windup.control.footprints.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
-from windup.control.footprints.swing import gaussian_progress, lift
+from windup.control.execution.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
+from windup.control.execution.swing import gaussian_progress, lift
 from windup.control.kinematics.limb_ik import LimbIk, Pose
+from windup.control.kinematics.places import between, onto, seen_from
 from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.rotation import lying, turn, way_round
 from windup.control.stride.pendulum import (
@@ -30,8 +30,11 @@ from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.geometry.smooth_step import smooth_step
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
+from windup.hal.publishing.controller_block import BlockNames, ControllerBlock
+from windup.hal.publishing.run_state import RunState
 
 Phase = Literal["stand", "shift", "swing", "land", "halt"]
+PHASES: tuple[Phase, ...] = ("stand", "shift", "swing", "land", "halt")
 AHEAD = 3
 """Horizon of the plan, steps; later ones have no noticeable effect."""
 STEEPEST = 0.15
@@ -57,7 +60,10 @@ class Strider(LegMotion):
     Attributes:
         steps: Number of finished steps.
         phase: Present phase.
+        published: Names of what `publish` fills in.
     """
+
+    published = BlockNames(phases=PHASES)
 
     def __init__(
         self,
@@ -72,6 +78,12 @@ class Strider(LegMotion):
         self.orders, self.how = orders, how
         self.steps = 0
         self.phase: Phase = "stand"
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish the phase."""
+        stands = self.phase == "stand"
+        block.run_state = RunState.STANDING if stands else RunState.WALKING
+        block.phase = PHASES.index(self.phase)
 
     def reset(self, observation: Observation) -> None:
         """Start standing at the measured place."""

@@ -2,19 +2,20 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, Final
 
 import mujoco
 import numpy as np
 
+from windup.control.execution.executor import WalkExecutor
+from windup.control.execution.leg_executor import LegExecutor
 from windup.control.footprints.directed_file import Directed, ServoDirected
 from windup.control.footprints.footprint_checks import FootprintChecks, outline
 from windup.control.footprints.footprint_walker import FootprintWalker
-from windup.control.footprints.footprints import Footprint, between, ground_places, seen_from
-from windup.control.footprints.torque_directed import TorqueDirected
+from windup.control.footprints.footprints import Footprint
 from windup.control.kinematics.limb_ik import LimbIk
+from windup.control.kinematics.places import between, ground_places, seen_from
 from windup.control.kinematics.soles import Soles
-from windup.hal.controller import Controller
 from windup.hal.errors import UnknownNameError
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
@@ -22,37 +23,11 @@ from windup.robots import RobotDescription
 from windup.tools.assembly.robot_file import load_beside
 from windup.tools.assembly.shape import check_walks
 from windup.tools.assembly.state import state_of
-from windup.tools.assembly.stepping import FOOTPRINTS, find_stepping, whole_body_of
+from windup.tools.assembly.stepping import find_stepping
+from windup.tools.assembly.torques import torque_executor
 from windup.tools.robot.robot import Robot
 
-
-class DirectedController(Controller, Protocol):
-    """A controller that walks footprints.
-
-    Attributes:
-        finished: All steps are done and the weight is between the feet.
-        landed: How many feet have come down.
-        stood: How many of these have borne the weight since, as they were told.
-    """
-
-    finished: bool
-    landed: int
-    stood: int
-
-    @property
-    def prints(self) -> Sequence[Footprint]:
-        """What to do."""
-        ...
-
-    @property
-    def how(self) -> Directed:
-        """Times, and how close a foot has to come."""
-        ...
-
-    @property
-    def places(self) -> Array:
-        """Where (2, 3) the feet are now, as the controller sees it."""
-        ...
+FOOTPRINTS: Final = "footprints.toml"
 
 
 def find_directed(robot: RobotDescription) -> Directed:
@@ -116,7 +91,7 @@ def build_checks(robot: RobotDescription) -> FootprintChecks:
     return FootprintChecks(names, limbs, outlines, homes, stance, -com, how.height)
 
 
-def build_directed(robot: RobotDescription, prints: Sequence[Footprint]) -> DirectedController:
+def build_directed(robot: RobotDescription, prints: Sequence[Footprint]) -> FootprintWalker:
     """Return the controller that walks footprints.
 
     Raises:
@@ -124,12 +99,15 @@ def build_directed(robot: RobotDescription, prints: Sequence[Footprint]) -> Dire
     """
     build_checks(robot).check(prints)
     how = find_directed(robot)
+    return FootprintWalker(_executor(robot, how), prints, how)
+
+
+def _executor(robot: RobotDescription, how: Directed) -> WalkExecutor:
+    """Return what realises the steps with the joints of `robot`."""
     stance = robot.poses[how.stance]
-    if not isinstance(how, ServoDirected):
-        body = whole_body_of(robot)
-        return TorqueDirected(robot.joints, body, stance, prints, how, robot.contacts)
-    limbs = limbs_of(robot)
-    return FootprintWalker(robot.joints, state_of(robot), limbs, stance, prints, how)
+    if isinstance(how, ServoDirected):
+        return LegExecutor(robot.joints, state_of(robot), limbs_of(robot), stance, how)
+    return torque_executor(robot, stance)
 
 
 @dataclass
@@ -210,7 +188,7 @@ class DirectedWalk:
         }
 
 
-def walk_prints(robot: Robot, controller: DirectedController, walk: DirectedWalk) -> None:
+def walk_prints(robot: Robot, controller: FootprintWalker, walk: DirectedWalk) -> None:
     """Walk footprints, and look where the feet come down; `walk` is filled in on the way.
 
     A foot is looked at once it bears the weight, so that its slip counts; and seen from where the
@@ -241,7 +219,7 @@ def walk_prints(robot: Robot, controller: DirectedController, walk: DirectedWalk
         walk.seconds = robot.loop.sim_time
 
 
-def _places(robot: Robot, controller: DirectedController) -> Array:
+def _places(robot: Robot, controller: FootprintWalker) -> Array:
     """Return the (2, 3) places of the feet: the truth of a twin, or what a robot believes."""
     twin, feet = robot.stack.twin, robot.description.feet
     if twin is None:

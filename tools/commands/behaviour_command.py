@@ -106,7 +106,8 @@ class BehaviourCommand(WorldOptions, Common):
         """
         description = load_robot(self.robot)
         more = self.behaviour.opening(description, self.options)
-        rate = self.rate or more.pop("rate", None)
+        made_for = more.pop("rate", None)
+        rate = self.rate or made_for
         world = self.world(description, seed)
         return replace(self, rate=rate).open_robot(seed, world=world, **more)
 

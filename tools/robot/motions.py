@@ -121,7 +121,7 @@ class Motions:
         walker = build_walk(robot, options, self.predictor, latency=wait)
         if guide is not None:
             walker.steering.guide = guide
-        supervisor = supervisor_for(robot, walker, options)
+        supervisor = supervisor_for(robot, walker, options, session.stack.delay)
         end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
         report = WalkReport(
             session, walker, options, steps, self.predictor.stopwatch, self.seed,
@@ -130,7 +130,8 @@ class Motions:
         with ExitStack() as stack:
             try:
                 if session.paced and walker.planner is not None:
-                    aside = plan_aside(robot, options, self.predictor, session.period)
+                    period = (supervisor and supervisor.period) or session.period
+                    aside = plan_aside(robot, options, self.predictor, period)
                     walker.planner = self._when_ready(stack.enter_context(aside))
                 self._walk(report, end, disturb, stand)
             except RunInterruptedError as stopped:

@@ -75,7 +75,7 @@ def test_the_phases_of_a_fall_are_published_after_the_controllers_own() -> None:
     fall = Fall()
     names = fall.protected.published
     block = ControllerBlock.of(names)
-    for seconds, pitch, rate, state, phase in (
+    for seconds, pitch, rate, running, phase in (
         (0.1, 0.1, 0.0, RunState.STANDING, ""),
         (0.05, 1.2, 5.0, RunState.FALLING, "falling"),
         (0.05, 1.44, 5.0, RunState.FALLING, "impact"),
@@ -83,7 +83,7 @@ def test_the_phases_of_a_fall_are_published_after_the_controllers_own() -> None:
     ):
         fall.hold(seconds, pitch, rate)
         fall.protected.publish(block)
-        assert block.run_state is state
+        assert block.run_state is running
         assert not phase or names.phases[block.phase] == phase
         assert not phase or names.reasons[block.reason] == "a fall cannot be prevented"
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from windup.control.whole_body.dynamics import Dynamics
-from windup.control.whole_body.whole_body import FASTEST, Objectives, Weights, WholeBody
+from windup.control.whole_body.whole_body import FASTEST, Objectives, WholeBody
+from windup.control.whole_body.whole_body_file import Weights
 from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.observation import BaseState, JointState, Observation
 from windup.robots import load_robot

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from windup.control.footprints.weight import holding_torque
+from windup.control.execution.weight import holding_torque
 from windup.hal.observation import BaseState, JointState, Observation
 from windup.robots import RobotDescription
 from windup.tools.assembly.state import state_of

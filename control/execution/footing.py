@@ -1,17 +1,16 @@
 """The feet of an observed robot: their measured places, and joint angles for target places."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import atan2
 
 import mujoco
 import numpy as np
 
+from windup.control.execution.motion import Planted
 from windup.control.kinematics.limb_ik import LimbIk, Pose
 from windup.control.kinematics.momenta import Momenta
 from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.rotation import (
-    heading_between,
     quaternion_matrix,
     turn,
     turn_about_y,
@@ -25,30 +24,6 @@ DOWN = 0.004
 """Maximum height of a grounded foot's lowest point above the lowest point of all feet, m."""
 ITERATIONS = 2
 """Iterations of the inverse kinematics per tick, started at the solution of the last tick."""
-
-
-@dataclass(frozen=True)
-class Planted:
-    """Places at which two feet are to stay.
-
-    Attributes:
-        places: (2, 3) positions of the soles' centres, on the ground, m.
-        yaws: (2,) headings of the soles, rad.
-    """
-
-    places: Array
-    yaws: Array
-
-    @property
-    def front(self) -> float:
-        """Mean heading of the feet, rad."""
-        return heading_between(self.yaws[0], self.yaws[1], 0.5)
-
-    def step(self, foot: int, place: Array, yaw: float) -> "Planted":
-        """Return a copy with one foot at another place (2,) or (3,), m, and heading, rad."""
-        places, yaws = self.places.copy(), self.yaws.copy()
-        places[foot, :2], yaws[foot] = place[:2], yaw
-        return Planted(places, yaws)
 
 
 class Footing:
@@ -106,6 +81,14 @@ class Footing:
     def ground(self, foot: int) -> Array:
         """Return the points (p, 3) of a sole in the world frame, m."""
         return self.state.ground[self._rows[foot]]
+
+    def reach_yaw(self, stance: int) -> float:
+        """Return the heading, rad, of a foot's reach: the base's, under which the hips are."""
+        return self.yaw
+
+    def middle(self, foot: int) -> Array:
+        """Return the middle (2,) of a sole on the ground, m: its site is there."""
+        return np.asarray(self.places[foot])
 
     def support(self, feet: Sequence[int]) -> SupportRegion:
         """Return the support region of these feet's soles, whether or not they bear load."""

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from windup.control.footprints.swing import bezier, gaussian_progress, lift, swing_foot
+from windup.control.execution.swing import bezier, gaussian_progress, lift, swing_foot
 
 START, END = np.array([0.0, 0.05, 0.0]), np.array([0.1, 0.07, 0.0])
 GRID = np.linspace(0.0, 1.0, 201)

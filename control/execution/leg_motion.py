@@ -11,9 +11,9 @@ from typing import Protocol
 
 import numpy as np
 
-from windup.control.footprints.footprints import ground_places
-from windup.control.footprints.weight import holding_torque
+from windup.control.execution.weight import holding_torque
 from windup.control.kinematics.limb_ik import LimbIk, Pose
+from windup.control.kinematics.places import ground_places
 from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.rotation import heading, turn, turn_between
 from windup.hal.command import JointCommand
@@ -143,7 +143,10 @@ class LegMotion(ABC):
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the command of this tick."""
         self.update(observation)
-        aim = self.plan(observation.time, dt)
+        return self.command(self.plan(observation.time, dt), dt)
+
+    def command(self, aim: Aim, dt: float) -> JointCommand:
+        """Return the command that tracks `aim`; `update` has been called in this tick."""
         base = self._base(aim, dt)
         goals = self.stance.copy()
         for foot in range(2):

@@ -4,8 +4,8 @@ import mujoco
 import numpy as np
 import pytest
 
+from windup.control.execution.footing import Footing
 from windup.control.kinematics.rotation import turn
-from windup.control.stepping.footing import Footing
 from windup.hal.errors import StateMissingError
 from windup.hal.observation import BaseState, JointState, Observation
 from windup.robots import load_robot
