@@ -70,7 +70,7 @@ class ByHand:
             WindupError: From the backend or the guard.
         """
         runner.check_open()
-        runner.check_heard()
+        runner.raise_pending_interrupt()
         seen = self._observe(self._current(runner))
         stands = isinstance(runner.backend.clock, TwinClock)
         if stands and seen.time == self._read_at and not self._said:
@@ -86,7 +86,7 @@ class ByHand:
             RunInterruptedError: There was a request to stop; the robot has stopped.
             WindupError: From the guard or the backend; the robot has stopped.
         """
-        runner.check_heard()
+        runner.raise_pending_interrupt()
         with (
             counted_signals(runner.stack.wired) as asked,
             runner.running,

@@ -1,4 +1,4 @@
-"""What a robot does by one call: stand, play a pose graph, walk. It is opened here, too."""
+"""The standard motions of a robot: stand, play a pose graph, walk. `open_robot` opens it."""
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
@@ -53,11 +53,11 @@ Disturb = Callable[[], None]
 
 @dataclass(eq=False)
 class Motions:
-    """What a robot does by one call; see `Robot`, whose calls these are.
+    """The standard motions of a robot; see the methods of `Robot` with the same names.
 
     Attributes:
-        session: The robot that is open.
-        predictor: Plays rollouts of it.
+        session: The session of the robot.
+        predictor: Simulates rollouts of it.
         noise: Noise of the start pose, degrees.
         seed: Seed of everything random.
     """

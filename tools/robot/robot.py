@@ -1,4 +1,4 @@
-"""`Robot`: what a program has in its hands. Nothing heavy is imported before one is opened.
+"""`Robot`: the interface of programs to one robot. MuJoCo and SciPy are imported by `Robot.open`.
 
 with Robot.open("op3") as robot:              # its twin
     report = robot.walk(speed=0.2, steps=40)
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from windup.tools.robot.walk_report import WalkReport
 
 MOTIONS = "windup.tools.robot.motions"
-"""Module that opens a robot: it imports MuJoCo and all that a run may need."""
+"""Module that opens a robot; it imports all that a run may need."""
 
 Disturb = Callable[["Robot"], None]
 """Arranges pushes on a twin."""
@@ -35,7 +35,7 @@ class Robot(Handle):
     """A robot that can be run; open one with `Robot.open`.
 
     Args:
-        motions: What it does by one call, on its session.
+        motions: The motions of an open session.
     """
 
     def __init__(self, motions: "Motions") -> None:
@@ -133,7 +133,7 @@ class Robot(Handle):
         stand: float = 0.0,
         guide: "Guide | None" = None,
     ) -> "WalkReport":
-        """Walk a number of steps and return how it went.
+        """Walk a number of steps and return a report.
 
         Args:
             speed: m/s; the gait's default if None.

@@ -27,7 +27,7 @@ REST_SECONDS = 1.5
 
 @dataclass(eq=False)
 class Session(Runner):
-    """A robot that is open: what `Robot` has.
+    """An open robot: the implementation behind `Robot`.
 
     Attributes:
         by_hand: Reads and writes outside of a run.
@@ -96,7 +96,7 @@ class Session(Runner):
     ) -> None:
         if self._closed:
             return
-        self.leave_ticks()
+        self.close_ticks()
         with counted_signals(self.stack.wired) as asked:
             try:
                 self._let_go(error)
@@ -107,7 +107,7 @@ class Session(Runner):
             if error is None:
                 raise RunInterruptedError(self.loop, asked.by)
         if error is None:
-            self.check_heard()
+            self.raise_pending_interrupt()
 
     def _let_go(self, error: BaseException | None) -> None:
         """Rest after a run that went well, else stop; an error is never replaced by the stop's."""
