@@ -25,7 +25,10 @@ from windup.control.kinematics.rotation import way_round
 from windup.hal.command import JointCommand
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
+from windup.hal.publishing.controller_block import BlockNames, ControllerBlock
+from windup.hal.publishing.run_state import RunState
 
+PHASES: tuple[WalkPhase, ...] = ("rest", "shift", "swing", "land")
 LATE = 2.0
 """Time-out of a swing, in multiples of its duration; it then ends even without contact."""
 
@@ -44,9 +47,11 @@ class FootprintWalker:
         stood: Number of steps after which the following weight shift has ended.
         motion: What the robot should do.
         state: The robot's state.
+        published: Names of what `publish` fills in.
     """
 
     motion: WalkMotion
+    published = BlockNames(phases=PHASES)
 
     def __init__(self, executor: WalkExecutor, prints: Sequence[Footprint], how: Directed) -> None:
         self.executor, self.prints, self.how = executor, prints, how
@@ -57,6 +62,11 @@ class FootprintWalker:
     def places(self) -> Array:
         """Measured places (2, 3) of the feet: x m, y m, yaw rad."""
         return self.executor.places
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish the phase."""
+        block.run_state = RunState.STANDING if self.finished else RunState.STEPPING
+        block.phase = PHASES.index(self.motion.phase)
 
     def reset(self, observation: Observation) -> None:
         """Start from the measured places of the feet."""

@@ -13,7 +13,7 @@ from windup.tools.robot.given import GivenCommand
 from windup.tools.robot.runner import Runner
 from windup.tools.robot.stopping import INTERRUPTED
 from windup.tools.stopping.interrupts import RunInterruptedError, StopRequests, counted_signals
-from windup.tools.stopping.stop_request import pressed_button
+from windup.tools.stopping.stop_request import pressed_button, told_to_stop
 
 SAME = (
     "robot.read() gave the same instant twice: time of a twin passes in "
@@ -117,8 +117,8 @@ class ByHand:
         return applied
 
     def _stop_if_asked(self, runner: Runner, asked: StopRequests) -> None:
-        if button := pressed_button(runner.backend.backend):
-            asked.add(button)
+        if by := told_to_stop(runner.flag) or pressed_button(runner.backend.backend):
+            asked.add(by)
         if asked():
             runner.loop.reason = INTERRUPTED
             runner.stop_if_asked(asked)

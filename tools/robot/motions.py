@@ -166,9 +166,9 @@ class Motions:
     def _when_ready(self, planner: ProcessPlanner) -> ProcessPlanner:
         """Wait for a planner; meanwhile joints hold what they were told last, or where they are."""
         session = self.session
-        if session.armed:
-            told = None if session.start is None else session.start.motion.goal
-            pose = session.backend.read().joints.position if told is None else told
+        if session.armed or session.break_off is not None:
+            last = session.backend.last
+            pose = session.backend.read().joints.position if last is None else last[1].position
             holder = PoseHolder(session.description.joints, pose, ramp=0.0)
             session.run(holder, until=lambda _: "ready" if planner.ready() else None)
         return planner.wait_ready()

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from windup.sim_twin.rollouts import RolloutPredictor
     from windup.tools.assembly.walk_options import WalkOptions
     from windup.tools.measures.walk_end import OnStep
+    from windup.tools.remote.remote_robot import RemoteRobot
     from windup.tools.reports.play_report import PlayReport
     from windup.tools.reports.run_report import RunReport
     from windup.tools.robot.motions import Motions
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 
 MOTIONS = "windup.tools.robot.motions"
 """Module that opens a robot; it imports all that a run may need."""
+REMOTE = "windup.tools.remote.remote_robot"
+"""Module that connects to a robot that is up."""
 
 Disturb = Callable[["Robot"], None]
 """Arranges pushes on a twin."""
@@ -88,6 +91,19 @@ class Robot(Handle):
                 record=record,
             )
         )  # fmt: skip
+
+    @classmethod
+    def connect(cls, name: str) -> "RemoteRobot":
+        """Return a robot that `windup up` has brought up; its runtime does what this program wants.
+
+        Args:
+            name: Name of the robot, or path of its folder.
+
+        Raises:
+            UsageError: It is not up, or its runtime is another version of Windup.
+        """
+        remote: RemoteRobot = import_module(REMOTE).RemoteRobot(name)
+        return remote
 
     @property
     def predictor(self) -> "RolloutPredictor":

@@ -4,6 +4,7 @@ import logging
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 from weakref import ref
 
 from windup.control.loop import Recorder, TickLoop, Until
@@ -22,6 +23,7 @@ from windup.tools.robot.given import Body, GivenCommand, ReadOnly
 from windup.tools.robot.run_end import PreparedRun, RunEnd
 from windup.tools.robot.stopping import INTERRUPTED
 from windup.tools.robot.watched import Watched
+from windup.tools.stopping.break_off import BreakOff
 from windup.tools.stopping.interrupts import (
     RunInterruptedError,
     StopRequests,
@@ -30,6 +32,8 @@ from windup.tools.stopping.interrupts import (
 )
 from windup.tools.stopping.stop_request import stop_requests
 
+if TYPE_CHECKING:  # not needed by robots that do not fall
+    from windup.control.falling.protection import Protected
 TicksIterator = Generator[Observation, None, None]
 
 
@@ -46,6 +50,9 @@ class Runner(Watched):
         runs: Number of runs so far.
         pending_interrupt: Source of a stop request in the tick in which a loop over ticks was left.
             Nothing can be raised there, so the next call raises it; "" if there is none.
+        controller: The controller of the present run, or of the last one.
+        protected: Protection of that run against falls, or None.
+        break_off: Ends runs while the robot stays held, where somebody owns it beyond them.
     """
 
     paced: bool = False
@@ -55,6 +62,9 @@ class Runner(Watched):
     ticks_iterator: "ref[TicksIterator] | None" = field(default=None, init=False)
     runs: int = field(default=0, init=False)
     pending_interrupt: str = field(default="", init=False)
+    controller: Controller | None = field(default=None, init=False)
+    protected: "Protected | None" = field(default=None, init=False)
+    break_off: BreakOff | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -120,13 +130,18 @@ class Runner(Watched):
 
         Raises:
             RunInterruptedError: A stop request has ended the run; the robot has stopped.
+            BrokenOffError: Whoever owns the robot has ended the run; it is held.
         """
         self.raise_pending_interrupt()
+        self.controller = controller
+        if self.break_off is not None:
+            until = self.break_off.around(until)
         approach = None if self.start is None else self.start.before(controller, down)
-        protected = None
+        protected = self.protected = None
         if self.protect and self._protection.possible and not down:
             protected = self._protection.around(approach or controller, controller)
-        wishes = stop_requests(self.backend.backend, keys=self.stack.real)
+            self.protected = protected
+        wishes = stop_requests(self.backend.backend, keys=self.stack.real, flag=self.flag)
         with (
             counted_signals(self.stack.wired) as asked,
             self.running,
@@ -152,6 +167,8 @@ class Runner(Watched):
             self.pending_interrupt = asked.by
         elif report.reason == INTERRUPTED:
             raise RunInterruptedError(report, asked.by)
+        if self.break_off is not None:
+            self.break_off.check(report)
 
     def raise_pending_interrupt(self) -> None:
         """Raise a stop request that could not be raised when it was carried out.

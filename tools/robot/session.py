@@ -40,6 +40,11 @@ class Session(Runner):
         self.by_hand = ByHand()
 
     @property
+    def lasting(self) -> bool:
+        """Does a run take real time?"""
+        return self.paced
+
+    @property
     def warnings(self) -> list[Finding]:
         """What there was to warn about so far: one finding a kind."""
         health = self.backend.watch.warnings if self.backend.watch is not None else []

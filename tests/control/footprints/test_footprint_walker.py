@@ -15,6 +15,7 @@ from windup.control.kinematics.robot_state import RobotState
 from windup.hal.command import JointCommand
 from windup.hal.joints import Array, Joint, Joints
 from windup.hal.observation import JointState, Observation
+from windup.hal.publishing.controller_block import ControllerBlock
 
 TICK = 0.01
 JOINTS = Joints((Joint("leg", lower=-1.0, upper=1.0, stiffness=1.0, damping=0.1, torque=1.0),))
@@ -95,6 +96,19 @@ def test_the_weight_shifts_before_each_step_and_comes_to_the_middle_at_the_end()
     assert (walk.walker.landed, walk.walker.stood) == (2, 2)
     assert body.places == pytest.approx(np.array([[0.1, 0.1, 0], [0.1, -0.1, 0]]), abs=2e-3)
     assert body.com == pytest.approx([0.1, 0.0], abs=2e-3)
+
+
+def test_the_phase_is_published() -> None:
+    walk = Walk(Ideal(), STEPS)
+    block = ControllerBlock.of(walk.walker.published)
+    seen = []
+    for _ in range(40):
+        walk.go(0.1)
+        walk.walker.publish(block)
+        seen.append((walk.walker.published.phases[block.phase], block.run_state.words))
+    assert {phase for phase, _ in seen} == {"rest", "shift", "swing", "land"}
+    assert ("swing", "stepping") in seen and ("shift", "stepping") in seen
+    assert seen[-1] == ("rest", "standing")
 
 
 def test_a_foot_that_does_not_touch_is_waited_for_but_not_for_ever() -> None:
