@@ -98,7 +98,7 @@ WRONG = {
     "raises at once": (SINE.replace("self.begin)", "self.begun)"), "x.py", "x.py:21: Attribute"),
     "no command": (HEAD + "    def step(self, o, dt): ...\n", "x.py", "Sine.step returned noth"),
     "wrong shape": (SINE.replace("self.stance +", "[0.0] * 3 +"), "x.py", "x.py:22: ValueError"),
-    "nan": (SINE.replace("math.sin", "math.nan * "), "x.py", "commanded position nan for"),
+    "nan": (SINE.replace("math.sin", "math.nan * "), "x.py", "asked joint 'head_pan' for position"),
     "not an option": (
         SINE.replace("gain: float = 10.0", "gain"),
         "x.py",
