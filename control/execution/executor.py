@@ -167,7 +167,7 @@ class WalkExecutor(Executor[WalkMotion], Protocol):
 
     @property
     def follows_feet(self) -> bool:
-        """Within a phase, the goal of the weight follows the measured feet."""
+        """The weight is shifted from where it is measured to a goal that follows the feet."""
         ...
 
     @property

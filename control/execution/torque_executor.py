@@ -39,7 +39,7 @@ class TorqueExecutor:
     Attributes:
         feet: The robot's feet.
         state: The robot's state.
-        follows_feet: The goal of the weight follows the measured feet; see `WalkExecutor`.
+        follows_feet: The goal of the weight follows the feet; see `WalkExecutor`.
     """
 
     follows_feet = True

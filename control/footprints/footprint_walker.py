@@ -105,6 +105,8 @@ class FootprintWalker:
         motion, shift = self.motion, self.motion.shift
         if self.executor.follows_feet:
             shift.goal = self._weight_goal(motion)
+            if motion.phase in ("swing", "land"):
+                shift.start = shift.goal
         gone = now - shift.began
         if gone < shift.seconds - 1e-9 or self.finished:
             return
@@ -154,7 +156,7 @@ class FootprintWalker:
         elif phase == "land":
             motion.apart = _apart(motion.foot, places[1 - motion.foot], motion.target)
         goal, toward = self._weight_goal(motion), self._yaw_goal(motion, yaw, places)
-        start = before.shift.at(self._last)
+        start = self._weight_start(before, phase, goal)
         seconds = self._seconds(phase, float(np.hypot(*(goal - start))))
         motion.shift = Shift(start, goal, now, seconds, smooth_progress, smooth=True)
         motion.yaw, motion.height = (yaw, toward), (height, self.how.height)
@@ -175,6 +177,12 @@ class FootprintWalker:
         if motion.phase == "rest":
             return np.asarray(0.5 * (middle(0) + middle(1)))
         return middle(1 - motion.foot).copy()
+
+    def _weight_start(self, before: WalkMotion, phase: WalkPhase, goal: Array) -> Array:
+        """Return where the path (2,) of the CoM to `goal` (2,) begins, m."""
+        if not self.executor.follows_feet:
+            return before.shift.at(self._last)
+        return self.executor.com.copy() if phase in ("rest", "shift") else goal
 
     def _yaw_goal(self, motion: WalkMotion, yaw: float, places: Array) -> float:
         """Return the heading of the base at the end of a phase that begins at `yaw`, rad."""

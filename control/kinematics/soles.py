@@ -54,6 +54,7 @@ class Soles:
             radii += [radius for _, radius in found]
             foot += [index] * len(found)
         self._local, self._radius = np.array(points)[:, :, None], np.array(radii)[:, None]
+        self._round = any(radii)
         self.foot = np.array(foot, dtype=np.intp)
         ends = np.cumsum([0, *np.bincount(self.foot)]).tolist()
         self.rows = [slice(begin, end) for begin, end in pairwise(ends)]
@@ -101,7 +102,8 @@ class Soles:
     def _points(self, position: Array, axes: Array, up: Array) -> Array:
         frames = axes[self._bodies].reshape(-1, 3, 3)
         turned = (frames[self.foot] @ self._local)[:, :, 0]
-        return turned + position[self._of_point] - self._radius * up
+        points = turned + position[self._of_point]
+        return points - self._radius * up if self._round else points
 
     def flow(self, weights: Array) -> tuple[Array, Array]:
         """Return each foot's weighted sums of point positions and velocities.

@@ -10,14 +10,14 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from math import pi
+from math import radians
 from statistics import median
 from typing import Any, Final
 
 import mujoco
 
 from windup.control.loop import LoopReport
-from windup.robots import load_robot
+from windup.robots import RobotDescription, load_robot
 from windup.sim_twin.twin import Twin
 from windup.tools.assembly.build import build_walk
 from windup.tools.assembly.stepping import STEPPING, build_stepper, find_stepping, stepping_stance
@@ -26,11 +26,14 @@ from windup.tools.robot.robot import Robot
 from windup.tools.robot.stack import State
 
 BARE: Final = "op3"
-STEPS, BATCHES = 50, 40
+STEPS: Final = 2000
 WALK_SECONDS: Final = 20.0
-PUSHES, EVERY, SPEED = 8, 2.5, 0.6
-"""Number of pushes while stepping, each in another direction, the time between them, s, and the
-speed that each gives the robot, m/s."""
+DIRECTIONS: Final = (30.0, 200.0, 330.0)
+"""Directions of the pushes against which the robots step, one a run, degrees."""
+STEP_SECONDS: Final = 4.0
+IMPULSES: Final = {"op3": 1.9, "human": 40.0}
+SPEED: Final = 0.5
+"""Impulses of these pushes, N s; for another robot its mass times this speed, m/s."""
 TARGETS: Final = {"op3_walking": 9.0, "op3_stepping": 12.0, "human_stepping": 19.0}
 """Largest 99th percentile of the tick, in bare steps of OP3, of the behaviours without --robot."""
 
@@ -71,10 +74,10 @@ class TickTimes:
         """Time steps of OP3's physics, standing on the floor."""
         twin = self._twin
         twin.reset()
-        for _ in range(BATCHES):
+        for _ in range(STEPS):
             began = time.perf_counter()
-            mujoco.mj_step(twin.model, twin.data, STEPS)
-            self._bare.append((time.perf_counter() - began) / STEPS)
+            mujoco.mj_step(twin.model, twin.data)
+            self._bare.append(time.perf_counter() - began)
 
 
 def measure_tick(name: str, *, targets: bool = False) -> dict[str, Any]:
@@ -113,19 +116,24 @@ def _measure_stepping(name: str, times: TickTimes) -> None:
     description = load_robot(name)
     if not (description.folder / STEPPING).is_file():
         return
+    times.measure(f"{description.name}_stepping", lambda: _step(name, description))
+
+
+def _step(name: str, description: RobotDescription) -> LoopReport:
+    """Step against pushes from several sides, and return the ticks of all runs."""
+    stepping, whole = find_stepping(description), LoopReport()
     state: State = "true" if description.drive.kind == "torque" else "estimated"
-    with Robot.open(name, state=state, rate=find_stepping(description).rate) as robot:
-        times.measure(f"{description.name}_stepping", lambda: _step(robot))
-
-
-def _step(robot: Robot) -> LoopReport:
-    """Step under pushes from all sides, and return how that went."""
-    description, stance = robot.description, stepping_stance(robot.description)
-    way, delay = find_stepping(description).way, robot.stack.delay
-    robot.start_in(stance)
-    for push in range(PUSHES):
-        robot.shove(SPEED, 2.0 * pi * push / PUSHES, delay=1.0 + push * EVERY)
-    return robot.run(build_stepper(description, way, stance, delay=delay), PUSHES * EVERY + 1.0)
+    stance = stepping_stance(description)
+    for direction in DIRECTIONS:
+        with Robot.open(name, state=state, rate=stepping.rate) as robot:
+            mass = float(robot.twin.model.body_mass.sum())
+            impulse = IMPULSES.get(description.name, SPEED * mass)
+            robot.start_in(stance)
+            robot.push(impulse, radians(direction), delay=0.5)
+            delay = robot.stack.delay
+            stepper = build_stepper(description, stepping.way, stance, delay=delay)
+            whole.tick += robot.run(stepper, STEP_SECONDS).tick
+    return whole
 
 
 @contextmanager
