@@ -122,8 +122,8 @@ def watch(orders: int, host: Host, flag: StopFlag | None = None) -> tuple[StopRe
     poller = select.poll()
     for descriptor in (orders, *host.descriptors):
         poller.register(descriptor, select.POLLIN)
-    longest = inf if flag is None else LOOK_PERIOD
-    while flag is None or not flag.overdue():
+    longest, since = inf if flag is None else LOOK_PERIOD, time.monotonic_ns()
+    while flag is None or not flag.overdue(since):
         due = last_heartbeat + allowed
         wait = min(max(due - time.monotonic(), 0.0), longest)
         ready = [descriptor for descriptor, _ in poller.poll(wait * 1e3)]

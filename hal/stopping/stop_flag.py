@@ -163,13 +163,17 @@ class StopFlag:
         """Return whether a further request has come since one was seen: no time for a crouch."""
         return self._words[ASKED] > self._words[SEEN]
 
-    def overdue(self) -> bool:
-        """Return whether the run has left its first unfinished request unseen for too long."""
+    def overdue(self, since: int = 0) -> bool:
+        """Return whether the run has left its first unfinished request unseen for too long.
+
+        Args:
+            since: Time from which the run is expected to look, CLOCK_MONOTONIC, ns.
+        """
         words = self._words
         stamp, done = words[ASKED], words[DONE]
         if stamp <= done or words[SEEN] > done:
             return False
-        return time.monotonic_ns() - stamp > TIME_TO_ANSWER
+        return time.monotonic_ns() - max(stamp, since) > TIME_TO_ANSWER
 
     def finish(self, outcome: Outcome) -> None:
         """Report that the requests so far are carried out, and what became of them."""

@@ -29,8 +29,8 @@ NOBODY_LEFT: Final = (
     "its program and its guardian have died, so torque may be on: cut the servo power, "
     "or give --port"
 )
-IGNORED: Final = 3 * TIME_TO_ANSWER
-"""Time after which a run without a guardian is taken to hang, ns."""
+IGNORED: Final = 15 * TIME_TO_ANSWER
+"""Time after which a run without a guardian is taken to hang, ns; arming takes a second."""
 
 
 class Stopped(NamedTuple):

@@ -68,6 +68,7 @@ def test_only_a_request_that_nobody_sees_is_overdue(
     assert not other.overdue()
     monkeypatch.setattr("time.monotonic_ns", lambda: now + TIME_TO_ANSWER + 1)
     assert other.overdue()
+    assert not other.overdue(since=now + 2)  # a guardian that has just started
     assert run.asked() and not other.overdue()
 
 

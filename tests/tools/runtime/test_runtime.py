@@ -76,9 +76,10 @@ def test_a_client_that_leaves_leaves_the_robot_holding(robot: RemoteRobot, base:
 def test_goals_are_followed_and_held_when_they_stop(robot: RemoteRobot) -> None:
     before = robot.status.counts
     with robot.stream() as stream:
-        stream.write(np.zeros(len(robot.joints)))
+        while robot.status.counts["stepped"] == before["stepped"]:  # it holds by now
+            stream.write(np.zeros(len(robot.joints)))
         status = until(robot, lambda status: status.counts["silent"] > before["silent"])
-    assert status.counts["received"] == before["received"] + 1
+    assert status.counts["received"] > before["received"]
     assert status.counts["stepped"] > before["stepped"] and status.state == "holding"
     assert robot.stand(0.5).good
 
