@@ -4,6 +4,7 @@ import os
 from collections.abc import Callable
 from typing import Any
 
+from windup.hal.clock import objects_kept
 from windup.robots import load_robot
 from windup.tools.command_line.version import installed_version
 from windup.tools.remote.messages import Welcome
@@ -42,7 +43,8 @@ def serve(
             broker = BrokerProcess(place, board, _welcome(robot, port, version))
             try:
                 ready()
-                Owner(robot, board, broker).serve()
+                with objects_kept():
+                    Owner(robot, board, broker).serve()
                 robot.close()  # before the broker ends: clients wait for that
             finally:
                 broker.end()
