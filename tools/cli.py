@@ -12,6 +12,7 @@ from windup.tools.command_line.sweep_line import separate
 from windup.tools.command_line.table import COMMANDS
 from windup.tools.command_line.version import installed_version
 from windup.tools.stopping.interrupts import end_on_signals, ignore_signals
+from windup.tools.stopping.stop_runs import parse_stop
 from windup.tools.terminal.result import print_result
 from windup.tools.terminal.run_notes import NOTES
 from windup.tools.terminal.say import say
@@ -109,6 +110,8 @@ def parse(arguments: list[str]) -> Any:
     if (name := arguments[0]) not in COMMANDS:
         near = near_word(name, (*COMMANDS, "--help"))
         raise UsageError(f"unknown command {name!r}{near}; `windup --help` lists all")
+    if name == "stop" and (stop := parse_stop(arguments[1:])) is not None:
+        return stop
     from windup.tools.command_line.parsing import (
         parse_options,  # only now: it takes longer than the help
     )

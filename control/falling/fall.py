@@ -11,10 +11,8 @@ from math import atan2, cos, hypot, sin
 
 import numpy as np
 
-from windup.control.kinematics.body import Body
 from windup.control.kinematics.momenta import Momenta, capture_point
-from windup.control.kinematics.rotation import facing, quaternion_matrix
-from windup.control.kinematics.soles import Soles
+from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.support import SupportRegion
 from windup.hal.errors import StateMissingError
 from windup.hal.joints import Array
@@ -34,7 +32,7 @@ def unreachable(body: Momenta, soles: Array, reach: float) -> Array | None:
     """
     point = capture_point(body)
     away = point - soles
-    if np.einsum("ij,ij->i", away, away).min() <= reach * reach:
+    if (away * away).sum(axis=1).min() <= reach * reach:
         return None  # within reach of a corner: the hull is not needed
     if SupportRegion.hull(soles).margin(point) >= -reach:
         return None
@@ -46,8 +44,7 @@ class FallPredictor:
     """Detects in the observations of one robot a fall that cannot be prevented.
 
     Args:
-        body: Kinematics of the robot.
-        soles: Points of its soles that can touch the ground.
+        state: The robot's state, with the points of its soles.
         reach: Maximum distance outside the hull of its soles at which it can put a foot, m.
 
     Attributes:
@@ -55,9 +52,10 @@ class FallPredictor:
             in -pi .. pi; None as long as no fall is predicted.
     """
 
-    def __init__(self, body: Body, soles: Soles, reach: float) -> None:
+    def __init__(self, state: RobotState, reach: float) -> None:
         self.reach = reach
-        self._body, self._soles = body, soles
+        self._state = state
+        _ = state.soles  # made now, and not in the first tick
         self.reset()
 
     def reset(self) -> None:
@@ -84,17 +82,14 @@ class FallPredictor:
 
     def _way(self, observation: Observation) -> Array | None:
         """Return the unit direction (2,) of a certain fall (ahead, left), or None."""
-        base = observation.base
-        if base is None:
+        if observation.base is None:
             raise StateMissingError(
                 "a fall cannot be foreseen without the base state; give the robot an [imu] and a "
                 "[[foot]] in robot.toml, or run with --no-protect"
             )
-        self._body.measure(observation)
-        points = self._soles.seen(self._body.data)[:, :2]
-        way = unreachable(self._body.momenta(), points, self.reach)
+        state = self._state.update(observation)
+        way = unreachable(state.momenta, state.ground[:, :2], self.reach)
         if way is None:
             return None
-        yaw = facing(quaternion_matrix(base.orientation))
-        c, s = cos(yaw), sin(yaw)
+        c, s = cos(state.yaw), sin(state.yaw)
         return np.array([c * way[0] + s * way[1], c * way[1] - s * way[0]]) / hypot(*way)

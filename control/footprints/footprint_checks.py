@@ -8,8 +8,9 @@ from shapely import MultiPoint, Polygon
 from shapely.affinity import rotate, translate
 from shapely.geometry.base import BaseGeometry
 
-from windup.control.footprints.footprints import Footprint, between, onto, seen_from
+from windup.control.footprints.footprints import Footprint
 from windup.control.kinematics.limb_ik import LimbIk, Pose
+from windup.control.kinematics.places import between, onto, seen_from
 from windup.control.kinematics.rotation import turn, turn_between
 from windup.hal.errors import UsageError
 from windup.hal.joints import Array

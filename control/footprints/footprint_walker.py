@@ -1,187 +1,228 @@
-"""Walks footprints with position servos, quasi-statically: first the weight shifts, then a foot.
+"""Walks footprints, quasi-statically: first the weight shifts, then a foot swings.
 
-Each phase is planned from the measured places of the feet, so that errors do not accumulate.
+Wu & Zordan 2010, sections 4 and 5, with given footprints: every step begins and ends at rest. Each
+phase is planned from the measured places of the feet, so that errors do not accumulate.
 """
 
 from collections.abc import Sequence
-from typing import Literal
 
 import numpy as np
 
-from windup.control.footprints.directed_file import ServoDirected
-from windup.control.footprints.footprints import Footprint, between, onto, seen_from
-from windup.control.footprints.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
-from windup.control.footprints.swing import gaussian_progress, lift, smooth_progress
-from windup.control.kinematics.body import Body
-from windup.control.kinematics.limb_ik import LimbIk, Pose
-from windup.control.kinematics.rotation import turn, way_round
-from windup.hal.joints import Array, Joints
+from windup.control.execution.executor import WalkExecutor
+from windup.control.execution.motion import (
+    Planted,
+    Shift,
+    Swing,
+    WalkMotion,
+    WalkPhase,
+    shift_time,
+)
+from windup.control.execution.swing import smooth_progress
+from windup.control.footprints.directed_file import Directed
+from windup.control.footprints.footprints import Footprint
+from windup.control.kinematics.places import between, onto, seen_from
+from windup.control.kinematics.rotation import way_round
+from windup.hal.command import JointCommand
+from windup.hal.joints import Array
 from windup.hal.observation import Observation
+from windup.hal.publishing.controller_block import BlockNames, ControllerBlock
+from windup.hal.publishing.run_state import RunState
 
-Phase = Literal["shift", "swing", "land", "rest"]
+PHASES: tuple[WalkPhase, ...] = ("rest", "shift", "swing", "land")
+LATE = 2.0
+"""Time-out of a swing, in multiples of its duration; it then ends even without contact."""
 
 
-class FootprintWalker(LegMotion):
+class FootprintWalker:
     """Controller that walks a list of footprints and ends with the weight between the feet.
 
     Args:
-        joints: The robot's joints.
-        body: Kinematics of the robot.
-        base: Name of the body with the free joint.
-        limbs: Inverse kinematics of the two legs, in the order of the soles.
-        stance: (n,) rad, the pose to start from; joints outside the legs keep it.
+        executor: Realises the motions.
         prints: Footprints to walk, in order.
-        how: Gains and times.
+        how: Times and tolerances.
 
     Attributes:
         finished: All steps are done and the weight is between the feet.
-        landed: Number of steps whose foot has come down.
+        landed: Number of steps whose foot has come down and bears load.
         stood: Number of steps after which the following weight shift has ended.
-        target: (3,) planned place of the current or last swing foot, relative to the stance foot.
+        motion: What the robot should do.
+        state: The robot's state.
+        published: Names of what `publish` fills in.
     """
 
-    target: Array
+    motion: WalkMotion
+    published = BlockNames(phases=PHASES)
 
-    def __init__(
-        self,
-        joints: Joints,
-        body: Body,
-        base: str,
-        limbs: Sequence[LimbIk],
-        stance: Array,
-        prints: Sequence[Footprint],
-        how: ServoDirected,
-    ) -> None:
-        super().__init__(joints, body, base, limbs, stance, how)
-        self.prints, self.how = prints, how
+    def __init__(self, executor: WalkExecutor, prints: Sequence[Footprint], how: Directed) -> None:
+        self.executor, self.prints, self.how = executor, prints, how
+        self.state = executor.state
         self.finished, self.landed, self.stood = False, 0, 0
+
+    @property
+    def places(self) -> Array:
+        """Measured places (2, 3) of the feet: x m, y m, yaw rad."""
+        return self.executor.places
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish the phase."""
+        block.run_state = RunState.STANDING if self.finished else RunState.STEPPING
+        block.phase = PHASES.index(self.motion.phase)
 
     def reset(self, observation: Observation) -> None:
         """Start from the measured places of the feet."""
-        super().reset(observation)
-        self._origin = between(*self.places)
-        self._apart = seen_from(*self.places)
-        height = float(self.pose.position[2]) - self.ground
-        self._aim = Aim(self.mass[:2].copy(), np.zeros(2), height, self.turned, 0.5)
-        self.finished, self.landed, self.stood, self._foot = False, 0, 0, 0
-        self._enter("rest", observation.time)
-
-    def plan(self, now: float, dt: float) -> Aim:
-        """Return the aim of this tick."""
-        self._advance(now)
-        part = self._now = min((now - self._began) / self._seconds(), 1.0)
-        self._aim = self._between(part)
-        if self._phase in ("swing", "land"):
-            standing = part if self._phase == "land" else max(1.0 - part / TAKE_OFF, 0.0)
-            self._aim.flying, self._aim.standing = self._foot, standing
-        return self._aim
-
-    def _between(self, part: float) -> Aim:
-        """Return the aim at the fraction `part` (0 to 1) of the phase."""
-        s = smooth_progress(part)
-        pace = 30.0 * (part * (1.0 - part)) ** 2 / self._seconds()
-        begin, end = self._from, self._to
-        return Aim(
-            com=begin.com + s * (end.com - begin.com),
-            speed=pace * (end.com - begin.com),
-            height=begin.height + s * (end.height - begin.height),
-            yaw=begin.yaw + s * (end.yaw - begin.yaw),
-            right_load=begin.right_load + s * (end.right_load - begin.right_load),
+        executor, now = self.executor, observation.time
+        executor.reset(observation)
+        places, com = executor.places, executor.com.copy()
+        self._origin = between(*places)
+        self.finished, self.landed, self.stood = False, 0, 0
+        self._last = now
+        yaw, height = executor.yaw, executor.height
+        self.motion = WalkMotion(
+            planted=_planted(places),
+            shift=Shift(com, com, now, 1.0, smooth_progress, smooth=True),
+            yaw=(yaw, yaw),
+            height=(height, height),
+            apart=seen_from(*places),
         )
+        self._enter("rest", now)
 
-    def _enter(self, phase: Phase, now: float) -> None:
-        """Enter a phase, from the present aim to its goal."""
-        self._phase, self._began = phase, now
-        self._from = self._aim
-        if phase == "shift":
-            self._foot = self.prints[self.landed].foot
-        if phase == "swing":
-            self._fix()
-        if phase == "land":
-            stance = self.places[1 - self._foot]
-            there = onto(stance, self.target)
-            pair = (there, stance) if self._foot == 0 else (stance, there)
-            self._apart = seen_from(*pair)
-        self._to = self._goal(phase)
+    def step(self, observation: Observation, dt: float) -> JointCommand:
+        """Return the command of this tick.
 
-    def _fix(self) -> None:
-        """Set the start and target place of the swing foot, relative to the stance foot."""
-        wanted = self.prints[self.landed]
-        stance = self.places[1 - self._foot]
-        self._left = seen_from(stance, self.places[self._foot])
-        self.target = wanted.place
-        if wanted.frame == "start":
-            self.target = seen_from(stance, onto(self._origin, wanted.place))
-
-    def _goal(self, phase: Phase) -> Aim:
-        """Return the aim at the end of a phase."""
-        middle, yaw = between(*self.places), self._aim.yaw
-        if phase == "rest":
-            yaw += way_round(yaw, middle[2])
-            return Aim(middle[:2], np.zeros(2), self.how.height, yaw, 0.5)
-        stance = self.places[1 - self._foot]
-        if phase == "swing":
-            yaw += way_round(yaw, between(stance, onto(stance, self.target))[2])
-        share = float(1 - self._foot)
-        return Aim(stance[:2].copy(), np.zeros(2), self.how.height, yaw, share)
-
-    def _seconds(self) -> float:
-        if self._phase == "swing":
-            return self.prints[self.landed].duration or self.how.swing
-        return self.how.land if self._phase == "land" else self.how.shift
+        Raises:
+            StateMissingError: The observation has no base.
+            WindupError: The optimisation of whole-body control found no solution.
+        """
+        now = observation.time
+        self.executor.observe(observation)
+        if self.executor.due(now, dt):
+            self._advance(now)
+        self._last = now
+        return self.executor.realise(self.motion, now, dt)
 
     def _advance(self, now: float) -> None:
         """Enter the next phase if the present one is over."""
-        if now - self._began < self._seconds() - 1e-9 or self.finished:
+        motion, shift = self.motion, self.motion.shift
+        if self.executor.follows_feet:
+            shift.goal = self._weight_goal(motion)
+            if motion.phase in ("swing", "land"):
+                shift.start = shift.goal
+        gone = now - shift.began
+        if gone < shift.seconds - 1e-9 or self.finished:
             return
-        if self._phase in ("shift", "rest"):
-            self.stood = self.landed
-        if self._phase == "shift":
-            if self._calm() or now - self._began > self.how.patience * self._seconds():
-                self._enter("swing", now)
-        elif self._phase == "swing":
-            self._enter("land", now)
-        elif self._phase == "land":
+        if motion.phase == "swing":
+            if self.executor.touches(motion.foot) or gone >= LATE * shift.seconds:
+                self._enter("land", now)
+            return
+        if motion.phase == "land":
             self.landed += 1
             self._enter("shift" if self.landed < len(self.prints) else "rest", now)
+            return
+        self.stood = self.landed
+        if self._calm() or gone > self.how.patience * shift.seconds:
+            self._rested(now)
+
+    def _rested(self, now: float) -> None:
+        """Enter the next phase after a completed weight shift, or finish."""
+        if self.motion.phase == "shift":
+            self._enter("swing", now)
         elif self.landed < len(self.prints):
             self._enter("shift", now)
         else:
             self.finished = True
 
     def _calm(self) -> bool:
-        """Return True if the CoM is over the stance foot and at rest, within the tolerances."""
-        away = np.hypot(*(self.mass[:2] - self._to.com))
-        return bool(away < self.how.near and np.hypot(*self.speed) < self.how.quiet)
+        """Return True if the CoM is at its goal and at rest, within the tolerances."""
+        executor = self.executor
+        away = np.hypot(*(executor.com - self.motion.shift.goal))
+        return bool(away < self.how.near and np.hypot(*executor.com_velocity) < self.how.quiet)
 
-    def sole(self, foot: int) -> Pose:
-        """Return the desired pose of a sole on the ground.
+    def _enter(self, phase: WalkPhase, now: float) -> None:
+        """Enter a phase, from what was desired in the last tick to the phase's goal."""
+        before, places = self.motion, self.executor.places
+        s = smooth_progress(before.shift.part(self._last))
+        yaw, height, load = (_at(pair, s) for pair in (_pair(before), before.height, before.load))
+        self.motion = motion = WalkMotion(
+            planted=_planted(places),
+            shift=before.shift,
+            phase=phase,
+            foot=self.prints[self.landed].foot if phase == "shift" else before.foot,
+            left=before.left,
+            target=before.target,
+            apart=before.apart,
+        )
+        if phase == "swing":
+            self._fix(motion, places)
+        elif phase == "land":
+            motion.apart = _apart(motion.foot, places[1 - motion.foot], motion.target)
+        goal, toward = self._weight_goal(motion), self._yaw_goal(motion, yaw, places)
+        start = self._weight_start(before, phase, goal)
+        seconds = self._seconds(phase, float(np.hypot(*(goal - start))))
+        motion.shift = Shift(start, goal, now, seconds, smooth_progress, smooth=True)
+        motion.yaw, motion.height = (yaw, toward), (height, self.how.height)
+        motion.load = load, 0.5 if phase == "rest" else float(1 - motion.foot)
+        if phase == "swing":
+            motion.swing = self._swing(motion, places, now)
 
-        The more loaded sole keeps its measured place. The other one is held at the distance at
-        which it came down: otherwise small forces between the feet would make it creep.
-        """
-        x, y, yaw = self.places[foot] + self._creep(foot)
-        return Pose(np.array([x, y, self.ground]), turn(yaw))
+    def _fix(self, motion: WalkMotion, places: Array) -> None:
+        """Set the start and target place of the swing foot, relative to the stance foot."""
+        wanted, stance = self.prints[self.landed], places[1 - motion.foot]
+        motion.left, motion.target = seen_from(stance, places[motion.foot]), wanted.place
+        if wanted.frame == "start":
+            motion.target = seen_from(stance, onto(self._origin, wanted.place))
 
-    def _creep(self, foot: int) -> Array:
-        """Return the correction (3,) of a foot on the ground against creep, m and rad."""
-        one, other = self.places
-        share = self._aim.right_load
-        if self._phase == "swing":
-            return np.zeros(3)
-        if foot == 1:
-            away = onto(one, self._apart) - other
-            return (1.0 - share) * np.array([*away[:2], way_round(0.0, away[2])])
-        back = seen_from(onto(np.zeros(3), self._apart), np.zeros(3))
-        away = onto(other, back) - one
-        return share * np.array([*away[:2], way_round(0.0, away[2])])
+    def _weight_goal(self, motion: WalkMotion) -> Array:
+        """Return where the CoM (2,) is to be: between both feet or over the stance foot, m."""
+        middle = self.executor.middle
+        if motion.phase == "rest":
+            return np.asarray(0.5 * (middle(0) + middle(1)))
+        return middle(1 - motion.foot).copy()
 
-    def flying(self, foot: int) -> Pose:
-        """Return the desired pose of the swing foot's sole."""
-        stance = self.places[1 - foot]
-        if self._phase == "land":
-            x, y, yaw = onto(stance, self.target)
-            return Pose(np.array([x, y, self.ground - PRESS]), turn(yaw))
-        s = gaussian_progress(self._now)
-        x, y, yaw = onto(stance, self._left + s * (self.target - self._left))
-        return Pose(np.array([x, y, self.ground + lift(self._now, self.how.lift)]), turn(yaw))
+    def _weight_start(self, before: WalkMotion, phase: WalkPhase, goal: Array) -> Array:
+        """Return where the path (2,) of the CoM to `goal` (2,) begins, m."""
+        if not self.executor.follows_feet:
+            return before.shift.at(self._last)
+        return self.executor.com.copy() if phase in ("rest", "shift") else goal
+
+    def _yaw_goal(self, motion: WalkMotion, yaw: float, places: Array) -> float:
+        """Return the heading of the base at the end of a phase that begins at `yaw`, rad."""
+        if motion.phase == "rest":
+            return yaw + way_round(yaw, between(*places)[2])
+        if motion.phase == "swing":
+            stance = places[1 - motion.foot]
+            return yaw + way_round(yaw, between(stance, onto(stance, motion.target))[2])
+        return yaw
+
+    def _seconds(self, phase: WalkPhase, far: float) -> float:
+        """Return the duration of a phase in which the weight moves by `far` m, s."""
+        if phase == "swing":
+            return self.prints[self.landed].duration or self.how.swing
+        return self.how.land if phase == "land" else shift_time(far, self.how.shift, self.how.pace)
+
+    def _swing(self, motion: WalkMotion, places: Array, now: float) -> Swing:
+        """Return the swing of the foot to its footprint, in the world."""
+        target = onto(places[1 - motion.foot], motion.target)
+        yaws = float(places[motion.foot, 2]), float(target[2])
+        start = self.executor.lift_off(motion.foot, motion.planted)
+        duration, anchor = motion.shift.seconds, motion.shift.start
+        return Swing(motion.foot, now, duration, start, target[:2], yaws, self.how.lift, anchor)
+
+
+def _planted(places: Array) -> Planted:
+    """Return the places (2, 3), x m, y m, yaw rad, as places at which the feet stay."""
+    return Planted(np.column_stack([places[:, :2], np.zeros(2)]), places[:, 2].copy())
+
+
+def _apart(foot: int, stance: Array, target: Array) -> Array:
+    """Return the place (3,) of the second foot relative to the first, after a step of `foot`."""
+    there = onto(stance, target)
+    return seen_from(there, stance) if foot == 0 else seen_from(stance, there)
+
+
+def _pair(motion: WalkMotion) -> tuple[float, float]:
+    assert motion.yaw is not None, "a walk has headings"
+    return motion.yaw
+
+
+def _at(pair: tuple[float, float], s: float) -> float:
+    return pair[0] + s * (pair[1] - pair[0])

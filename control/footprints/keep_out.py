@@ -8,8 +8,8 @@ from shapely import MultiPoint, Point, Polygon, union_all
 from shapely.affinity import rotate, scale, translate
 from shapely.geometry.base import BaseGeometry
 
-from windup.control.footprints.footprints import between
 from windup.control.kinematics.limb_ik import Pose
+from windup.control.kinematics.places import between
 from windup.control.kinematics.rotation import turn, yaw_of
 from windup.hal.errors import UsageError
 from windup.hal.joints import Array

@@ -53,18 +53,24 @@ class LimbIk:
         self._model, self._data = model, mujoco.MjData(model)
         self._data.qpos[:7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
         self._site = model.site(end).id
+        # Views, looked up once: to look one up takes as long as to copy it.
+        self._angles = self._data.qpos[7:]
+        self._position = self._data.site_xpos[self._site]
+        self._rotation = self._data.site_xmat[self._site].reshape(3, 3)
         self.joints = _chain(model, model.body(base).id, int(model.site_bodyid[self._site]))
         if not self.joints.size:
             raise UsageError(f"no joint lies between {base!r} and {end!r}")
         self._lower, self._upper = model.jnt_range[1 + self.joints].T
         self._jacobian = np.zeros((6, model.nv))
+        self._linear, self._angular = self._jacobian[:3], self._jacobian[3:]
+        self._columns = 6 + self.joints
         self._one = np.eye(len(self.joints))
 
     def forward(self, position: Array) -> Pose:
         """Return the pose of the end in the base frame at joint positions (n,) rad."""
-        self._data.qpos[7:] = position
+        self._angles[:] = position
         mujoco.mj_kinematics(self._model, self._data)
-        return self._pose()
+        return Pose(self._position.copy(), self._rotation.copy())
 
     def solve(self, target: Pose, start: Array, steps: int = STEPS) -> Array:
         """Return joint angles (k,) rad, within the limits, whose end pose is nearest to `target`.
@@ -74,19 +80,19 @@ class LimbIk:
             start: (n,) initial joint positions, rad; those of other limbs have no effect.
             steps: Maximum number of iterations.
         """
-        data = self._data
-        data.qpos[7:] = start
+        model, data = self._model, self._data
+        self._angles[:] = start
         angles = start[self.joints]
         change = np.empty(len(angles))
         for _ in range(steps):
-            data.qpos[7 + self.joints] = angles
-            mujoco.mj_kinematics(self._model, data)
+            self._angles[self.joints] = angles
+            mujoco.mj_kinematics(model, data)
             error = self._error(target)
             if np.abs(error).max() < CLOSE:
                 break
-            mujoco.mj_comPos(self._model, data)
-            mujoco.mj_jacSite(self._model, data, self._jacobian[:3], self._jacobian[3:], self._site)
-            matrix = self._jacobian[:, 6 + self.joints]
+            mujoco.mj_comPos(model, data)
+            mujoco.mj_jacSite(model, data, self._linear, self._angular, self._site)
+            matrix = self._jacobian[:, self._columns]
             # Damping grows with the error (Sugihara 2011): converges for targets out of reach.
             square = matrix.T @ matrix + (DAMPING**2 + 0.5 * (error @ error)) * self._one
             mujoco.mju_cholFactor(square, 0.0)
@@ -96,16 +102,11 @@ class LimbIk:
             angles = np.minimum(np.maximum(angles, self._lower), self._upper)
         return angles
 
-    def _pose(self) -> Pose:
-        data = self._data
-        return Pose(data.site_xpos[self._site].copy(), data.site_xmat[self._site].reshape(3, 3))
-
     def _error(self, target: Pose) -> Array:
         """Return the error (6,) of position, m, and attitude, rad."""
-        now = self._pose()
         error = np.empty(6)
-        error[:3] = target.position - now.position
-        error[3:] = turn_between(now.rotation, target.rotation)
+        np.subtract(target.position, self._position, out=error[:3])
+        error[3:] = turn_between(self._rotation, target.rotation)
         return error
 
 

@@ -7,9 +7,9 @@ frame, z up; points are (2,) m on the ground.
 from dataclasses import dataclass
 from math import sqrt
 
-import mujoco
 import numpy as np
 
+from windup.control.kinematics.computed_once import ComputedOnce
 from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
 
@@ -17,7 +17,7 @@ LEAST_LOAD = 0.3
 """Minimum vertical ground force assumed, as a share of the weight, even in free fall."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Momenta:
     """Mass, centre of mass and momenta of the whole body at one instant.
 
@@ -33,21 +33,20 @@ class Momenta:
     velocity: Array
     angular: Array
 
-    @classmethod
-    def of(cls, data: mujoco.MjData, base: int, mass: float) -> "Momenta":
-        """Return the momenta of the subtree of body `base`, of `mass` kg, after `mj_subtreeVel`."""
-        com, velocity = data.subtree_com[base].copy(), data.subtree_linvel[base].copy()
-        return cls(mass, com, velocity, data.subtree_angmom[base].copy())
-
     @property
     def linear(self) -> Array:
         """(3,) linear momentum, kg m/s."""
         return self.mass * self.velocity
 
-    @property
+    @ComputedOnce
     def omega(self) -> float:
         """Natural frequency of the inverted pendulum of this height, sqrt(g / c_z), 1/s."""
         return sqrt(GRAVITY / max(float(self.com[2]), 1e-3))
+
+    @ComputedOnce
+    def capture_point(self) -> Array:
+        """(2,) point over which an inverted pendulum comes to rest (Eq. 7), m."""
+        return self.com[:2] + self.velocity[:2] / self.omega
 
 
 def centre_of_pressure(body: Momenta, linear_rate: Array, angular_rate: Array) -> Array:
@@ -76,7 +75,7 @@ def desired_cp(body: Momenta, linear_damping: float, angular_damping: float) -> 
 
 def capture_point(body: Momenta) -> Array:
     """Return the capture point (2,) m, over which an inverted pendulum comes to rest (Eq. 7)."""
-    return body.com[:2] + body.velocity[:2] / body.omega
+    return body.capture_point
 
 
 def _load(body: Momenta, rate: float) -> float:

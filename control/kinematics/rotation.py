@@ -16,7 +16,7 @@ def yaw_of(rotation: Array) -> float:
 def facing(rotation: Array) -> float:
     """Return the heading of a base, from the y axis of its rotation matrix, rad.
 
-    It is the heading of `windup.control.kinematics.body.heading`.
+    It is the heading of `heading`.
     """
     return atan2(-rotation[0, 1], rotation[1, 1])
 
@@ -68,3 +68,14 @@ def lying(normal: Array, yaw: float) -> Array:
     along = np.array([c, s, -(c * normal[0] + s * normal[1]) / normal[2]])
     along /= np.linalg.norm(along)
     return np.column_stack([along, np.cross(normal, along), normal])
+
+
+def heading(orientation: Array) -> Array:
+    """Return the headings (...,) of a base, rad, from quaternions (..., 4) wxyz.
+
+    The forward direction is orthogonal to the ground-plane projection of the line that joins the
+    hips, which is the base's y axis (Laszlo 1996, section 3.5).
+    """
+    w, x, y, z = np.moveaxis(orientation, -1, 0)
+    left_x, left_y = 2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z)
+    return np.arctan2(-left_x, left_y)

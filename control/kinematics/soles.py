@@ -1,7 +1,7 @@
 """Possible contact points of the soles, and their motion relative to the base."""
 
 from collections.abc import Sequence
-from itertools import product
+from itertools import pairwise, product
 
 import mujoco
 import numpy as np
@@ -32,6 +32,7 @@ class Soles:
     Attributes:
         foot: (p,) index of each point's foot.
         sensor: (p,) index of each point's contact sensor, -1 where the foot has none.
+        rows: For each foot the rows of its points.
         members: (feet, p) 1 if a point belongs to a foot, else 0.
         position: (p, 3) contact points in the base frame, m.
         rotation: (feet, 3) angular velocities of the feet relative to the base, base frame, rad/s.
@@ -44,7 +45,6 @@ class Soles:
         self._model, self._data = model, mujoco.MjData(model)
         self._data.qpos[:7] = IDENTITY
         self._bodies = np.array([model.body(name).id for name in feet], dtype=np.intp)
-        self._root = int(model.body_rootid[self._bodies[0]])
         points, radii, foot = [], [], []
         for index, body in enumerate(self._bodies):
             found = _points(model, int(body))
@@ -54,13 +54,21 @@ class Soles:
             radii += [radius for _, radius in found]
             foot += [index] * len(found)
         self._local, self._radius = np.array(points)[:, :, None], np.array(radii)[:, None]
+        self._round = any(radii)
         self.foot = np.array(foot, dtype=np.intp)
+        ends = np.cumsum([0, *np.bincount(self.foot)]).tolist()
+        self.rows = [slice(begin, end) for begin, end in pairwise(ends)]
         self._of_point = self._bodies[self.foot]
         self.members = (self.foot == np.arange(len(feet))[:, None]).astype(float)
         self.sensor = self._nearest(contacts)
         self.position = np.zeros((len(foot), 3))
         self.rotation = np.zeros((len(feet), 3))
         self.heights = np.zeros(len(foot))
+        # Views, looked up once: to look one up takes as long as to copy it.
+        self._joints, self._rates = self._data.qpos[7:], self._data.qvel[6:]
+        self._xpos, self._xmat, self._cvel = self._data.xpos, self._data.xmat, self._data.cvel
+        root = int(model.body_rootid[self._bodies[0]])
+        self._pivot = self._data.subtree_com[root]
 
     def update(self, position: Array, velocity: Array, up: Array) -> None:
         """Update all attributes for the present joint state.
@@ -71,26 +79,31 @@ class Soles:
             up: (3,) unit vertical in the base frame.
         """
         data = self._data
-        data.qpos[7:] = position
-        data.qvel[6:] = velocity
+        self._joints[:] = position
+        self._rates[:] = velocity
         mujoco.mj_kinematics(self._model, data)
         mujoco.mj_comPos(self._model, data)
         mujoco.mj_comVel(self._model, data)
-        self.position = self._points(data, up)
+        self.position = self._points(self._xpos, self._xmat, up)
         self.heights = self.position @ up
-        twist = data.cvel[self._bodies]
+        twist = self._cvel[self._bodies]
         self.rotation = twist[:, :3]
-        self._pivot = data.subtree_com[self._root]
         self._linear = twist[:, 3:]
 
-    def seen(self, data: mujoco.MjData) -> Array:
-        """Return the points (p, 3) in the world frame of `data`, which is of the same model, m."""
-        return self._points(data, UP)
+    def seen(self, position: Array, axes: Array) -> Array:
+        """Return the points (p, 3) in the world frame, m.
 
-    def _points(self, data: mujoco.MjData, up: Array) -> Array:
-        frames = data.xmat[self._bodies].reshape(-1, 3, 3)
+        Args:
+            position: (bodies, 3) positions of all bodies of the model, m.
+            axes: (bodies, 9) their rotation matrices, row by row.
+        """
+        return self._points(position, axes, UP)
+
+    def _points(self, position: Array, axes: Array, up: Array) -> Array:
+        frames = axes[self._bodies].reshape(-1, 3, 3)
         turned = (frames[self.foot] @ self._local)[:, :, 0]
-        return turned + data.xpos[self._of_point] - self._radius * up
+        points = turned + position[self._of_point]
+        return points - self._radius * up if self._round else points
 
     def flow(self, weights: Array) -> tuple[Array, Array]:
         """Return each foot's weighted sums of point positions and velocities.

@@ -11,7 +11,7 @@ from math import nan
 
 import numpy as np
 
-from windup.control.kinematics.body import Body
+from windup.control.kinematics.robot_state import RobotState
 from windup.control.limit_cycle.moment import Moment
 from windup.control.limit_cycle.planner import Planner, StepRequest
 from windup.control.limit_cycle.policy import policy_input
@@ -45,7 +45,7 @@ class Balancer:
         gait: Graph, perturbations and tables.
         joints: The robot's joints.
         contacts: Its contact sensors.
-        body: Its kinematics.
+        state: Its state.
         regulation: The r regulation variables.
         perturbations: Names of the r perturbations that control them.
         planner: Computes their scalings, or None for open loop.
@@ -63,7 +63,7 @@ class Balancer:
     gait: Gait
     joints: Joints
     contacts: ContactSensors
-    body: Body
+    state: RobotState
     regulation: list[RegulationVariable]
     perturbations: list[str]
     planner: Planner | None
@@ -145,9 +145,9 @@ class Balancer:
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the command of this tick; at the start of a step, request its plan first."""
         if self._start is None:
-            self._begin_step(observation, self.body.measure(observation), dt)
+            self._begin_step(observation, self.state.update(observation).outcomes, dt)
         elif self._tracker.advance(observation.contacts[None])[0]:
-            here = self.body.measure(observation)
+            here = self.state.update(observation).outcomes
             if self.footfalls is not None:
                 self.footfalls.end_step()
                 self.footfalls.see(observation)
@@ -202,7 +202,7 @@ class Balancer:
         state = int(self._tracker.state[0])
         if not shaken.entered(state):
             return
-        here = self.body.measure(observation)
+        here = self.state.update(observation).outcomes
         if self.footfalls is not None:
             self.footfalls.see(observation)
         if self.steering.slip is not None:

@@ -11,7 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
-from windup.control.kinematics.body import Body
+from windup.control.kinematics.robot_state import RobotState
 from windup.control.limit_cycle.policy import StepPolicy
 from windup.control.limit_cycle.step_model import StepModel
 from windup.control.pose_graph.gait import Gait
@@ -91,7 +91,7 @@ class StepPlanner:
         gait: The gait.
         joints: The robot's joints.
         contacts: Its contact sensors.
-        body: Its kinematics.
+        state: Its state.
         regulation: The r regulation variables.
         perturbations: Names of the r perturbations that control them.
         model: The step model.
@@ -104,7 +104,7 @@ class StepPlanner:
     gait: Gait
     joints: Joints
     contacts: ContactSensors
-    body: Body
+    state: RobotState
     regulation: list[RegulationVariable]
     perturbations: list[str]
     model: StepModel
@@ -138,7 +138,8 @@ class StepPlanner:
 
     def plan(self, request: StepRequest) -> Array:
         """Return the scalings (r,) for the step."""
-        start = request.origin or StepStart.of(request.start.observation, request.stance, self.body)
+        now = StepStart.of(request.start.observation, request.stance, self.state)
+        start = request.origin or now
 
         def sample(scalings: Array) -> tuple[Array, Mask]:
             scale = np.repeat(request.scale[None], len(scalings), axis=0)
@@ -148,7 +149,7 @@ class StepPlanner:
             values = start.evaluate(outcomes, self.regulation, self.contacts)
             return values, outcomes.fell | ~policy.done
 
-        here = StepStart.of(request.start.observation, request.stance, self.body).features()
+        here = now.features()
         at = int(request.at.state[0])
         return self.model.control(sample, request.target, request.phase, here, at)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import mujoco
 import numpy as np
 
-from windup.control.kinematics.body import Body
+from windup.control.kinematics.robot_state import RobotState
 from windup.hal.contacts import ContactSensors
 from windup.hal.controller import Plane
 from windup.hal.joints import Array
@@ -27,23 +27,23 @@ class Footfalls:
     """Fits a plane to the last contact points of the feet with the ground.
 
     Attributes:
-        body: The robot's kinematics.
+        state: The robot's state.
         contacts: Its contact sensors, each with a site.
         count: Number of steps whose points are used.
     """
 
-    body: Body
+    state: RobotState
     contacts: ContactSensors
     count: int
     _steps: deque[list[Array]] = field(init=False)
 
     def __post_init__(self) -> None:
-        model, names = self.body.model, self.contacts.names
+        model, names = self.state.model, self.contacts.names
         self._sites = np.array([model.sensor(name).objid[0] for name in names], dtype=np.intp)
         data = mujoco.MjData(model)
         mujoco.mj_kinematics(model, data)
         foot = self.contacts.members.argmax(axis=0)
-        self._above = data.site_xpos[self._sites, 2] - data.site_xpos[self.body.soles[foot], 2]
+        self._above = data.site_xpos[self._sites, 2] - data.site_xpos[self.state.sites[foot], 2]
         self.reset()
 
     def reset(self) -> None:
@@ -51,9 +51,9 @@ class Footfalls:
         self._steps = deque([[]], maxlen=self.count)
 
     def see(self, observation: Observation) -> None:
-        """Add the points in contact; the body must have measured this observation."""
+        """Add the points in contact."""
         pressed = self.contacts.pressed(observation.contacts)
-        points = self.body.data.site_xpos[self._sites][pressed]
+        points = self.state.update(observation).points(self._sites)[pressed]
         points[:, 2] -= self._above[pressed]
         self._steps[-1] += list(points)
 

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from windup.control.kinematics.body import Body, heading
+from windup.control.kinematics.robot_state import RobotState
+from windup.control.kinematics.rotation import heading
 from windup.control.regulation.variables import RegulationVariable, StepEnd
 from windup.hal.contacts import ContactSensors
 from windup.hal.controller import Outcomes
@@ -56,9 +57,9 @@ class StepStart:
     body: Outcomes
 
     @classmethod
-    def of(cls, observation: Observation, stance: int, body: Body) -> "StepStart":
+    def of(cls, observation: Observation, stance: int, state: RobotState) -> "StepStart":
         """Return the start of a step on foot `stance` at `observation`."""
-        return cls(observation.time, stance, body.measure(observation))
+        return cls(observation.time, stance, state.update(observation).outcomes)
 
     @property
     def heading(self) -> float:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from windup.control.kinematics.body import heading
+from windup.control.kinematics.rotation import heading
 from windup.hal.controller import Outcomes
 from windup.hal.errors import UnknownNameError
 from windup.hal.geometry.gravity import GRAVITY

@@ -1,29 +1,20 @@
 """A comfort step: a robot that stands still puts one foot back to its place in the stance."""
 
-from math import cos, pi
 from typing import Literal
 
 import numpy as np
 
-from windup.control.footprints.swing import swing_foot
+from windup.control.execution.executor import StepExecutor
+from windup.control.execution.motion import Motion, Shift, Swing, shift_time
 from windup.control.kinematics.momenta import capture_point
-from windup.control.kinematics.rotation import heading_between, turn, way_round
-from windup.control.stepping.footing import Footing
-from windup.control.stepping.stepping_file import Stepping
+from windup.control.kinematics.rotation import turn, way_round
+from windup.control.stepping.stepping_file import ComfortTable, Stepping
 from windup.hal.joints import Array
 
-SHIFT = 0.5
-"""Time to shift the centre of mass over one foot, and time to shift it back, s."""
-WAIT = 0.3
-"""Additional time after `SHIFT` before the step is given up, s."""
-SWING = 0.4
-"""Duration of the swing, s."""
-INSIDE = 0.02
-"""Minimum distance of CoM and capture point inside a sole for standing on that foot alone, m."""
 STILL = 0.05
 """Maximum speed of the centre of mass of a robot that stands still, m/s."""
-ASKEW = 0.15
-"""Maximum yaw between the feet of a relaxed stance, rad."""
+LATE = 2.0
+"""Time-out of the touchdown, in multiples of the swing's duration."""
 
 Phase = Literal["shift", "swing", "back"]
 
@@ -35,89 +26,106 @@ class ComfortStep:
     and direction, by steps that are not necessary to prevent a fall.
 
     Args:
-        footing: The feet of a robot that stands still.
+        executor: The executor of a robot that stands still.
         now: Present time, s.
         stepping: Stepping parameters of the robot.
 
     Attributes:
         foot: Index of the foot that steps: the one that has to move further forward.
-        target: (3,) its nominal place beside the other one, m.
+        target: (2,) its nominal place beside the other one, m.
         needed: It is too far from that place, or turned too far relative to the other foot.
         given_up: The CoM did not come over the stance foot in time.
+        motion: What the robot should do.
     """
 
-    def __init__(self, footing: Footing, now: float, stepping: Stepping) -> None:
-        self._footing, self._began, self._stepping = footing, now, stepping
-        self._planted = planted = footing.planted()
-        aside = [self._home(foot) - footing.places[foot] for foot in (0, 1)]
+    def __init__(self, executor: StepExecutor, now: float, stepping: Stepping) -> None:
+        self._executor, self._lift = executor, stepping.lift
+        self._how: ComfortTable = stepping.relax
+        planted = executor.feet.planted()
+        aside = [self._home(foot, planted.yaws) - executor.feet.places[foot] for foot in (0, 1)]
         # Both errors are about equal; the foot that steps forward leaves the other in front.
         forward = turn(planted.front)[:2, 0]
         self.foot = int(np.argmax([way @ forward for way in aside]))
-        self.target = np.append(self._home(self.foot), 0.0)
+        self.target = self._home(self.foot, planted.yaws)
         far = float(np.linalg.norm(aside[self.foot]))
-        self.needed = far > stepping.comfort or abs(way_round(*planted.yaws)) > ASKEW
+        askew = abs(way_round(*planted.yaws))
+        self.needed = far > stepping.comfort or askew > self._how.askew
         self.given_up = False
+        yaw = executor.feet.yaw
         self._phase: Phase = "shift"
-        self._place = self._from = footing.base.position[:2].copy()
-        com = footing.momenta.com[:2] - footing.base.position[:2]
-        self._over = footing.places[1 - self.foot] - com
-        self._before, self._after = footing.yaw, float(planted.yaws[1 - self.foot])
+        self._yaws = yaw, float(planted.yaws[1 - self.foot])
+        self._place = executor.weight
+        self._over = executor.over(1 - self.foot)
+        self.motion = Motion(planted, self._shift(self._over, now), yaw=(yaw, yaw))
 
     def done(self, now: float) -> bool:
         """Return whether the step is over or given up, with the weight shifted back."""
-        return self._phase == "back" and now - self._began >= SHIFT
+        return self._phase == "back" and now - self._began >= self.motion.shift.seconds
 
-    def pose(self, goals: Array, now: float) -> None:
-        """Set the goals of the legs' joints in `goals` (n,), rad."""
-        self._go_on(now)
-        if self._phase == "swing":
-            self._swing(goals, now - self._began)
-            return
-        footing, part = self._footing, _eased((now - self._began) / SHIFT)
-        shifts = self._phase == "shift"
-        to = self._over if shifts else footing.home(self._planted)
-        self._place = self._from + part * (to - self._from)
-        base = footing.upright(self._place, self._before if shifts else self._planted.front)
-        for foot in (0, 1):
-            footing.keep(goals, foot, self._planted, base)
-
-    def _go_on(self, now: float) -> None:
+    def advance(self, now: float) -> None:
         """Enter the next phase if it is due: swing once the other foot can bear the robot."""
-        gone, footing, foot = now - self._began, self._footing, self.foot
+        gone, shift = now - self._began, self.motion.shift
         if self._phase == "shift":
-            other, momenta = footing.support((1 - foot,)), footing.momenta
-            if min(other.margin(capture_point(momenta)), other.margin(momenta.com)) > INSIDE:
-                self._begin("swing", now)
-            elif gone > SHIFT + WAIT:
+            if gone >= self._how.least * shift.seconds and self._borne():
+                self._swing(now)
+            elif gone > shift.seconds + self._how.wait:
                 self.given_up = True
-                self._begin("back", now)
-        elif self._phase == "swing" and gone > SWING:
-            # Start from the measured base: it may not have come all the way over the other foot.
-            self._place = footing.base.position[:2].copy()
-            self._planted = self._planted.step(foot, self.target, self._after)
-            self._begin("back", now)
+                self._back(now)
+        elif self._phase == "swing" and gone > shift.seconds and self._landed(gone / shift.seconds):
+            self._land(now)
+        self._place = self.motion.shift.at(now)
 
-    def _swing(self, goals: Array, gone: float) -> None:
-        """Set the goals of the swing: the foot moves to its target, the base over the other."""
-        part = _eased(gone / SWING)
-        place = self._from + part * (self._over - self._from)
-        base = self._footing.upright(place, heading_between(self._before, self._after, part))
-        start = self._planted.places[self.foot]
-        heading = heading_between(self._planted.yaws[self.foot], self._after, part)
-        at = swing_foot(start, self.target, gone / SWING, self._stepping.lift)
-        self._footing.put(goals, self.foot, at, heading, base)
-        self._footing.keep(goals, 1 - self.foot, self._planted, base)
+    @property
+    def _began(self) -> float:
+        return self.motion.shift.began
 
-    def _begin(self, phase: Phase, now: float) -> None:
-        self._phase, self._began, self._from = phase, now, self._place
+    def _borne(self) -> bool:
+        """Return whether CoM and capture point are inside the sole of the stance foot."""
+        feet = self._executor.feet
+        sole, momenta = feet.support((1 - self.foot,)), feet.momenta
+        return min(sole.margin(capture_point(momenta)), sole.margin(momenta.com)) > self._how.inside
 
-    def _home(self, foot: int) -> Array:
+    def _landed(self, part: float) -> bool:
+        """Return whether the foot has come down, or is late at `part` of the swing's duration."""
+        return self._executor.touches(self.foot) or part > LATE
+
+    def _swing(self, now: float) -> None:
+        """Start the swing; meanwhile the weight comes all the way over the other foot."""
+        motion, how, before = self.motion, self._how, self._yaws[0]
+        start = self._executor.lift_off(self.foot, motion.planted)
+        yaws = float(motion.planted.yaws[self.foot]), self._yaws[1]
+        motion.shift = Shift(
+            self._place, self._over, now, how.swing, self._executor.ease, smooth=True
+        )
+        motion.swing = Swing(
+            self.foot, now, how.swing, start, self.target, yaws, self._lift, self._place
+        )
+        motion.yaw, self._phase = (before, self._yaws[1]), "swing"
+
+    def _land(self, now: float) -> None:
+        """Plant the foot at its target, and shift the weight back from where it is measured.
+
+        It may not have come all the way over the other foot.
+        """
+        self._place = self._executor.weight
+        self.motion.planted = self.motion.planted.step(self.foot, self.target, self._yaws[1])
+        self._back(now)
+
+    def _back(self, now: float) -> None:
+        """Start to shift the weight back between the feet."""
+        planted = self.motion.planted
+        self.motion.shift = self._shift(self._executor.home(planted), now)
+        self.motion.swing, self.motion.yaw = None, (planted.front, planted.front)
+        self._phase = "back"
+
+    def _shift(self, goal: Array, now: float) -> Shift:
+        """Return the path of the weight from its present place to `goal` (2,)."""
+        far = float(np.linalg.norm(goal - self._place))
+        seconds = shift_time(far, self._how.shift, self._how.pace)
+        return Shift(self._place, goal, now, seconds, self._executor.ease, smooth=True)
+
+    def _home(self, foot: int, yaws: Array) -> Array:
         """Return the nominal place (2,) m of a foot, relative to where the other one stands."""
-        homes, other = self._footing.homes, 1 - foot
-        way = turn(self._planted.yaws[other])[:2, :2] @ (homes[foot] - homes[other])[:2]
-        return self._footing.places[other] + way
-
-
-def _eased(part: float) -> float:
-    """Return the fraction of a path that is done at the time fraction `part`, eased in and out."""
-    return 0.5 * (1.0 - cos(pi * min(part, 1.0)))
+        feet, other = self._executor.feet, 1 - foot
+        way = turn(yaws[other])[:2, :2] @ (feet.homes[foot] - feet.homes[other])[:2]
+        return np.asarray(feet.places[other] + way)

@@ -11,11 +11,10 @@ from math import cos, exp, sin
 from typing import Final
 
 import numpy as np
-from shapely import MultiPoint
 from shapely.geometry.base import BaseGeometry
 
 from windup.control.kinematics.momenta import Momenta, capture_point, desired_cp
-from windup.control.kinematics.support import SupportRegion, nearest_point
+from windup.control.kinematics.support import SupportRegion, convex_hull, nearest_point
 from windup.hal.errors import UnknownNameError
 from windup.hal.joints import Array
 
@@ -113,7 +112,7 @@ class Reach:
         outward = side * np.array([-sin(yaw), cos(yaw)])
         corners = [(x, y) for x in (self.back, self.front) for y in (self.near, self.far)]
         points = [stance[:2] + x * forward + y * outward for x, y in corners]
-        return MultiPoint(np.array(points)).convex_hull
+        return convex_hull(np.array(points))
 
 
 @dataclass(frozen=True)

@@ -1,27 +1,27 @@
-"""Stands, and steps if a push requires it: the momentum supervisor on position servos.
+"""Stands, and steps if a push requires it: the momentum supervisor of Wu & Zordan 2010, section 4.
 
-The decision is that of Wu & Zordan 2010, section 4. The step is adapted to slow servos with
-latency: the stance leg is held stiffly and the robot tips over it, the other foot is lifted as fast
-as possible, and its target is updated early in the swing. Once the robot stands still, comfort
-steps bring the feet back to the stance (Kenwright 2012, section IV).
+It decides when to step, with which foot, where to and in which time; an executor realises that
+with position servos or with torques. Once the robot stands still, comfort steps bring the feet
+back to the stance (Kenwright 2012, section IV).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
+from math import hypot
 
 import numpy as np
-from shapely.geometry.base import BaseGeometry
 
+from windup.control.execution.executor import StepExecutor
+from windup.control.execution.motion import Motion, Planted, Shift, Swing
+from windup.control.execution.swing import gaussian_progress
 from windup.control.footprints.keep_out import KeepOutRegions
-from windup.control.footprints.swing import gaussian_progress
 from windup.control.kinematics.momenta import capture_point
-from windup.control.kinematics.rotation import facing, heading_between, turn
 from windup.control.stepping.comfort import STILL, ComfortStep
-from windup.control.stepping.footing import Footing
 from windup.control.stepping.step_decision import (
     Placement,
     StepRule,
     choose,
+    coming_point,
     landing_point,
     needs_step,
     place,
@@ -30,46 +30,17 @@ from windup.control.stepping.step_decision import (
 from windup.control.stepping.stepper_block import STEPPER_NAMES, StepperPhase, publish_stepper
 from windup.control.stepping.stepping_file import Stepping
 from windup.hal.command import JointCommand
-from windup.hal.joints import Array, Joints
+from windup.hal.geometry.smooth_step import smooth_step
+from windup.hal.joints import Array
 from windup.hal.observation import Observation
 from windup.hal.publishing.controller_block import ControllerBlock
-
-MOST_SHIFT = 0.06
-"""Maximum displacement of the base against the capture point, m."""
-MOST_PITCH = 0.8
-"""Maximum additional pitch of the trunk, rad."""
-TAKE = 0.6
-"""Time after a takeover in which height, arms and head change to those of the stance, s."""
-
-
-@dataclass
-class Flight:
-    """A step in its swing phase.
-
-    Attributes:
-        rule: The rule of its placement.
-        foot: Index of the swing foot.
-        began: Start time, s.
-        start: (2,) place of the foot at the start, m.
-        target: (2,) target of the foot, m.
-        centre: (2,) desired position of the base at the start, m.
-    """
-
-    rule: StepRule
-    foot: int
-    began: float
-    start: Array
-    target: Array
-    centre: Array
 
 
 class Stepper:
     """Controller that stands in the stance and steps to prevent a fall.
 
     Args:
-        joints: The robot's joints.
-        footing: The robot's feet.
-        stance: (n,) rad, the pose to stand in.
+        executor: Realises the motions.
         rule: When and where to step; None balances without steps.
         stepping: Stepping parameters of the robot.
         no_step: Regions where no foot may come down.
@@ -78,111 +49,122 @@ class Stepper:
         steps: Number of steps taken to prevent a fall.
         comforts: Number of comfort steps.
         phase: Present phase.
+        state: The robot's state.
+        motion: What the robot should do, but for comfort steps.
         published: Names of what `publish` fills in.
     """
 
+    motion: Motion
     published = STEPPER_NAMES
 
     def __init__(
         self,
-        joints: Joints,
-        footing: Footing,
-        stance: Array,
+        executor: StepExecutor,
         rule: StepRule | None,
         stepping: Stepping,
         no_step: KeepOutRegions | None = None,
     ) -> None:
-        self.joints, self.footing, self.stance = joints, footing, stance
-        self.rule, self.stepping = rule, stepping
+        self.executor, self.rule, self.stepping = executor, rule, stepping
+        self.state = executor.state
         self.no_step = no_step or KeepOutRegions()
         self._reach = stepping.reach.reach()
         self.phase: StepperPhase = "stand"
         self.steps = self.comforts = 0
+        self._flight: Swing | None = None
 
     def reset(self, observation: Observation) -> None:
         """Start standing; the robot must be in its stance."""
-        self.phase = "stand"
-        self.steps = self.comforts = 0
-        self._hold = JointCommand.hold(self.joints, self.stance)
-        self._landed = self._taken = -np.inf
-        self._before, self._above = self.stance, self.footing.height
-        self._moved = observation.time
-        self.footing.update(observation)
-        self._planted = self.footing.planted()
-        self.footing.rounded = self.stepping.support == "capsule"
-        self.no_step.begin(self.footing.feet, [self.footing.ground(foot) for foot in (0, 1)])
+        self.executor.reset(observation)
+        self._start(observation.time, -np.inf)
 
     def take(self, observation: Observation) -> None:
         """Take over during a walk, from any state; a foot in the air becomes the swing foot."""
-        self.reset(observation)
-        now, footing = observation.time, self.footing
-        self._landed = self._taken = now
-        self._before = observation.joints.position.copy()
-        lowest = min(foot.position[2] for foot in footing.feet)
-        self._above = float(footing.base.position[2] - lowest)
-        if self.rule is not None and not all(footing.down):
-            self._begin(self.rule, now, [footing.down.index(False)])
+        now = observation.time
+        self.executor.take(observation)
+        self._start(now, now)
+        feet = self.executor.feet
+        if self.rule is not None and not all(feet.down):
+            self._begin(self.rule, now, [feet.down.index(False)])
+
+    def _start(self, now: float, landed: float) -> None:
+        """Start standing on the feet as measured."""
+        self.phase, self._flight = "stand", None
+        self.steps = self.comforts = 0
+        self._moved, self._returning = now, False
+        feet = self.executor.feet
+        feet.rounded = self.stepping.support == "capsule"
+        self.no_step.begin(feet.feet, [feet.ground(foot) for foot in (0, 1)])
+        planted = feet.planted()
+        self.motion = Motion(planted, self._return(planted, now), landed=landed)
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
         """Return the command of this tick.
 
         Raises:
             StateMissingError: The observation has no base.
+            WindupError: The optimisation of whole-body control found no solution.
         """
         now = observation.time
-        self.footing.update(observation)
-        self._decide(now)
-        part = min((now - self._taken) / TAKE, 1.0)
-        goals = self._before + part * (self.stance - self._before)
-        self._height = self._above + part * (self.footing.height - self._above)
-        self._pose(goals, now)
-        return self._hold.with_position(goals)
+        self.executor.observe(observation)
+        if self.executor.due(now, dt):
+            self._decide(now)
+        motion = self._comfort.motion if self.phase == "comfort" else self.motion
+        return self.executor.realise(motion, now, dt)
 
     def publish(self, block: ControllerBlock) -> None:
         """Publish the phase, the capture point and the target of the swing foot."""
-        target = self._flight.target if self.phase == "swing" else None
-        publish_stepper(block, self.phase, self.footing.momenta, target)
+        swing = self.motion.swing
+        target = None if swing is None else swing.target
+        publish_stepper(block, self.phase, self.executor.feet.momenta, target)
 
     @property
     def stepping_foot(self) -> int:
         """Index of the swing foot of the present or last step."""
+        assert self._flight is not None, "it has stepped"
         return self._flight.foot
 
     def _decide(self, now: float) -> None:
         """Enter the next phase if it is due."""
-        stepping = self.stepping
-        if self.phase == "swing":
-            self._fly(now)
+        if self.phase == "swing" and self._flight is not None:
+            self._fly(self._flight, now)
             return
-        if self.phase == "land" and now - self._landed < stepping.dwell:
+        self.motion.shift.goal = self.executor.home(self.motion.planted)
+        if self.phase == "land" and now - self.motion.landed < self.stepping.dwell:
             return
         if self.rule is not None and self._falls(self.rule):
             self._begin(self.rule, now)
         elif self.phase == "land":
             self.phase = "stand"
-        elif self.phase == "comfort" and self._comfort.done(now):
-            self._planted = self.footing.planted()
-            # A step that was given up would fail again until something moves the robot.
-            self.phase, self._moved = "stand", np.inf if self._comfort.given_up else now
-        elif self.phase == "stand":
+        elif self.phase == "comfort":
+            self._go_on(self._comfort, now)
+        else:
+            if self._returning and now - self.motion.landed >= self.stepping.settle:
+                self._returning = False
+                self.motion.shift = self._return(self.motion.planted, now)
             self._settle(now)
 
     def _falls(self, rule: StepRule) -> bool:
         """Return whether the trigger point has left the support of both feet."""
-        support = self.footing.support((0, 1))
-        return needs_step(trigger_point(rule, self.footing.momenta), support, self.stepping.slack)
+        feet = self.executor.feet
+        point = trigger_point(rule, feet.momenta)
+        return needs_step(point, feet.support((0, 1)), self.stepping.slack)
 
-    def _fly(self, now: float) -> None:
+    def _fly(self, swing: Swing, now: float) -> None:
         """Update the target of the swing foot early in the swing, or end the swing."""
-        flight, stepping = self._flight, self.stepping
-        part = (now - flight.began) / stepping.duration
-        if part < stepping.update:
+        stepping, part = self.stepping, swing.part(now)
+        if part < stepping.update and self.rule is not None:
             left = stepping.duration * (1.0 - part)
-            if (better := self._placement(flight.rule, flight.foot, left)) is not None:
-                flight.target = better.target
-        if part >= 1.0 or (part > stepping.early and self.footing.down[flight.foot]):
-            self.phase, self._landed, self._moved = "land", now, now
-            self._plant(1 - flight.foot)
+            if (better := self._placement(self.rule, swing.foot, left)) is not None:
+                swing.target = better.target
+        touched = self.executor.feet.down[swing.foot]
+        if part >= stepping.late or (part > stepping.early and touched):
+            self.phase, self._moved = "land", now
+            self.motion.swing, self.motion.landed = None, now
+            self._plant(1 - swing.foot)
+            self._returning = True
+            self.motion.shift = self._return(self.motion.planted, now)
+        else:
+            self.motion.shift = self._arc(swing)
 
     def _plant(self, floated: int) -> None:
         """Plant both feet at their measured places; with forbidden ground `floated` goes back.
@@ -191,10 +173,10 @@ class Stepper:
         nearer to the other one than it stood, which shortens the comfort step, but that place is
         not checked against forbidden ground.
         """
-        before, self._planted = self._planted, self.footing.planted()
+        before, after = self.motion.planted, self.executor.feet.planted()
         if self.no_step:
-            stood = before.places[floated], before.yaws[floated]
-            self._planted = self._planted.step(floated, *stood)
+            after = after.step(floated, before.places[floated], before.yaws[floated])
+        self.motion.planted = after
 
     def _begin(self, rule: StepRule, now: float, feet: Sequence[int] = (0, 1)) -> None:
         """Start a step with the best of `feet`, if any of them has an allowed place."""
@@ -202,91 +184,80 @@ class Stepper:
         possible = [found for found in placements if found is not None]
         if not possible:
             return
-        footing = self.footing
-        chosen = choose(possible, footing.places, self._wanted)
-        start = footing.places[chosen.foot].copy()
-        self._flight = Flight(rule, chosen.foot, now, start, chosen.target, self._centre(now))
-        self._planted = footing.planted()
+        measured, motion, duration = self.executor.feet, self.motion, self.stepping.duration
+        chosen = choose(possible, measured.places, self._wanted, self._landed_foot(now))
+        anchor = self.executor.anchor(motion, now)
+        motion.planted = measured.planted()
+        start = self.executor.lift_off(chosen.foot, motion.planted)
+        yaws = float(motion.planted.yaws[chosen.foot]), measured.yaw
+        swing = Swing(
+            chosen.foot, now, duration, start, chosen.target, yaws, self.stepping.lift, anchor
+        )
+        self._flight = motion.swing = swing
+        motion.shift = self._arc(swing)
         self.phase, self.steps = "swing", self.steps + 1
+
+    def _landed_foot(self, now: float) -> int | None:
+        """Return the foot that has just landed, where that counts in the choice of the next."""
+        recent = now - self.motion.landed < self.stepping.settle
+        if self.stepping.foot == "landing" or self._flight is None or not recent:
+            return None
+        return self._flight.foot
 
     def _placement(self, rule: StepRule, foot: int, left: float) -> Placement | None:
         """Return the placement of `foot`, landing in `left` s, or None if no place is allowed."""
-        footing, momenta = self.footing, self.footing.momenta
-        pivot = footing.support((1 - foot,)).nearest(capture_point(momenta))
+        feet, momenta = self.executor.feet, self.executor.feet.momenta
+        pivot = feet.support((1 - foot,)).nearest(capture_point(momenta))
         wanted = landing_point(rule, momenta, pivot, left)
-        self._wanted = pivot + self.stepping.gain * (wanted - pivot)
-        region = self._reach.region(footing.places[1 - foot], footing.yaw, 1 - 2 * foot)
-        return place(foot, self._wanted, region, self._holes(foot))
-
-    def _holes(self, foot: int) -> list[BaseGeometry]:
-        """Return the forbidden targets of a foot."""
-        flying = self.phase == "swing"
-        start = self._flight.start if flying else self.footing.places[foot]
-        return self.no_step.holes(foot, self.footing.yaw, start)
+        # The landing point is a centre of pressure: the sole's middle, not its site.
+        middle = feet.middle(foot) - feet.places[foot]
+        self._wanted = pivot + self.stepping.gain * (wanted - pivot) - middle
+        yaw = feet.reach_yaw(1 - foot)
+        region = self._reach.region(feet.places[1 - foot], yaw, 1 - 2 * foot)
+        start = self._flight.start if self.phase == "swing" and self._flight else feet.places[foot]
+        holes = self.no_step.holes(foot, feet.yaw, start[:2])
+        placed = place(foot, self._wanted, region, holes)
+        if placed is None or self.stepping.foot == "landing":
+            return placed
+        catch = place(foot, coming_point(momenta, pivot, left) - middle, region, holes)
+        assert catch is not None, "the region is the same"
+        return replace(placed, uncaught=catch.missed)
 
     def _settle(self, now: float) -> None:
         """Start a comfort step if one is needed and the robot has stood still long enough."""
-        footing, stepping = self.footing, self.stepping
-        if np.linalg.norm(footing.momenta.velocity[:2]) > STILL:
+        feet, stepping = self.executor.feet, self.stepping
+        if hypot(*feet.momenta.velocity[:2]) > STILL:
             self._moved = now
         if now - self._moved < stepping.patience:
             return
         self._moved = now  # if no step is needed, check again after the same time
-        comfort = ComfortStep(footing, now, stepping)
-        foot, yaw = comfort.foot, footing.yaw
-        free = self.no_step.allows(foot, yaw, footing.places[foot], comfort.target)
+        comfort = ComfortStep(self.executor, now, stepping)
+        foot = comfort.foot
+        free = self.no_step.allows(foot, feet.yaw, feet.places[foot], comfort.target)
         if comfort.needed and free:
             self._comfort = comfort
             self.phase, self.comforts = "comfort", self.comforts + 1
+            comfort.advance(now)
 
-    def _pose(self, goals: Array, now: float) -> None:
-        """Set the goals of the legs' joints in `goals` (n,), rad."""
-        footing = self.footing
-        if self.phase == "comfort":
-            self._comfort.pose(goals, now)
+    def _go_on(self, comfort: ComfortStep, now: float) -> None:
+        """Continue a comfort step, or end it."""
+        if not comfort.done(now):
+            comfort.advance(now)
             return
-        if self.phase == "swing":
-            self._swing(goals, now)
-            return
-        against = self._against(footing.places.mean(axis=0))
-        place = self._centre(now) - against
-        base = footing.upright(place, self._heading(now), height=self._height)
-        for foot in (0, 1):
-            footing.keep(goals, foot, self._planted, base)
+        self.motion.planted = planted = self.executor.feet.planted()
+        # A step that was given up would fail again until something moves the robot.
+        self.phase, self._moved = "stand", np.inf if comfort.given_up else now
+        self.motion.shift = self._return(planted, now)
 
-    def _swing(self, goals: Array, now: float) -> None:
-        """Set the goals of the swing: one leg stiff, the other foot at its place in `lead` s."""
-        footing, stepping, flight = self.footing, self.stepping, self._flight
-        gone = now - flight.began
-        way = gaussian_progress((gone + stepping.lead) / stepping.duration)
-        at = np.zeros(3)
-        at[:2] = flight.start + way * (flight.target - flight.start)
-        # The height is a step function: the servos are too slow for a smooth curve.
-        at[2] = stepping.lift if gone < stepping.up * stepping.duration else 0.0
-        # The trunk turns until then, and the foot should have its heading.
-        seen = footing.ahead(stepping.lead)
-        footing.put(goals, flight.foot, at, facing(seen.rotation), seen)
-        pivot = footing.places[1 - flight.foot]
-        ahead = float(turn(footing.yaw)[:2, 0] @ (capture_point(footing.momenta) - pivot))
-        pitch = np.clip(-stepping.trunk * ahead, -MOST_PITCH, MOST_PITCH)
-        place = flight.centre - self._against(pivot)
-        base = footing.upright(place, footing.yaw, float(pitch), self._height)
-        footing.keep(goals, 1 - flight.foot, self._planted, base)
+    def _return(self, planted: Planted, now: float) -> Shift:
+        """Return the path of the weight back over the feet."""
+        start, goal = self.executor.weight, self.executor.home(planted)
+        seconds = max(self.stepping.settle, 1e-6)
+        return Shift(start, goal, now, seconds, gaussian_progress)
 
-    def _centre(self, now: float) -> Array:
-        """Return the desired position (2,) m of the base; it returns over the feet after a step."""
-        here = self.footing.base.position[:2]
-        return here + self._back(now) * (self.footing.home(self._planted) - here)
-
-    def _heading(self, now: float) -> float:
-        """Return the desired heading of the base, rad; it returns to the feet's after a step."""
-        return heading_between(self.footing.yaw, self._planted.front, self._back(now))
-
-    def _back(self, now: float) -> float:
-        """Return the progress of the base's return over the feet after a step, 0 to 1."""
-        return min((now - self._landed) / max(self.stepping.settle, 1e-6), 1.0)
-
-    def _against(self, middle: Array) -> Array:
-        """Return the displacement (2,) m to subtract from the base against the capture point."""
-        away = self.stepping.balance * (capture_point(self.footing.momenta) - middle)
-        return np.clip(away, -MOST_SHIFT, MOST_SHIFT)
+    def _arc(self, swing: Swing) -> Shift:
+        """Return the path of the weight in a swing: the Bezier curve of section 5.2."""
+        feet = self.executor.feet
+        pivot, offset = feet.middle(1 - swing.foot), feet.middle(swing.foot)
+        end: Array = 0.5 * (pivot + swing.target + offset - feet.places[swing.foot])
+        return Shift(swing.anchor, end, swing.began, swing.duration, smooth_step, via=pivot)

@@ -35,16 +35,46 @@ class RuleTable(TomlRecord, frozen=True):
     where: Damping | None = None
 
 
+class ComfortTable(TomlRecord, frozen=True, kw_only=True):
+    """Comfort steps of a robot that stands still: times and tolerances.
+
+    Attributes:
+        shift: Time to shift the centre of mass over one foot, and time to shift it back, s.
+        pace: Maximum acceleration of a shift, m/s2; long ones therefore take longer than `shift`.
+        least: Fraction of the shift after which the other foot may be lifted.
+        wait: Additional time after the shift before the step is given up, s.
+        swing: Duration of the swing, s.
+        inside: Minimum distance of CoM and capture point inside a sole for standing on that foot
+            alone, m.
+        askew: Maximum yaw between the feet of a relaxed stance, rad.
+    """
+
+    shift: Positive = 0.5
+    pace: Positive = 100.0
+    least: Fraction = 0.0
+    wait: Seconds = 0.3
+    swing: Positive = 0.4
+    inside: float = 0.02
+    askew: Positive = 0.15
+
+
 class CatchTable(TomlRecord, frozen=True):
     """Pushes during a walk that are answered by steps, by the deviation of the capture point.
 
     Attributes:
         back: Minimum backward deviation, m.
         slant: Maximum ratio of the lateral to the backward deviation.
+        calm: Deviation below which a walk is undisturbed, m.
+        fresh: Maximum time from the last undisturbed tick to a takeover, s; later the walk does
+            better.
+        resume: Time to move to the first pose of the walk before it resumes, s.
     """
 
     back: Positive
     slant: Positive
+    calm: Positive = 0.02
+    fresh: Seconds = 0.12
+    resume: Seconds = 1.0
 
     def meets(self, thrown: Array) -> bool:
         """Return whether the deviation `thrown` (2,) m (ahead, left) is such a push."""
@@ -62,6 +92,7 @@ class Stepping(TomlRecord, frozen=True):
         lift: Height to which the foot is lifted, m.
         up: Fraction of the step after which the foot is lowered.
         early: Fraction of the step from which contact counts as landing.
+        late: Duration after which a step ends without contact, in multiples of `duration`.
         update: Fraction of the step until which the target is updated.
         dwell: Minimum time on both feet between two steps, s.
         settle: Time in which the base returns over the feet, s.
@@ -77,12 +108,15 @@ class Stepping(TomlRecord, frozen=True):
             `windup.control.stepping.step_decision.StepRule`.
         patience: Minimum time of standing still before a comfort step, s.
         comfort: Maximum distance of a foot from its nominal place without a comfort step, m.
+        relax: Times and tolerances of comfort steps.
+        foot: What decides which foot steps: its distance from the desired `landing` point, or that
+            from the predicted `capture` point, where a second step with the same foot counts as
+            `windup.control.stepping.step_decision.AGAIN` m farther.
         rate: Rate of the control loop, Hz; the robot's own by default.
         support: Support region of the soles: the hull of their points, or Kenwright's circles and
             capsule about their centres, of the same area.
         clear: Minimum distance of the soles from forbidden ground, m.
         catch: Pushes during a walk that are answered by steps; None for no such push.
-        torque: Maximum torque of an ideal torque joint in whole-body control, N m.
     """
 
     stance: str
@@ -91,6 +125,7 @@ class Stepping(TomlRecord, frozen=True):
     lift: Metres
     up: Fraction = 0.5
     early: Fraction = 0.6
+    late: Positive = 1.0
     update: Fraction = 0.5
     dwell: Seconds = 0.05
     settle: Seconds = 0.4
@@ -103,11 +138,12 @@ class Stepping(TomlRecord, frozen=True):
     rule: dict[str, RuleTable] = {}
     patience: Seconds = 0.6
     comfort: Metres = 0.015
+    relax: ComfortTable = ComfortTable()
+    foot: Literal["landing", "capture"] = "landing"
     rate: Positive | None = None
     support: Support = "hull"
     clear: Metres = 0.015
     catch: CatchTable | None = None
-    torque: Positive = 1e3
 
     def find_rule(self, name: str) -> StepRule:
         """Return the rule `name`, with this robot's dampings if `rule` has them.

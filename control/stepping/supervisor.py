@@ -26,14 +26,8 @@ from windup.hal.publishing.run_state import RunState
 Holder = Literal["walk", "step", "return"]
 REST = 0.5
 """Minimum time of standing still before the walk resumes, s."""
-CALM = 0.02
-"""Deviation of the capture point below which a walk is undisturbed, m."""
-FRESH = 0.12
-"""Maximum time from the last undisturbed tick to a takeover, s; later the walk does better."""
 LONGEST = 8.0
 """Time-out of standing still, s; a robot on its feet after this only rocks, and walks on."""
-RETURN = 1.0
-"""Time to move to the first pose of the walk, s."""
 
 
 @dataclass
@@ -75,16 +69,27 @@ class Supervisor:
         walker: The walk.
         stepper: The stepper.
         start: (n,) first pose of the walk, rad.
-        table: Criterion for a takeover.
+        table: Criterion for a takeover, and the time of the return.
+        period: Period of the walk, s, where the loop is faster because the stepper needs that: in
+            between the last command of the walk stays. None is the period of the loop.
 
     Attributes:
         holder: The part in control: the walk, the stepper, or the return to the walk.
         catches: Records of all takeovers.
+        state: The robot's state, which the walk and the stepper share.
     """
 
-    def __init__(self, walker: Balancer, stepper: Stepper, start: Array, table: CatchTable) -> None:
+    def __init__(
+        self,
+        walker: Balancer,
+        stepper: Stepper,
+        start: Array,
+        table: CatchTable,
+        period: float | None = None,
+    ) -> None:
         self.walker, self.stepper, self.table = walker, stepper, table
-        self._back = PoseHolder(walker.joints, start, RETURN)
+        self.state, self.period = walker.state, period
+        self._back = PoseHolder(walker.joints, start, table.resume)
         self._throw = CapturePointDeviation()
         self.holder: Holder = "walk"
         self.catches: list[Catch] = []
@@ -115,6 +120,7 @@ class Supervisor:
         self.holder = "walk"
         self._calm = -np.inf
         self._throw.reset()
+        self._wait = 0
         self.walker.reset(observation)
 
     def step(self, observation: Observation, dt: float) -> JointCommand:
@@ -124,9 +130,12 @@ class Supervisor:
             StateMissingError: The observation has no base state.
         """
         if self.holder == "walk":
-            thrown = self._thrown(observation, dt)
+            if self._wait > 0:
+                self._wait -= 1
+                return self._walked
+            thrown = self._thrown(observation, self._ticks(dt) * dt)
             if not self._lost(thrown, observation.time):
-                return self.walker.step(observation, dt)
+                return self._stride(observation, dt)
             self._catch(observation, thrown)
         if self.holder == "step":
             command = self.stepper.step(observation, dt)
@@ -134,27 +143,38 @@ class Supervisor:
                 return command
             self.holder, self._since = "return", observation.time
             self._back.reset(observation)
-        if observation.time - self._since < RETURN:
+        if observation.time - self._since < self.table.resume:
             return self._back.step(observation, dt)
         self._walk_on(observation)
-        return self.walker.step(observation, dt)
+        return self._stride(observation, dt)
+
+    def _ticks(self, dt: float) -> int:
+        """Return the number of ticks of the loop in one of the walk."""
+        return 1 if self.period is None else max(round(self.period / dt), 1)
+
+    def _stride(self, observation: Observation, dt: float) -> JointCommand:
+        """Return the command of the walk, which stays until its next tick."""
+        ticks = self._ticks(dt)
+        self._wait = ticks - 1
+        self._walked = self.walker.step(observation, ticks * dt)
+        return self._walked
 
     def _thrown(self, observation: Observation, dt: float) -> Array:
         """Return the deviation (2,) m of the capture point from its reference (ahead, left)."""
         walker = self.walker
         if (moment := walker.moment) is None:
             return np.zeros(2)
-        here = walker.body.measure(observation)
-        away = capture_point(walker.body.momenta()) - here.feet[0, moment.stance, :2]
+        here = self.state.update(observation)
+        away = capture_point(here.momenta) - here.feet_position[moment.stance, :2]
         heading = turn(walker.heading)[:2, :2].T
         tick = round(moment.elapsed / dt) - 1  # `elapsed` includes the tick of the entry
         return self._throw.detect(moment.state, tick, heading @ away)
 
     def _lost(self, thrown: Array, now: float) -> bool:
         """Return whether a recent push meets the criterion for a takeover."""
-        if float(np.linalg.norm(thrown)) < CALM:
+        if float(np.linalg.norm(thrown)) < self.table.calm:
             self._calm = now
-        return self.table.meets(thrown) and now - self._calm <= FRESH
+        return self.table.meets(thrown) and now - self._calm <= self.table.fresh
 
     def _catch(self, observation: Observation, thrown: Array) -> None:
         """Hand over to the stepper."""
@@ -167,7 +187,7 @@ class Supervisor:
         """Return whether the robot has stood still for `REST`, or `LONGEST` has passed."""
         catch, stepper = self.catches[-1], self.stepper
         catch.steps = stepper.steps
-        speed = float(np.linalg.norm(stepper.footing.momenta.velocity[:2]))
+        speed = float(np.linalg.norm(stepper.executor.feet.momenta.velocity[:2]))
         if stepper.phase not in ("stand", "comfort") or speed > STILL:
             self._moved = now
         still = now - self._moved >= REST or now - catch.time >= LONGEST

@@ -14,7 +14,7 @@ from math import cos, exp, sin
 
 import numpy as np
 
-from windup.control.footprints.footprints import onto, seen_from
+from windup.control.kinematics.places import onto, seen_from
 from windup.control.kinematics.rotation import way_round
 from windup.hal.joints import Array
 

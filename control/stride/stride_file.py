@@ -15,7 +15,7 @@ class Stride(TomlRecord, frozen=True, kw_only=True):
         double: Duration of double support, s.
         lift: Height to which a foot is lifted, m.
         early: Shift of the highest point to an earlier time in the swing; see
-            `windup.control.footprints.swing.lift`.
+            `windup.control.execution.swing.lift`.
         width: Nominal lateral distance of the feet, m.
         lead: Time by which the goals of the swing foot are ahead, against the servos' lag, s.
         quicken: Maximum change of the velocity from one step to the next, m/s.

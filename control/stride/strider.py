@@ -12,11 +12,11 @@ from typing import Literal
 
 import numpy as np
 
-from windup.control.footprints.footprints import between, onto, seen_from
-from windup.control.footprints.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
-from windup.control.footprints.swing import gaussian_progress, lift
-from windup.control.kinematics.body import Body
+from windup.control.execution.leg_motion import PRESS, TAKE_OFF, Aim, LegMotion
+from windup.control.execution.swing import gaussian_progress, lift
 from windup.control.kinematics.limb_ik import LimbIk, Pose
+from windup.control.kinematics.places import between, onto, seen_from
+from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.rotation import lying, turn, way_round
 from windup.control.stride.pendulum import (
     PressureSegment,
@@ -30,8 +30,11 @@ from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.geometry.smooth_step import smooth_step
 from windup.hal.joints import Array, Joints
 from windup.hal.observation import Observation
+from windup.hal.publishing.controller_block import BlockNames, ControllerBlock
+from windup.hal.publishing.run_state import RunState
 
 Phase = Literal["stand", "shift", "swing", "land", "halt"]
+PHASES: tuple[Phase, ...] = ("stand", "shift", "swing", "land", "halt")
 AHEAD = 3
 """Horizon of the plan, steps; later ones have no noticeable effect."""
 STEEPEST = 0.15
@@ -47,8 +50,7 @@ class Strider(LegMotion):
 
     Args:
         joints: The robot's joints.
-        body: Kinematics of the robot.
-        base: Name of the body with the free joint.
+        state: The robot's state.
         limbs: Inverse kinematics of the two legs, in the order of the soles.
         stance: (n,) rad, the pose to start from; joints outside the legs keep it.
         orders: Returns the command for the time since the start, s; its headings are relative to
@@ -58,22 +60,30 @@ class Strider(LegMotion):
     Attributes:
         steps: Number of finished steps.
         phase: Present phase.
+        published: Names of what `publish` fills in.
     """
+
+    published = BlockNames(phases=PHASES)
 
     def __init__(
         self,
         joints: Joints,
-        body: Body,
-        base: str,
+        state: RobotState,
         limbs: Sequence[LimbIk],
         stance: Array,
         orders: Callable[[float], VelocityCommand],
         how: Stride,
     ) -> None:
-        super().__init__(joints, body, base, limbs, stance, how)
+        super().__init__(joints, state, limbs, stance, how)
         self.orders, self.how = orders, how
         self.steps = 0
         self.phase: Phase = "stand"
+
+    def publish(self, block: ControllerBlock) -> None:
+        """Publish the phase."""
+        stands = self.phase == "stand"
+        block.run_state = RunState.STANDING if stands else RunState.WALKING
+        block.phase = PHASES.index(self.phase)
 
     def reset(self, observation: Observation) -> None:
         """Start standing at the measured place."""
@@ -260,8 +270,7 @@ class Strider(LegMotion):
     def _feel(self, dt: float) -> None:
         """Update the ground's normal and height from the stance foot's sole."""
         if self.phase == "swing":
-            site = int(self.body.soles[self._bears])
-            up = self.body.data.site_xmat[site].reshape(3, 3)[:, 2]
+            up = self.state.feet[self._bears].rotation[:, 2]
             normal = self._normal + min(dt / self.how.feel, 1.0) * (up - self._normal)
             normal[:2] = np.clip(normal[:2], -STEEPEST, STEEPEST)
             self._normal = normal / np.linalg.norm(normal)

@@ -1,13 +1,12 @@
 """Equation of motion of an observed robot, with the kinematics of its ends (feet or hands)."""
 
-from collections.abc import Sequence
-
 import mujoco
 import numpy as np
 
 from windup.control.kinematics.limb_ik import Pose
 from windup.control.kinematics.momenta import Momenta
-from windup.hal.errors import StateMissingError, UsageError
+from windup.control.kinematics.robot_state import RobotState
+from windup.hal.errors import UsageError
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
 
@@ -16,106 +15,102 @@ class Dynamics:
     """Computes the terms of M qdd + h = S^T tau + J^T f, with v = 6 + n degrees of freedom.
 
     Args:
-        model: The robot alone: a free joint, then n hinges in MJCF order.
-        base: Name of the body with the free joint.
-        ends: Names of the sites at the ends that can stand, feet or hands.
-        delay: Latency from a measured state to the effect of its command, s; positions are
-            extrapolated by it at constant velocity.
+        state: The robot, whose sites are the ends that can stand, feet or hands; it may be
+            extrapolated by the latency from a measured state to the effect of its command.
 
     Attributes:
+        state: The robot.
         mass: (v, v) mass matrix M, kg and kg m2.
         bias: (v,) gravity, Coriolis and centrifugal forces h, N and N m.
-        momenta: Momenta of the whole body.
-        position: (n,) joint positions, rad.
-        velocity: (v,) base linear (world frame), base angular (base frame), and joint velocities.
-        base: Pose of the base.
-        ends: Poses of the ends.
         corners: For each end the points (p, 3) that can touch the ground, in the end's frame, m.
     """
 
-    momenta: Momenta
-    position: Array
-    base: Pose
-    ends: list[Pose]
-
-    def __init__(
-        self, model: mujoco.MjModel, base: str, ends: Sequence[str], delay: float = 0.0
-    ) -> None:
-        self.model, self._data, self._delay = model, mujoco.MjData(model), delay
-        self._base = model.body(base).id
-        self._sites = [model.site(name).id for name in ends]
-        self._total = float(model.body_subtreemass[self._base])
-        self.mass = np.zeros((model.nv, model.nv))
-        self.bias = np.zeros(model.nv)
-        self.velocity = np.zeros(model.nv)
-        mujoco.mj_kinematics(model, self._data)
-        self._jacobians: list[Array | None] = []
+    def __init__(self, state: RobotState) -> None:
+        self.state, self.model = state, state.model
+        self.mass = np.zeros((self.model.nv, self.model.nv))
+        self.bias = np.zeros(self.model.nv)
+        self._observation: Observation | None = None
         self._grounds: list[Array] = []
-        self.corners = [self._find_corners(site) for site in self._sites]
+        self._middles: list[Array | None] = []
+        data = mujoco.MjData(self.model)
+        mujoco.mj_kinematics(self.model, data)
+        self.corners = [self._find_corners(data, int(site)) for site in state.sites]
 
     def update(self, observation: Observation) -> None:
-        """Update all attributes for an observation.
+        """Update all attributes for an observation, unless they are of that one already.
 
         Raises:
             StateMissingError: The observation has no base.
         """
-        state = observation.base
-        if state is None:
-            raise StateMissingError("the base state is missing; run with `--state true`")
-        model, data = self.model, self._data
-        self.velocity[:3], self.velocity[3:6] = state.linear_velocity, state.angular_velocity
-        self.velocity[6:] = observation.joints.velocity
-        data.qpos[:3], data.qpos[3:7] = state.position, state.orientation
-        data.qpos[7:], data.qvel[:] = observation.joints.position, self.velocity
-        mujoco.mj_integratePos(model, data.qpos, self.velocity, self._delay)
-        self.position = data.qpos[7:].copy()
-        mujoco.mj_kinematics(model, data)
-        mujoco.mj_comPos(model, data)
+        if observation is self._observation:
+            return
+        state, model = self.state.update(observation), self.model
+        data = state.position_stage.data
         mujoco.mj_makeM(model, data)
         mujoco.mj_fullM(model, data, self.mass)
-        mujoco.mj_comVel(model, data)
-        mujoco.mj_rne(model, data, 0, self.bias)
-        mujoco.mj_subtreeVel(model, data)
-        base = self._base
-        self.momenta = Momenta.of(data, base, self._total)
-        self.base = Pose(data.qpos[:3].copy(), data.xmat[base].reshape(3, 3).copy())
-        self.ends = [
-            Pose(data.site_xpos[site].copy(), data.site_xmat[site].reshape(3, 3).copy())
-            for site in self._sites
-        ]
-        self._jacobians = [None for _ in self.ends]
+        mujoco.mj_rne(model, state.velocity_stage.data, 0, self.bias)
         self._grounds = [
             pose.position + corners @ pose.rotation.T
-            for pose, corners in zip(self.ends, self.corners, strict=True)
+            for pose, corners in zip(state.feet, self.corners, strict=True)
         ]
+        self._middles = [None for _ in self._grounds]
+        self._observation = observation
+
+    @property
+    def momenta(self) -> Momenta:
+        """Momenta of the whole body."""
+        return self.state.momenta
+
+    @property
+    def position(self) -> Array:
+        """(n,) joint positions, rad."""
+        return self.state.joint_position
+
+    @property
+    def velocity(self) -> Array:
+        """(v,) base linear (world frame), base angular (base frame), and joint velocities."""
+        return self.state.velocity
+
+    @property
+    def base(self) -> Pose:
+        """Pose of the base."""
+        return self.state.pose
+
+    @property
+    def ends(self) -> list[Pose]:
+        """Poses of the ends."""
+        return self.state.feet
 
     def ground(self, end: int) -> Array:
         """Return the corners (p, 3) of an end in the world frame, m."""
         return self._grounds[end]
 
+    def middle(self, end: int) -> Array:
+        """Return the centre (2,) of the corners of an end, on the ground, m."""
+        if (known := self._middles[end]) is None:
+            corners = self._grounds[end][:, :2]
+            known = self._middles[end] = np.add.reduce(corners, axis=0) / len(corners)
+        return known
+
     def jacobian(self, end: int) -> Array:
         """Return the Jacobian (6, v) of an end: linear, then angular, in the world frame."""
-        if (known := self._jacobians[end]) is None:
-            known = self._jacobians[end] = np.zeros((6, self.model.nv))
-            mujoco.mj_jacSite(self.model, self._data, known[:3], known[3:], self._sites[end])
-        return known
+        return self.state.jacobian(end)
 
     def drift(self, end: int) -> Array:
         """Return the acceleration (6,) of an end at zero joint acceleration, dJ/dt v."""
         rate = np.zeros((6, self.model.nv))
-        site = self._sites[end]
+        site, data = int(self.state.sites[end]), self.state.velocity_stage.data
         body = int(self.model.site_bodyid[site])
-        point = self._data.site_xpos[site]
-        mujoco.mj_jacDot(self.model, self._data, rate[:3], rate[3:], point, body)
+        mujoco.mj_jacDot(self.model, data, rate[:3], rate[3:], data.site_xpos[site], body)
         return np.asarray(rate @ self.velocity)
 
-    def _find_corners(self, site: int) -> Array:
+    def _find_corners(self, data: mujoco.MjData, site: int) -> Array:
         """Return the lowest points of the outermost contact spheres of an end, in its frame, m.
 
         Raises:
             UsageError: The end's body has no geom that collides with the ground.
         """
-        model, data = self.model, self._data
+        model = self.model
         on = model.geom_bodyid == model.site_bodyid[site]
         geoms = np.flatnonzero(on & (model.geom_conaffinity > 0))
         if not geoms.size:

@@ -13,6 +13,7 @@ import daqp
 import numpy as np
 
 from windup.control.whole_body.dynamics import Dynamics
+from windup.control.whole_body.whole_body_file import Weights
 from windup.hal.errors import WindupError
 from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.joints import Array
@@ -28,19 +29,6 @@ FASTEST: Final = 1000.0
 """Maximum acceleration of a plan, m/s2 and rad/s2: larger ones only shake a light foot."""
 REACH: Final = 10.0
 """Moment of inertia by which angular momentum rates are scaled to accelerations, kg m2."""
-
-
-@dataclass(frozen=True)
-class Weights:
-    """Weights of the objectives, for errors of accelerations in m/s2 and rad/s2."""
-
-    com: float = 10.0
-    angular: float = 1.0
-    vertical: float = 1.0
-    posture: float = 0.02
-    trunk: float = 2.0
-    swing: float = 30.0
-    stance: float = 1000.0
 
 
 @dataclass(frozen=True)
@@ -129,7 +117,7 @@ class WholeBody:
             moment = (lever - lever.T)[[1, 2, 0], [2, 0, 1]]
             wrench = np.concatenate((forces.sum(axis=0), moment))
             force -= wrench @ dynamics.jacobian(end)
-        return np.clip(force[6:], -self._limit, self._limit)
+        return np.minimum(np.maximum(force[6:], -self._limit), self._limit)
 
     def _spread(self, stance: Sequence[int]) -> Array:
         """Return the matrix (v, edges) from edge force magnitudes to generalised forces."""

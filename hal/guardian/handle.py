@@ -35,6 +35,7 @@ from windup.hal.guardian.traceback_signal import show_traceback_on_signal
 from windup.hal.joints import Array
 from windup.hal.port.lock import AdapterLock
 from windup.hal.servo_bus.servo_backend import ServoBackend
+from windup.hal.stopping.stop_flag import StopFlag
 
 NOT_STARTED = (
     "the guardian process, which stops this robot if its program dies, does not start{}; "
@@ -55,14 +56,23 @@ class Guardian:
         buses: The robot's buses.
         policy: Stop policy to carry out.
         hold: Duration of the policy "hold" before torque goes off, s.
+        flag: Stop flag of this program: a request that it does not see within 0.1 s makes the
+            guardian stop the robot.
 
     Raises:
         PortError: Another armed run holds the lock of an adapter.
         HardwareError: The process does not start.
     """
 
-    def __init__(self, buses: Sequence[GuardedBus], policy: StopPolicy, hold: float = 60.0) -> None:
+    def __init__(
+        self,
+        buses: Sequence[GuardedBus],
+        policy: StopPolicy,
+        hold: float = 60.0,
+        flag: StopFlag | None = None,
+    ) -> None:
         self._locks: list[AdapterLock] = []
+        self._flag = flag
         try:
             with ExitStack() as undo:  # also on Ctrl-C, which the program may catch
                 locked = tuple(self._lock(record, undo) for record in buses)
@@ -74,7 +84,14 @@ class Guardian:
                 self._pipe: IO[bytes] = self._process.stdin
                 self._descriptor = self._pipe.fileno()
                 self._read_at = time.monotonic()
-                self._start(GuardianOrder(host=os.getpid(), policy=policy, buses=locked, hold=hold))
+                self._start(
+                    GuardianOrder(
+                        host=os.getpid(), policy=policy, buses=locked, hold=hold,
+                        flag="" if flag is None else str(flag.path),
+                    )
+                )  # fmt: skip
+                if flag is not None:
+                    flag.guardian = self.pid
                 undo.pop_all()
         except OSError as error:
             raise HardwareError(NOT_STARTED.format(f" ({error_text(error)})")) from error
@@ -119,6 +136,8 @@ class Guardian:
             self._process.wait()
         finally:
             self._unlock()
+            if self._flag is not None:
+                self._flag.guardian = 0
 
     def hand_over(self) -> None:
         """Let the guardian stop the robot: torque did not read back as off; ports are closed."""
@@ -201,6 +220,7 @@ def guardian_for(
     crouch: Array | None = None,
     hold: float = 60.0,
     levels: HealthLevels | None = None,
+    flag: StopFlag | None = None,
 ) -> Guardian | None:
     """Start and return a guardian of the buses of `backend`, or None if all of them are emulated.
 
@@ -210,6 +230,7 @@ def guardian_for(
         crouch: (n,) pose of its crouch, rad.
         hold: Duration of the policy "hold" before torque goes off, s.
         levels: Health levels of the joints: beyond a stop level, a pose is not held.
+        flag: Stop flag of this program.
 
     Raises:
         UsageError: Servos without a bus watchdog are reached through a network.
@@ -218,4 +239,4 @@ def guardian_for(
     if not isinstance(backend, ServoBackend):
         return None
     buses = guarded_buses(backend, crouch, levels)
-    return Guardian(buses, policy, hold) if buses else None
+    return Guardian(buses, policy, hold, flag) if buses else None

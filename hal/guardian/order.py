@@ -53,9 +53,11 @@ class GuardianOrder(msgspec.Struct, frozen=True, kw_only=True):
         policy: Stop policy of the robot.
         buses: The guarded buses.
         hold: Duration of the policy "hold" before torque goes off, s.
+        flag: Path of the host's stop flag; "" without one.
     """
 
     host: int
     policy: StopPolicy
     buses: tuple[GuardedBus, ...]
     hold: float = 60.0
+    flag: str = ""

@@ -1,9 +1,9 @@
 """The guardian process: watches the heartbeats of its host, and stops the robot if they end.
 
-After a tick of the loop, the next heartbeat is due within 0.15 s. If it is missing, the host is
-made to print its stacks and is killed; only then the stop policy runs, so that two programs never
-use one bus. The process ends when the host has released it, or when the torque of every servo has
-been read back as off.
+After a tick of the loop, the next heartbeat is due within 0.15 s. If it is missing, or if the host
+does not see a request in its stop flag within 0.1 s, the host is made to print its stacks and is
+killed; only then the stop policy runs, so that two programs never use one bus. The process ends
+when the host has released it, or when the torque of every servo has been read back as off.
 """
 
 import os
@@ -13,6 +13,8 @@ import sys
 import time
 from contextlib import suppress
 from enum import Enum
+from math import inf
+from pathlib import Path
 
 import msgspec
 
@@ -31,6 +33,7 @@ from windup.hal.guardian.order import (
 )
 from windup.hal.guardian.signals import ignore_signals
 from windup.hal.guardian.takeover import Takeover
+from windup.hal.stopping.stop_flag import StopFlag
 
 PRIORITY_MARGIN = 5
 """Amount by which its real-time priority exceeds that of the loop."""
@@ -41,6 +44,8 @@ STALL_TIME = 0.02
 STALL_GRACE = 0.05
 """Time granted to the host for its next heartbeat after such a stall, s."""
 
+LOOK_PERIOD = 0.02
+"""Maximum time between two looks at the stop flag, s."""
 MESSAGE_TIME = 0.2
 """Maximum time to wait at the end until all messages are written, s."""
 EXIT_TIME = 0.02
@@ -54,8 +59,18 @@ class StopReason(Enum):
     HANDED_OVER = "the program could not read torque back as off"
     DIED = "the program died"
     SILENT = "the program hangs"
+    IGNORED_STOP = "the program did not answer `windup stop`"
     CLOSED = "the program closed the pipe to its guardian"
     WATCH_FAILED = "the guardian failed to read the heartbeats"
+
+
+KILLED = {
+    StopReason.SILENT,
+    StopReason.IGNORED_STOP,
+    StopReason.CLOSED,
+    StopReason.WATCH_FAILED,
+}
+"""Reasons for which the host is killed before the robot is stopped."""
 
 
 def main() -> None:
@@ -72,27 +87,33 @@ def main() -> None:
 
 def _guard(order: GuardianOrder, orders: int, writer: MessageWriter) -> None:
     """Watch the host, and stop the robot unless the host has released the guardian."""
-    host, takeover = Host(order.host), Takeover(order, writer.write_line)
+    flag = StopFlag.open(Path(order.flag)) if order.flag else None
+    host, takeover = Host(order.host), Takeover(order, writer.write_line, flag)
     _raise_priority()
     os.write(sys.stdout.fileno(), READY)
     os.close(sys.stdout.fileno())
     try:
-        ending, moved = watch(orders, host)
+        ending, moved = watch(orders, host, flag)
     except Exception as error:  # only the guardian can stop the robot now
         writer.write_line(error_text(error))
         ending, moved = StopReason.WATCH_FAILED, False
     if ending is StopReason.RELEASED:
         return
     with suppress(Exception):
-        if ending in (StopReason.SILENT, StopReason.CLOSED, StopReason.WATCH_FAILED):
+        if ending in KILLED:
             host.kill()
     takeover.carry_out(ending.value, moved)
     if ending is not StopReason.HANDED_OVER:
         takeover.wait_for(host)
 
 
-def watch(orders: int, host: Host) -> tuple[StopReason, bool]:
+def watch(orders: int, host: Host, flag: StopFlag | None = None) -> tuple[StopReason, bool]:
     """Read heartbeats from a descriptor until there is a reason to stop watching.
+
+    Args:
+        orders: The descriptor.
+        host: The host process.
+        flag: Its stop flag, if it has one.
 
     Returns:
         The reason, and whether the first motion was complete; before it, the pose is arbitrary.
@@ -101,9 +122,10 @@ def watch(orders: int, host: Host) -> tuple[StopReason, bool]:
     poller = select.poll()
     for descriptor in (orders, *host.descriptors):
         poller.register(descriptor, select.POLLIN)
-    while True:
+    longest, since = inf if flag is None else LOOK_PERIOD, time.monotonic_ns()
+    while flag is None or not flag.overdue(since):
         due = last_heartbeat + allowed
-        wait = max(due - time.monotonic(), 0.0)
+        wait = min(max(due - time.monotonic(), 0.0), longest)
         ready = [descriptor for descriptor, _ in poller.poll(wait * 1e3)]
         if orders in ready:
             data = os.read(orders, 4096)
@@ -114,10 +136,11 @@ def watch(orders: int, host: Host) -> tuple[StopReason, bool]:
             last_heartbeat, allowed = time.monotonic(), MAX_SILENCE[data[-1:]]
         elif ready:
             return StopReason.DIED, moved
-        elif time.monotonic() - due > STALL_TIME:
+        elif (late := time.monotonic() - due) > STALL_TIME:
             last_heartbeat, allowed = time.monotonic(), STALL_GRACE
-        else:
+        elif late >= 0.0:
             return StopReason.SILENT, moved
+    return StopReason.IGNORED_STOP, moved
 
 
 def _ending(data: bytes, host: Host) -> StopReason | None:

@@ -12,11 +12,13 @@ from windup.hal.guardian.message_writer import WriteLine
 from windup.hal.guardian.order import GuardianOrder
 from windup.hal.guardian.remote_bus import RemoteBus
 from windup.hal.port.lock import LockNote, write_note
+from windup.hal.stopping.stop_flag import Outcome, StopFlag
 
 PAUSES = 2e-3, 1.0
 """Pause between two attempts to switch torque off, s: initial and maximum."""
 QUICK, SLOWER = 0.5, 0.03
 """Time for which attempts use the initial pause, s, and the growth of the pause after that, s/s."""
+OFF = "torque is off at all servos, read back"
 MESSAGE_PERIOD = 5.0
 """Time between two messages about servos whose torque is not off, s."""
 
@@ -27,10 +29,13 @@ class Takeover:
     Args:
         order: The guardian's order.
         write_line: Writes a message without blocking.
+        flag: The host's stop flag, in which the result of the stop is reported.
     """
 
-    def __init__(self, order: GuardianOrder, write_line: WriteLine) -> None:
-        self._order, self._write_line = order, write_line
+    def __init__(
+        self, order: GuardianOrder, write_line: WriteLine, flag: StopFlag | None = None
+    ) -> None:
+        self._order, self._write_line, self._flag = order, write_line, flag
         # Built now, so that an invalid order fails at the start and not during a takeover.
         self._buses = [RemoteBus(record) for record in order.buses]
         self._said = time.monotonic()
@@ -93,7 +98,9 @@ class Takeover:
             with suppress(Exception):  # a failing message must not end the attempts
                 self._report_trouble(now)
             time.sleep(min(PAUSES[0] + SLOWER * max(now - began - QUICK, 0.0), PAUSES[1]))
-        self._say("torque is off at all servos, read back")
+        self._say(OFF)
+        if self._flag is not None:
+            self._flag.finish(Outcome(said=OFF, by="guardian"))
 
     def _report_trouble(self, now: float) -> None:
         """Report every `MESSAGE_PERIOD` s which torque is not known to be off."""

@@ -69,6 +69,8 @@ class BlockNames:
         )
 
 
+DEEPEST: Final = 4
+"""Maximum number of controllers around another one."""
 NOTHING: Final = BlockNames()
 """Names of a controller that publishes nothing."""
 
@@ -124,8 +126,11 @@ def publisher_of(controller: object) -> Publisher | None:
 
 
 def innermost(controller: object) -> object:
-    """Return the controller inside all those that have one in their attribute `controller`."""
-    while (inner := getattr(controller, "controller", None)) is not None:
+    """Return the controller inside those that have one in their attribute `controller`."""
+    for _ in range(DEEPEST):
+        inner = getattr(controller, "controller", None)
+        if not callable(getattr(inner, "step", None)):
+            break
         controller = inner
     return controller
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from windup.control.estimation.estimator import BaseEstimator
 from windup.control.estimation.foot_load import FootLoad
+from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.soles import Soles
 from windup.hal.contacts import ContactSensors
 from windup.hal.joints import Array
@@ -51,6 +52,13 @@ def model() -> mujoco.MjModel:
 
 def soles() -> Soles:
     return Soles(model(), ["left", "right"], CONTACTS)
+
+
+def robot_state() -> RobotState:
+    feet = ["left", "right"]
+    return RobotState(
+        model(), "base", "base", ["left_toe", "right_toe"], feet=feet, contacts=CONTACTS
+    )
 
 
 def estimator(*, switches: bool = True, **options: object) -> BaseEstimator:

@@ -8,7 +8,7 @@ import numpy as np
 from windup.control.estimation.estimator import BaseEstimator
 from windup.control.estimation.foot_load import FootLoad
 from windup.control.estimation.tilt_filter import ImuNoise
-from windup.control.kinematics.body import Body
+from windup.control.kinematics.robot_state import RobotState
 from windup.control.kinematics.soles import Soles
 from windup.control.limit_cycle.balancer import Balancer
 from windup.control.limit_cycle.planner import StepPlanner
@@ -31,18 +31,13 @@ from windup.hal.ranges import Range, read_number
 from windup.robots import RobotDescription
 from windup.tools.assembly.gaits import find_gait
 from windup.tools.assembly.shape import can_estimate, check_walks
+from windup.tools.assembly.state import state_of
 from windup.tools.assembly.steer import steering_of
 from windup.tools.assembly.step_models import memory_for
 from windup.tools.assembly.style_intervals import blended
 from windup.tools.assembly.walk_options import WalkOptions
 
 TARGET = Range(-1_000.0, 1_000.0)
-
-
-def body_of(robot: RobotDescription) -> Body:
-    """Return the kinematics of a robot."""
-    soles = [foot.site for foot in robot.feet]
-    return Body(robot.model, robot.base, robot.torso, soles)
 
 
 def build_estimator(
@@ -110,7 +105,7 @@ def build_walk(
     torso_servo = _torso_servo(robot, gait, options.torso_servo)
     if torso_servo is not None:
         variables = [_on_the_pelvis(variable) for variable in variables]
-    body = body_of(robot)
+    state = state_of(robot)
     memory = memory_for(robot, options, variables, names)
     # Models learnt on level soles do not hold on tilted ones.
     one_rollout = memory is not None and memory.complete
@@ -118,7 +113,7 @@ def build_walk(
         gait=gait,
         joints=robot.joints,
         contacts=robot.contacts,
-        body=body,
+        state=state,
         regulation=variables,
         perturbations=names,
         planner=None,
@@ -126,7 +121,7 @@ def build_walk(
         targets=dict(balance.targets),
         fixed_targets=_targets(options.target, variables),
         torso_servo=torso_servo,
-        footfalls=_footfalls(robot, body, balance, options),
+        footfalls=_footfalls(robot, state, balance, options),
         shaken=_shaken(balance, options, one_rollout),
     )
     if predictor is not None and not options.open_loop:
@@ -143,7 +138,7 @@ def _planner(
         gait=walker.gait,
         joints=walker.joints,
         contacts=walker.contacts,
-        body=walker.body,
+        state=walker.state,
         regulation=walker.regulation,
         perturbations=walker.perturbations,
         model=model,
@@ -170,12 +165,12 @@ def _balance(robot: RobotDescription, gait: Gait, sampling: Sampling | None) -> 
 
 
 def _footfalls(
-    robot: RobotDescription, body: Body, balance: Balance, options: WalkOptions
+    robot: RobotDescription, state: RobotState, balance: Balance, options: WalkOptions
 ) -> Footfalls | None:
     """The thesis' control feels nothing of the ground."""
     if not balance.footfalls or options.rv:
         return None
-    return Footfalls(body, robot.contacts, balance.footfalls)
+    return Footfalls(state, robot.contacts, balance.footfalls)
 
 
 def _shaken(

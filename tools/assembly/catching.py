@@ -11,11 +11,14 @@ if TYPE_CHECKING:
 
 
 def supervisor_for(
-    robot: RobotDescription, walker: "Balancer", options: WalkOptions
+    robot: RobotDescription, walker: "Balancer", options: WalkOptions, delay: float = 0.0
 ) -> "Supervisor | None":
-    """Return the supervisor that catches pushes, or None where the options want none."""
+    """Return the supervisor that catches pushes, or None where the options want none.
+
+    The `delay` is from a state being measured to a command for it acting, s.
+    """
     if not options.catch:
         return None
     from windup.tools.assembly.supervise import build_supervisor
 
-    return build_supervisor(robot, walker, options.way)
+    return build_supervisor(robot, walker, options.way, delay)

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 
-from windup.control.kinematics.soles import Soles
+from windup.control.kinematics.robot_state import RobotState
 from windup.hal.controller import Controller
 from windup.hal.joints import Array, Mask
 from windup.robots import RobotDescription
 from windup.robots.records import StiffnessShares
-from windup.tools.assembly.build import body_of
+from windup.tools.assembly.state import state_of
 
 if TYPE_CHECKING:
-    from windup.control.falling.fall import FallPredictor
     from windup.control.falling.protection import Protected, ProtectiveFall
 
 
@@ -34,20 +33,28 @@ class Protection:
         """Does the robot's file say how it falls?"""
         return bool(self.robot.fall.way)
 
-    def around(self, controller: Controller) -> "Protected":
-        """Return `controller`, protected; one at a time, for they share what foresees a fall."""
+    def around(self, controller: Controller, reads: object) -> "Protected":
+        """Return `controller`, protected.
+
+        Args:
+            controller: The controller.
+            reads: What of it may have a `state`: the fall is foreseen by the same one, so that a
+                tick computes it once.
+        """
+        from windup.control.falling.fall import FallPredictor
         from windup.control.falling.protection import Protected
 
-        return Protected(controller, self._predictor, self._ways, self.robot.joints)
+        reach, state = self.robot.fall.reach, getattr(reads, "state", None)
+        assert reach is not None, "the robot's file was checked"
+        if not isinstance(state, RobotState):
+            state = self._state
+        predictor = FallPredictor(state, reach)
+        return Protected(controller, predictor, self._ways, self.robot.joints)
 
     @cached_property
-    def _predictor(self) -> "FallPredictor":
-        from windup.control.falling.fall import FallPredictor
-
-        robot, body = self.robot, body_of(self.robot)
-        assert robot.fall.reach is not None, "the robot's file was checked"
-        soles = Soles(body.model, [foot.body for foot in robot.feet], robot.contacts)
-        return FallPredictor(body, soles, robot.fall.reach)
+    def _state(self) -> RobotState:
+        """The state that a fall is foreseen by where the controller has none."""
+        return state_of(self.robot)
 
     @cached_property
     def _ways(self) -> "tuple[ProtectiveFall, ...]":

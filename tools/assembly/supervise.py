@@ -9,9 +9,15 @@ from windup.tools.assembly.stepping import STEPPING, build_stepper, find_steppin
 
 
 def build_supervisor(
-    robot: RobotDescription, walker: Balancer, way: str | None = None
+    robot: RobotDescription, walker: Balancer, way: str | None = None, delay: float = 0.0
 ) -> Supervisor:
-    """Return `walker` under a supervisor whose stepper steps in a way, by default the robot's own.
+    """Return `walker` under a supervisor whose stepper steps in one of the ways.
+
+    Args:
+        robot: The robot.
+        walker: The walk.
+        way: Name of a step rule; the robot's own by default.
+        delay: From a state being measured to a command for it acting, s; where torques are.
 
     Raises:
         UnknownNameError: There is no such way.
@@ -24,9 +30,12 @@ def build_supervisor(
         raise UsageError(
             f"{robot.name} does not hand its walk over to steps: its {STEPPING} has no [catch]"
         )
-    stepper = build_stepper(robot, way, stepping_stance(robot))
+    stance = stepping_stance(robot)
+    stepper = build_stepper(robot, way, stance, delay=delay, state=walker.state)
     if not isinstance(stepper, Stepper) or stepper.rule is None:
         raise UsageError(f"--way {way}: a walk is caught by steps; give the name of a step rule")
     start = walker.gait.file.start
     pose = robot.stance if start is None else robot.poses[start]
-    return Supervisor(walker, stepper, pose, table)
+    # Where steps need a faster loop, the walk keeps the rate that its gait was made for.
+    period = None if stepping.rate is None else 1.0 / robot.rate_hz
+    return Supervisor(walker, stepper, pose, table, period)

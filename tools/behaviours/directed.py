@@ -2,58 +2,32 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, Final
 
 import mujoco
 import numpy as np
 
+from windup.control.execution.executor import WalkExecutor
+from windup.control.execution.leg_executor import LegExecutor
 from windup.control.footprints.directed_file import Directed, ServoDirected
 from windup.control.footprints.footprint_checks import FootprintChecks, outline
 from windup.control.footprints.footprint_walker import FootprintWalker
-from windup.control.footprints.footprints import Footprint, between, ground_places, seen_from
-from windup.control.footprints.torque_directed import TorqueDirected
-from windup.control.kinematics.body import Body
+from windup.control.footprints.footprints import Footprint
 from windup.control.kinematics.limb_ik import LimbIk
+from windup.control.kinematics.places import between, ground_places, seen_from
 from windup.control.kinematics.soles import Soles
-from windup.hal.controller import Controller
 from windup.hal.errors import UnknownNameError
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
 from windup.robots import RobotDescription
-from windup.tools.assembly.build import body_of
 from windup.tools.assembly.robot_file import load_beside
 from windup.tools.assembly.shape import check_walks
-from windup.tools.assembly.stepping import FOOTPRINTS, find_stepping, whole_body_of
+from windup.tools.assembly.state import state_of
+from windup.tools.assembly.stepping import find_stepping
+from windup.tools.assembly.torques import torque_executor
 from windup.tools.robot.robot import Robot
 
-
-class DirectedController(Controller, Protocol):
-    """A controller that walks footprints.
-
-    Attributes:
-        finished: All steps are done and the weight is between the feet.
-        landed: How many feet have come down.
-        stood: How many of these have borne the weight since, as they were told.
-    """
-
-    finished: bool
-    landed: int
-    stood: int
-
-    @property
-    def prints(self) -> Sequence[Footprint]:
-        """What to do."""
-        ...
-
-    @property
-    def how(self) -> Directed:
-        """Times, and how close a foot has to come."""
-        ...
-
-    @property
-    def places(self) -> Array:
-        """Where (2, 3) the feet are now, as the controller sees it."""
-        ...
+FOOTPRINTS: Final = "footprints.toml"
 
 
 def find_directed(robot: RobotDescription) -> Directed:
@@ -80,9 +54,9 @@ def feet_of(robot: RobotDescription) -> tuple[str, ...]:
     return tuple(foot.name for foot in robot.feet)
 
 
-def limbs_of(robot: RobotDescription, body: Body) -> list[LimbIk]:
+def limbs_of(robot: RobotDescription) -> list[LimbIk]:
     """Return the inverse kinematics of its legs."""
-    return [LimbIk(body.model, robot.base, foot.site) for foot in robot.feet]
+    return [LimbIk(robot.model, robot.base, foot.site) for foot in robot.feet]
 
 
 def loop_rate(robot: RobotDescription) -> float | None:
@@ -96,9 +70,9 @@ def build_checks(robot: RobotDescription) -> FootprintChecks:
     Raises:
         UsageError: It has not two feet, or no footprints.toml.
     """
-    names, how, body = feet_of(robot), find_directed(robot), body_of(robot)
-    stance, limbs = robot.poses[how.stance], limbs_of(robot, body)
-    soles = Soles(body.model, [foot.body for foot in robot.feet], robot.contacts)
+    names, how, model = feet_of(robot), find_directed(robot), robot.model
+    stance, limbs = robot.poses[how.stance], limbs_of(robot)
+    soles = Soles(model, [foot.body for foot in robot.feet], robot.contacts)
     soles.update(stance, np.zeros_like(stance), np.array([0.0, 0.0, 1.0]))
     poses = [limb.forward(stance) for limb in limbs]
     seen = [
@@ -107,16 +81,17 @@ def build_checks(robot: RobotDescription) -> FootprintChecks:
     ]
     middle = np.mean([pose.position for pose in poses], axis=0)
     homes = [np.array([*(pose.position - middle)[:2], 0.0]) for pose in poses]
-    body.data.qpos[:7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
-    body.data.qpos[7:] = stance
-    mujoco.mj_kinematics(body.model, body.data)
-    mujoco.mj_comPos(body.model, body.data)
-    com = body.data.subtree_com[body.model.body(robot.base).id, :2].copy()
+    data = mujoco.MjData(model)
+    data.qpos[:7] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]
+    data.qpos[7:] = stance
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    com = data.subtree_com[model.body(robot.base).id, :2].copy()
     outlines = [outline(points[:, :2]) for points in seen]
     return FootprintChecks(names, limbs, outlines, homes, stance, -com, how.height)
 
 
-def build_directed(robot: RobotDescription, prints: Sequence[Footprint]) -> DirectedController:
+def build_directed(robot: RobotDescription, prints: Sequence[Footprint]) -> FootprintWalker:
     """Return the controller that walks footprints.
 
     Raises:
@@ -124,13 +99,15 @@ def build_directed(robot: RobotDescription, prints: Sequence[Footprint]) -> Dire
     """
     build_checks(robot).check(prints)
     how = find_directed(robot)
+    return FootprintWalker(_executor(robot, how), prints, how)
+
+
+def _executor(robot: RobotDescription, how: Directed) -> WalkExecutor:
+    """Return what realises the steps with the joints of `robot`."""
     stance = robot.poses[how.stance]
-    if not isinstance(how, ServoDirected):
-        body = whole_body_of(robot)
-        return TorqueDirected(robot.joints, body, stance, prints, how, robot.contacts)
-    kinematics = body_of(robot)
-    limbs = limbs_of(robot, kinematics)
-    return FootprintWalker(robot.joints, kinematics, robot.base, limbs, stance, prints, how)
+    if isinstance(how, ServoDirected):
+        return LegExecutor(robot.joints, state_of(robot), limbs_of(robot), stance, how)
+    return torque_executor(robot, stance)
 
 
 @dataclass
@@ -211,7 +188,7 @@ class DirectedWalk:
         }
 
 
-def walk_prints(robot: Robot, controller: DirectedController, walk: DirectedWalk) -> None:
+def walk_prints(robot: Robot, controller: FootprintWalker, walk: DirectedWalk) -> None:
     """Walk footprints, and look where the feet come down; `walk` is filled in on the way.
 
     A foot is looked at once it bears the weight, so that its slip counts; and seen from where the
@@ -242,7 +219,7 @@ def walk_prints(robot: Robot, controller: DirectedController, walk: DirectedWalk
         walk.seconds = robot.loop.sim_time
 
 
-def _places(robot: Robot, controller: DirectedController) -> Array:
+def _places(robot: Robot, controller: FootprintWalker) -> Array:
     """Return the (2, 3) places of the feet: the truth of a twin, or what a robot believes."""
     twin, feet = robot.stack.twin, robot.description.feet
     if twin is None:

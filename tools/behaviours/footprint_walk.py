@@ -5,12 +5,12 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from windup.control.footprints.footprint_walker import FootprintWalker
 from windup.control.footprints.footprints import Footprint
 from windup.hal.controller import Predictor
 from windup.robots import RobotDescription
 from windup.tools.behaviours.behaviour import Behaviour
 from windup.tools.behaviours.directed import (
-    DirectedController,
     DirectedWalk,
     build_directed,
     feet_of,
@@ -39,7 +39,7 @@ class FootprintWalk(Behaviour[T]):
 
     def build(
         self, robot: RobotDescription, options: T, predictor: Predictor | None
-    ) -> DirectedController:
+    ) -> FootprintWalker:
         """Return what walks the footprints of seed 0."""
         return build_directed(robot, self.prints(robot, options, 0))
 

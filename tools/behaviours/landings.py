@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from shapely.geometry.base import BaseGeometry
 
+from windup.control.execution.footing import Footing
 from windup.control.footprints.keep_out import KeepOutRegions
 from windup.control.kinematics.rotation import yaw_of
-from windup.control.stepping.footing import Footing
 from windup.hal.joints import Array
 from windup.hal.observation import Observation
 from windup.tools.robot.robot import Robot

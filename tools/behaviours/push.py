@@ -146,7 +146,8 @@ class Push(Behaviour[PushOptions]):
 
     def opening(self, robot: RobotDescription, options: PushOptions) -> dict[str, Any]:
         """Return the delay of the servos, and the rate of the stepper."""
-        return {"delay": options.delay, "rate": find_stepping(robot).rate}
+        steps = options.during == "stand" or options.catch
+        return {"delay": options.delay, "rate": find_stepping(robot).rate if steps else None}
 
     def perform(self, run: RunRecord[PushOptions]) -> None:
         """Push the robot; one that falls does so to the end."""

@@ -11,7 +11,6 @@ from windup.control.kinematics.rotation import turn
 from windup.control.motions.play import PoseHolder
 from windup.control.stepping.stepper import Stepper
 from windup.control.stepping.stepping_file import Support
-from windup.control.stepping.torque_stepper import TorqueStepper
 from windup.hal.controller import Controller
 from windup.hal.errors import UsageError
 from windup.hal.joints import Array
@@ -23,7 +22,6 @@ from windup.tools.assembly.stepping import build_stepper, footing_of, stepping_s
 from windup.tools.behaviours.landings import Landings
 from windup.tools.robot.robot import Robot
 
-STEPPERS = (Stepper, TorqueStepper)
 STILL = 0.05
 """Speed of the base of a robot that stands still, m/s."""
 AFTER = 3.0
@@ -112,7 +110,7 @@ class PushWatch:
         elif np.isnan(self.still):
             self.still = observation.time
         over = observation.time - self.plan.end
-        busy = isinstance(self.controller, STEPPERS) and self.controller.phase != "stand"
+        busy = isinstance(self.controller, Stepper) and self.controller.phase != "stand"
         if over >= AFTER and (not (busy or moving) or over >= AFTER + LONGEST):
             return "done" if not moving else "does not come to rest"
         return None
@@ -143,7 +141,7 @@ def push_robot(
     touch = TouchWatch(description, robot.twin.model, robot.twin.data)
     landings = Landings(robot, footing_of(description, stance), regions) if regions else None
     watch = PushWatch(plan, touch, controller, to_the_end, look, landings)
-    stepper = controller if isinstance(controller, STEPPERS) else None
+    stepper = controller if isinstance(controller, Stepper) else None
     report = robot.run(controller, until=watch, needs_imu=stepper is not None)
     survived = report.reason == "done" and not (robot.fallen or touch.touched)
     if to_the_end and robot.fallen and not robot.protect:

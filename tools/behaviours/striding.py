@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from windup.control.kinematics.body import heading
+from windup.control.kinematics.rotation import heading
 from windup.control.stride.pendulum import VelocityCommand
 from windup.control.stride.stride_file import Stride
 from windup.control.stride.strider import Strider
@@ -17,9 +17,9 @@ from windup.hal.joints import Array
 from windup.hal.observation import BaseState, Observation
 from windup.hal.ranges import Range, read_number
 from windup.robots import RobotDescription
-from windup.tools.assembly.build import body_of
 from windup.tools.assembly.robot_file import load_beside
 from windup.tools.assembly.shape import check_walks
+from windup.tools.assembly.state import state_of
 from windup.tools.behaviours.directed import limbs_of
 from windup.tools.robot.robot import Robot
 
@@ -103,15 +103,15 @@ def build_strider(robot: RobotDescription, legs: Sequence[Leg], seconds: float) 
         UsageError: The robot has no stride.toml, or not two feet.
     """
     check_walks(robot, "stride")
-    how, body = find_stride(robot), body_of(robot)
+    how = find_stride(robot)
     begins = [leg.begin for leg in legs]
 
     def orders(time: float) -> VelocityCommand:
         order = legs[max(bisect_right(begins, time + 1e-9) - 1, 0)].order()
         return order if time < seconds else VelocityCommand(0.0, order.heading, order.face)
 
-    limbs, stance = limbs_of(robot, body), robot.poses[how.stance]
-    return Strider(robot.joints, body, robot.base, limbs, stance, orders, how)
+    limbs, stance = limbs_of(robot), robot.poses[how.stance]
+    return Strider(robot.joints, state_of(robot), limbs, stance, orders, how)
 
 
 @dataclass

@@ -15,6 +15,7 @@ from windup.hal.geometry.up_axis import uprightness
 from windup.robots import RobotDescription
 from windup.tools.assembly.build import build_walk
 from windup.tools.assembly.catching import supervisor_for
+from windup.tools.assembly.stepping import find_stepping
 from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.behaviours.behaviour import Behaviour
 from windup.tools.behaviours.report import Report, Summary
@@ -85,8 +86,9 @@ class Walk(Behaviour[WalkRunOptions]):
         return supervisor_for(robot, walker, options) or walker
 
     def opening(self, robot: RobotDescription, options: WalkRunOptions) -> dict[str, Any]:
-        """Return the delay of the servos, and whether the rollouts know the ground."""
-        return {"delay": options.delay, "known_ground": options.known_ground}
+        """Return the delay of the servos, whether the rollouts know the ground, and a rate."""
+        rate = {"rate": find_stepping(robot).rate} if options.catch else {}
+        return {"delay": options.delay, "known_ground": options.known_ground} | rate
 
     def perform(self, run: RunRecord[WalkRunOptions]) -> None:
         """Walk, come to rest, and stand."""

@@ -16,13 +16,14 @@ from windup.tools.benches.fuzz.bench import measure_fuzz
 from windup.tools.benches.guardian import measure_takeovers
 from windup.tools.benches.jitter import measure_jitter
 from windup.tools.benches.leaks import measure_leaks
-from windup.tools.benches.loop import measure_tick, measure_twin
 from windup.tools.benches.random_starts import measure_starts
 from windup.tools.benches.safety.bench import ROBOTS, measure_safety
 from windup.tools.benches.servo import measure_servos
 from windup.tools.benches.slow.bench import measure_slow
 from windup.tools.benches.soak_table import fault_table
 from windup.tools.benches.startup import measure_startup
+from windup.tools.benches.tick import measure_tick
+from windup.tools.benches.twin import measure_twin
 from windup.tools.benches.unplug import measure_unplugs
 from windup.tools.benches.wire import BenchFamily, measure_bus
 from windup.tools.terminal.command import Command
@@ -73,7 +74,9 @@ class Bench(Command):
 
     what: Annotated[BenchName, tyro.conf.Positional]
     """What to measure.
-    tick: one iteration of the loop. twin: guarded stepping of the twin against bare physics.
+    tick: one iteration of the loop, in ms and in bare physics steps of OP3; without --robot also
+    of the human, and status 1 if one takes longer than its target.
+    twin: guarded stepping of the twin against bare physics.
     balance: the rollouts of one step. servo: the twin's servo against its data sheet.
     bus: a cycle of 20 servos against the bus's own time and other packages.
     safety: end a moving robot in every way there is, and check that torque goes off (an hour).
@@ -122,7 +125,7 @@ class Bench(Command):
     def run(self) -> int:
         """Measure and print the result; return the exit status."""
         measures: dict[str, Callable[..., dict[str, Any]]] = {
-            "tick": measure_tick,
+            "tick": partial(measure_tick, targets=self.robot is None),
             "twin": measure_twin,
             "balance": measure_balance,
             "servo": measure_servos,

@@ -31,10 +31,12 @@ class StartCommand(NamedTuple):
 
 WITHOUT: Final = "pytest without the plugin"
 CLI: Final = "from windup.tools.cli import main; main([{!r}])"
+STOP: Final = "from windup.tools.cli import run; run(['stop', 'nobody'])"
 PYTEST: Final = ("-m", "pytest", "-q", "-p", "no:cacheprovider", "test_nothing.py")
 WAYS: Final[dict[str, StartCommand]] = {
     BASE: StartCommand(("-c", "import numpy"), 1.0),
     "windup --help": StartCommand(("-c", CLI.format("--help")), 2.5),
+    "windup stop ROBOT": StartCommand(("-c", STOP), 2.5),
     "windup robots": StartCommand(("-c", CLI.format("robots")), 4.0),
     "import windup.hal": StartCommand(("-c", "import windup.hal"), 1.5),
     "from windup import Robot": StartCommand(("-c", "from windup import Robot"), 2.0),

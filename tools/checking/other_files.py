@@ -1,4 +1,4 @@
-"""Checks of stepping.toml, stride.toml and footprints.toml, and of misspelt file names."""
+"""Checks of the optional files beside robot.toml, and of misspelt file names."""
 
 from pathlib import Path
 from typing import Any, Final
@@ -7,17 +7,20 @@ from windup.control.footprints.directed_file import Directed, ServoDirected
 from windup.control.stepping.step_decision import RULES
 from windup.control.stepping.stepping_file import Stepping
 from windup.control.stride.stride_file import Stride
+from windup.control.whole_body.whole_body_file import WholeBodyFile
 from windup.hal.config import read_toml
 from windup.hal.errors import ConfigError, suggest
 from windup.robots import RobotDescription
 from windup.robots.folders import FILE, GAITS
 from windup.robots.inspection.reading import decode, relative
-from windup.tools.assembly.stepping import FOOTPRINTS, STEPPING, WAYS
+from windup.tools.assembly.stepping import STEPPING, WAYS
+from windup.tools.assembly.torques import WHOLE_BODY
+from windup.tools.behaviours.directed import FOOTPRINTS
 from windup.tools.behaviours.striding import FILE as STRIDE
 from windup.tools.checking.findings import Findings
 from windup.tools.command_line.near_word import near_word
 
-TABLES: Final = (STEPPING, STRIDE, FOOTPRINTS)
+TABLES: Final = (STEPPING, STRIDE, FOOTPRINTS, WHOLE_BODY)
 
 
 def check_tables(folder: Path, robot: RobotDescription | None, findings: Findings) -> None:
@@ -59,13 +62,13 @@ def _record(name: str, robot: RobotDescription | None) -> type[Any] | None:
         if robot is None:
             return None
         return Directed if robot.drive.kind == "torque" else ServoDirected
-    return Stepping if name == STEPPING else Stride
+    return {STEPPING: Stepping, STRIDE: Stride, WHOLE_BODY: WholeBodyFile}[name]
 
 
 def _names(name: str, file: Any, robot: RobotDescription) -> list[str]:
     """Return the mistakes in the names that a file refers to."""
     found = []
-    if file.stance not in robot.poses:
+    if not isinstance(file, WholeBodyFile) and file.stance not in robot.poses:
         near = suggest(file.stance, robot.poses)
         found.append(f"{name}: stance: unknown pose {file.stance!r}{near}")
     if isinstance(file, Stepping):

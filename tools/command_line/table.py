@@ -37,8 +37,15 @@ COMMANDS: Final[dict[str, Entry]] = {
         "Stride",
         "Walk as an inverted pendulum, in any direction, and halt",
     ),
+    "up": Entry("runtime.commands.up", "Up", "Own a robot, and hold it between two behaviours"),
+    "down": Entry(
+        "runtime.commands.down", "Down", "Let a robot that is up rest, and end its runtime"
+    ),
+    "status": Entry("runtime.commands.status", "Status", "Show what robots that are up do"),
+    "stop": Entry(
+        "commands.stop", "Stop", "Stop a robot from any terminal, and read its torque back"
+    ),
     "run": Entry("commands.run", "Run", "Run a controller of your own, from a file of Python"),
-    "stop": Entry("commands.stop", "Stop", "Switch all torque off, and read it back"),
     "scan": Entry("bringup.scan", "Scan", "Look for servos on a port, at every baud rate"),
     "emulate": Entry(
         "commands.emulate",

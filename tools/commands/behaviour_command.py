@@ -13,6 +13,8 @@ from windup.tools.behaviours.report import Report
 from windup.tools.behaviours.run_record import RunRecord
 from windup.tools.options.common import Common
 from windup.tools.options.twin_options import WorldOptions
+from windup.tools.remote.plain_options import check_alone, options_as_data
+from windup.tools.remote.remote_run import run_remotely
 from windup.tools.robot.robot import Robot
 from windup.tools.robot.stopping import INTERRUPTED
 from windup.tools.terminal.output import console, write_json
@@ -30,6 +32,18 @@ class BehaviourCommand(WorldOptions, Common):
     """A command that runs a behaviour. Its options are those of the behaviour, too."""
 
     behaviour: ClassVar[Behaviour[Any]]
+    up: bool = False
+    """Do it on the robot that `windup up` has brought up; --arm then allows torque after a stop."""
+
+    @property
+    def remote(self) -> bool:
+        """Does a runtime have the robot?"""
+        return self.up
+
+    @property
+    def remote_name(self) -> str:
+        """What a runtime knows the behaviour by."""
+        return self.behaviour.name
 
     @property
     def options(self) -> Any:
@@ -53,6 +67,8 @@ class BehaviourCommand(WorldOptions, Common):
     def check(self) -> None:
         """Raise what cannot be; see `Command.check`."""
         super().check()
+        if self.up:
+            check_alone(self, self.behaviour.Options)
         check_picture(self.picture)
         if self.picture is not None and self.seeds is not None:
             one = self.behaviour.name
@@ -61,6 +77,8 @@ class BehaviourCommand(WorldOptions, Common):
 
     def run(self) -> int:
         """Run every seed; returns the exit status."""
+        if self.up:
+            return self._run_remotely()
         reports = list(self._reports())
         if not reports:
             raise KeyboardInterrupt
@@ -74,6 +92,11 @@ class BehaviourCommand(WorldOptions, Common):
         if len(reports) < len(self.all_seeds) or reports[-1].reason == INTERRUPTED:
             return 130
         return 0 if all(report.good for report in reports) else 1
+
+    def _run_remotely(self) -> int:
+        """Run once on the robot that is up; return the exit status."""
+        name, data = load_robot(self.robot).name, options_as_data(self.options)
+        return run_remotely(name, self.remote_name, data, arm=self.arm, json=self.json)
 
     def _reports(self) -> Iterator[Report]:
         """Run every seed until somebody interrupts; yield the reports in the order of the seeds."""
@@ -106,7 +129,8 @@ class BehaviourCommand(WorldOptions, Common):
         """
         description = load_robot(self.robot)
         more = self.behaviour.opening(description, self.options)
-        rate = self.rate or more.pop("rate", None)
+        made_for = more.pop("rate", None)
+        rate = self.rate or made_for
         world = self.world(description, seed)
         return replace(self, rate=rate).open_robot(seed, world=world, **more)
 

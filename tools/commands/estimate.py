@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 import tyro
 
-from windup.control.kinematics.body import heading
+from windup.control.kinematics.rotation import heading
 from windup.control.loop import Estimator
 from windup.hal.errors import UsageError
 from windup.hal.geometry.angles import wrapped

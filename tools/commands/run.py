@@ -50,6 +50,14 @@ class Run(TwinOptions, BehaviourCommand):
             raise UsageError(_unknown(words[1], words[0], installed))
         return cls
 
+    @property
+    def remote_name(self) -> str:
+        """What a runtime knows the behaviour by: with the whole path of its file."""
+        if not is_python_file(self.what):
+            return self.what
+        path, name = split(self.what)
+        return f"{path.absolute()}:{name}" if name else str(path.absolute())
+
     def check(self) -> None:
         """Raise what cannot be; see `Command.check`."""
         if not hasattr(self, "behaviour"):

@@ -1,4 +1,7 @@
-"""`windup stop`: switch the torque of a robot off, and say so only when it has been read back."""
+"""`windup stop`: stop the runs of a robot, or switch the torque of servos that nobody runs off.
+
+It says that torque is off only when that has been read back.
+"""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -6,24 +9,29 @@ from typing import Annotated
 
 import tyro
 
+from windup.hal.errors import UsageError
 from windup.hal.joints import Mask
 from windup.hal.torque_state import TorqueState
 from windup.robots import RobotDescription, load_robot
 from windup.tools.options.faults import with_faults
 from windup.tools.robot.port_urls import check_port
 from windup.tools.robot.stack import torque_off
+from windup.tools.stopping.stop_runs import Stop as StopRuns
+from windup.tools.stopping.stop_runs import robot_name, runs_on
 from windup.tools.terminal.command import Command
 from windup.tools.terminal.output import console, write_json
 
 
 @dataclass(frozen=True, kw_only=True)
 class Stop(Command):
-    """Switch all torque off."""
+    """Stop what runs a robot, from any terminal, by its stop policy; it reads the torque back."""
 
-    robot: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="ROBOT")]
+    robot: Annotated[str | None, tyro.conf.Positional, tyro.conf.arg(metavar="[ROBOT]")] = None
     """Name of the robot, or path of its folder."""
-    port: str
-    """Its servo bus; see `windup walk --help`."""
+    all: bool = False
+    """Stop everything of yours that runs on a robot, or on a twin in real time."""
+    port: str | None = None
+    """Switch the servos on this port off, if nothing runs the robot; see `windup walk --help`."""
     faults: str = ""
     """What goes wrong on a twin:// port: drop:0.01,unplug:at=5:seconds=1,..."""
     json: Path | None = None
@@ -32,16 +40,24 @@ class Stop(Command):
     def check(self) -> None:
         """Raise what cannot be; see `Command.check`."""
         super().check()
-        check_port(load_robot(self.robot), self._url)
-
-    @property
-    def _url(self) -> str:
-        return with_faults(self.port, self.faults) or self.port
+        if self.all is (self.robot is not None):
+            raise UsageError("give either the ROBOT to stop, or --all")
+        url = with_faults(self.port, self.faults)
+        if self.robot is not None and url is not None:
+            check_port(load_robot(self.robot), url)
+        elif self.all and url is not None:
+            raise UsageError("--port is of one robot: leave it or --all away")
 
     def run(self) -> int:
         """Stop; returns the exit status."""
-        robot = load_robot(self.robot)
-        state = torque_off(robot, self._url)
+        url = with_faults(self.port, self.faults)
+        if self.robot is None or url is None or runs_on(robot_name(self.robot), url):
+            return StopRuns(robot=self.robot, json=self.json).run()
+        return self._switch_off(load_robot(self.robot), url)
+
+    def _switch_off(self, robot: RobotDescription, url: str) -> int:
+        """Switch off the servos on a port that nobody of ours uses; return the exit status."""
+        state = torque_off(robot, url)
         console.print(_said(robot, state))
         write_json(
             self.json,

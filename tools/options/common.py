@@ -57,12 +57,17 @@ class Common(Command):
             check_port(robot, url)
             if self.noise and not url.startswith(f"{SCHEME}://"):
                 raise UsageError("--noise is of a twin's start pose; leave it or --port away")
-        elif self.arm:
+        elif self.arm and not self.remote:
             raise UsageError("--arm needs a --port; without one only the twin moves")
 
     def warn(self) -> None:
         """Say that something about the robot is doubtful; see `Command.warn`."""
         doubt_once(load_robot(self.robot))
+
+    @property
+    def remote(self) -> bool:
+        """Does a runtime have the robot?"""
+        return False
 
     @property
     def url(self) -> str | None:

@@ -1,1 +1,1 @@
-"""What a run leaves behind: numbers, arrays, files, pictures."""
+"""Reports of runs: numbers, arrays, files and pictures."""

@@ -64,6 +64,7 @@ class Armed(Stoppable):
         Raises:
             PostureError: It is in no posture for it; torque is off.
         """
+        self._heed(asked)
         self.check_going_on(asked)
         start = self.start
         if start is not None and (start.unseen or not self.armed):
@@ -104,12 +105,14 @@ class Armed(Stoppable):
         if self.stack.real:
             say(f"arming {self.description.name}: {how_to_stop(self.backend.backend)}")
         self.backend.check_before_arming()
+        self._heed(asked)
         if asked():
             return
         self.custody.begin()
         atexit.register(self._end_of_program)
         if self.start is not None:
             self.start.begin()
+        self._heed(asked)
         if asked():
             self.custody.end(off=not self.armed)
             return
@@ -120,6 +123,7 @@ class Armed(Stoppable):
             with suppress(WindupError):
                 self._stop("limp", asked)
             raise
+        self._heed(asked)
         if asked():
             self._stop("limp", asked)
 

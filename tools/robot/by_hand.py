@@ -13,7 +13,7 @@ from windup.tools.robot.given import GivenCommand
 from windup.tools.robot.runner import Runner
 from windup.tools.robot.stopping import INTERRUPTED
 from windup.tools.stopping.interrupts import RunInterruptedError, StopRequests, counted_signals
-from windup.tools.stopping.stop_request import pressed_button
+from windup.tools.stopping.stop_request import pressed_button, told_to_stop
 
 SAME = (
     "robot.read() gave the same instant twice: time of a twin passes in "
@@ -70,7 +70,7 @@ class ByHand:
             WindupError: From the backend or the guard.
         """
         runner.check_open()
-        runner.check_heard()
+        runner.raise_pending_interrupt()
         seen = self._observe(self._current(runner))
         stands = isinstance(runner.backend.clock, TwinClock)
         if stands and seen.time == self._read_at and not self._said:
@@ -86,7 +86,7 @@ class ByHand:
             RunInterruptedError: There was a request to stop; the robot has stopped.
             WindupError: From the guard or the backend; the robot has stopped.
         """
-        runner.check_heard()
+        runner.raise_pending_interrupt()
         with (
             counted_signals(runner.stack.wired) as asked,
             runner.running,
@@ -117,8 +117,8 @@ class ByHand:
         return applied
 
     def _stop_if_asked(self, runner: Runner, asked: StopRequests) -> None:
-        if button := pressed_button(runner.backend.backend):
-            asked.add(button)
+        if by := told_to_stop(runner.flag) or pressed_button(runner.backend.backend):
+            asked.add(by)
         if asked():
             runner.loop.reason = INTERRUPTED
             runner.stop_if_asked(asked)

@@ -1,4 +1,4 @@
-"""Commands that come from outside of the loop: from the body of a `for` loop over its ticks."""
+"""Commands from outside the control loop: from the body of a `for` loop over its ticks."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,18 +15,18 @@ from windup.hal.observation import Observation
 
 
 class GivenCommand:
-    """A controller whose command is given from outside, and held until there is another one.
+    """A controller that returns the last command given from outside.
 
     Args:
         joints: The robot's joints.
-        held: The command until one is given; by default the pose at the first observation.
+        held: The command until one is given; by default to hold the first observed pose.
     """
 
     def __init__(self, joints: Joints, held: JointCommand | None = None) -> None:
         self.joints, self.command = joints, held
 
     def reset(self, observation: Observation) -> None:
-        """Hold the pose of now, unless there is a command already."""
+        """Hold the observed pose, unless there is a command already."""
         if self.command is None:
             self.command = hold_pose(self.joints, observation)
 

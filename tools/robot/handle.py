@@ -1,4 +1,4 @@
-"""A handle of a robot that is open: what a program reads, writes, runs and asks, on a session."""
+"""The methods of an open robot that do not depend on its motions, delegated to its session."""
 
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -44,16 +44,16 @@ def _of_session() -> Any:
 
 
 class Handle:
-    """A robot that is open.
+    """An open robot.
 
     Args:
-        session: The session that it has.
+        session: Its session.
     """
 
     description: "RobotDescription" = _of_session()
-    """What robot it is."""
+    """Its description: joints, servos, poses, limits."""
     fallen: bool = _of_session()
-    """True when the robot lies now; a report says how its run ended."""
+    """True if the robot has fallen, at this moment; the `fallen` of a report is that of its end."""
     armed: bool = _of_session()
     """Torque was switched on, and has not been read back as off since."""
     base: BaseState | None = _of_session()
@@ -63,15 +63,15 @@ class Handle:
     period: float = _of_session()
     """Period of the control loop, s."""
     paced: bool = _of_session()
-    """Its time is real time."""
+    """The loop runs in real time."""
     protect: bool = _of_session()
     """A fall that cannot be prevented is softened, where the robot's file says how."""
     record: bool = _of_session()
-    """Each run keeps the arrays of its report."""
+    """Each run records its ticks for the arrays of its report."""
     watch: "list[Watch]" = _of_session()
-    """All are called with every observation: whoever draws, logs or looks on."""
+    """Callbacks, each called with every observation; for drawing and logging."""
     warnings: "list[Finding]" = _of_session()
-    """What there was to warn about so far: one finding a kind."""
+    """Warnings so far, one finding a kind."""
     twin: "Twin" = _of_session()
     """The twin behind the backend; a UsageError on a robot."""
     stack: "Stack" = _of_session()
@@ -81,13 +81,13 @@ class Handle:
     telemetry: "RunTelemetry" = _of_session()
     """What other processes can read of its runs."""
     imu: "ImuWatch" = _of_session()
-    """Judges the IMU, where the base state is estimated from it."""
+    """Detects faults of the IMU, where the base state is estimated from it."""
     slowness: "Slowness" = _of_session()
-    """Ticks and plans that came late in all runs."""
+    """Number of late ticks and plans in all runs."""
     custody: "Custody" = _of_session()
-    """Who is in charge of the torque."""
+    """The guardian of the torque, and the holding between runs."""
     start: "Start | None" = _of_session()
-    """What comes before the first command; None without servos."""
+    """Checks and first motion before the first command; None without servos."""
 
     def __init__(self, session: "Session") -> None:
         self.session = session
@@ -133,8 +133,8 @@ class Handle:
         What the body writes is the command of its tick; without, the last one is held, at first
         the last goal, or the pose of now. All rules of `run` hold. A loop that is left by `break`
         or an exception leaves the robot held, as after a run. On servos whose torque has just come
-        on, the first motion comes first: to the stance, or, if the robot may lie, nowhere. On a
-        port that may get no torque (without `arm=True`), the body can only read.
+        on, the first motion comes first: to the stance or, with `down`, to the present pose. On a
+        port that was opened without `arm=True`, the body can only read.
 
         Args:
             seconds: How long, s of the backend's clock; for ever if None.

@@ -1,4 +1,4 @@
-"""What a robot does by one call: stand, play a pose graph, walk. It is opened here, too."""
+"""The standard motions of a robot: stand, play a pose graph, walk. `open_robot` opens it."""
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
@@ -53,11 +53,11 @@ Disturb = Callable[[], None]
 
 @dataclass(eq=False)
 class Motions:
-    """What a robot does by one call; see `Robot`, whose calls these are.
+    """The standard motions of a robot; see the methods of `Robot` with the same names.
 
     Attributes:
-        session: The robot that is open.
-        predictor: Plays rollouts of it.
+        session: The session of the robot.
+        predictor: Simulates rollouts of it.
         noise: Noise of the start pose, degrees.
         seed: Seed of everything random.
     """
@@ -121,7 +121,7 @@ class Motions:
         walker = build_walk(robot, options, self.predictor, latency=wait)
         if guide is not None:
             walker.steering.guide = guide
-        supervisor = supervisor_for(robot, walker, options)
+        supervisor = supervisor_for(robot, walker, options, session.stack.delay)
         end = WalkEnd(walker, steps, on_step, rest=stand > 0.0)
         report = WalkReport(
             session, walker, options, steps, self.predictor.stopwatch, self.seed,
@@ -130,7 +130,8 @@ class Motions:
         with ExitStack() as stack:
             try:
                 if session.paced and walker.planner is not None:
-                    aside = plan_aside(robot, options, self.predictor, session.period)
+                    period = (supervisor and supervisor.period) or session.period
+                    aside = plan_aside(robot, options, self.predictor, period)
                     walker.planner = self._when_ready(stack.enter_context(aside))
                 self._walk(report, end, disturb, stand)
             except RunInterruptedError as stopped:
@@ -165,9 +166,9 @@ class Motions:
     def _when_ready(self, planner: ProcessPlanner) -> ProcessPlanner:
         """Wait for a planner; meanwhile joints hold what they were told last, or where they are."""
         session = self.session
-        if session.armed:
-            told = None if session.start is None else session.start.motion.goal
-            pose = session.backend.read().joints.position if told is None else told
+        if session.armed or session.break_off is not None:
+            last = session.backend.last
+            pose = session.backend.read().joints.position if last is None else last[1].position
             holder = PoseHolder(session.description.joints, pose, ramp=0.0)
             session.run(holder, until=lambda _: "ready" if planner.ready() else None)
         return planner.wait_ready()

@@ -1,4 +1,4 @@
-"""`Robot`: what a program has in its hands. Nothing heavy is imported before one is opened.
+"""`Robot`: the interface of programs to one robot. MuJoCo and SciPy are imported by `Robot.open`.
 
 with Robot.open("op3") as robot:              # its twin
     report = robot.walk(speed=0.2, steps=40)
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from windup.sim_twin.rollouts import RolloutPredictor
     from windup.tools.assembly.walk_options import WalkOptions
     from windup.tools.measures.walk_end import OnStep
+    from windup.tools.remote.remote_robot import RemoteRobot
     from windup.tools.reports.play_report import PlayReport
     from windup.tools.reports.run_report import RunReport
     from windup.tools.robot.motions import Motions
@@ -25,7 +26,9 @@ if TYPE_CHECKING:
     from windup.tools.robot.walk_report import WalkReport
 
 MOTIONS = "windup.tools.robot.motions"
-"""Module that opens a robot: it imports MuJoCo and all that a run may need."""
+"""Module that opens a robot; it imports all that a run may need."""
+REMOTE = "windup.tools.remote.remote_robot"
+"""Module that connects to a robot that is up."""
 
 Disturb = Callable[["Robot"], None]
 """Arranges pushes on a twin."""
@@ -35,7 +38,7 @@ class Robot(Handle):
     """A robot that can be run; open one with `Robot.open`.
 
     Args:
-        motions: What it does by one call, on its session.
+        motions: The motions of an open session.
     """
 
     def __init__(self, motions: "Motions") -> None:
@@ -89,6 +92,19 @@ class Robot(Handle):
             )
         )  # fmt: skip
 
+    @classmethod
+    def connect(cls, name: str) -> "RemoteRobot":
+        """Return a robot that `windup up` has brought up; its runtime does what this program wants.
+
+        Args:
+            name: Name of the robot, or path of its folder.
+
+        Raises:
+            UsageError: It is not up, or its runtime is another version of Windup.
+        """
+        remote: RemoteRobot = import_module(REMOTE).RemoteRobot(name)
+        return remote
+
     @property
     def predictor(self) -> "RolloutPredictor":
         """Plays rollouts of the robot."""
@@ -133,7 +149,7 @@ class Robot(Handle):
         stand: float = 0.0,
         guide: "Guide | None" = None,
     ) -> "WalkReport":
-        """Walk a number of steps and return how it went.
+        """Walk a number of steps and return a report.
 
         Args:
             speed: m/s; the gait's default if None.

@@ -90,7 +90,7 @@ class PreparedRun:
     """What a run consists of.
 
     Attributes:
-        controller: The controller, with what comes before it and what protects it.
+        controller: The controller, with first motion and fall protection.
         end: Decides at every tick whether the run is over.
         report: Filled in as the run goes.
         estimator: Fills in the base state.
@@ -111,17 +111,17 @@ class PreparedRun:
 
     @property
     def falling(self) -> bool:
-        """True while the fall protection has the robot: nobody else is asked."""
+        """True while the fall protection commands the robot, instead of the controller."""
         protected = self.end.protected
         return protected is not None and protected.active
 
     def fail(self, error: WindupError) -> None:
-        """Stop the robot because of an error that the body of a `for` loop is told."""
+        """Stop the robot because of an error that is raised in the body of a `for` loop."""
         self.failed = True
         self.stop(error)
 
     def leave(self) -> None:
-        """Note that the `for` loop was left, perhaps with a request to stop still unanswered."""
+        """Record that the `for` loop was left; a stop request may have come in the same tick."""
         self.left = True
         if not self.failed:
             self.report.reason = INTERRUPTED if self.end.interrupted() else LEFT

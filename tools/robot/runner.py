@@ -1,9 +1,10 @@
-"""Runs controllers on a robot, and stops it whatever happens."""
+"""Runs controllers on a robot, and carries out the stop policy after every kind of failure."""
 
 import logging
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 from weakref import ref
 
 from windup.control.loop import Recorder, TickLoop, Until
@@ -22,6 +23,7 @@ from windup.tools.robot.given import Body, GivenCommand, ReadOnly
 from windup.tools.robot.run_end import PreparedRun, RunEnd
 from windup.tools.robot.stopping import INTERRUPTED
 from windup.tools.robot.watched import Watched
+from windup.tools.stopping.break_off import BreakOff
 from windup.tools.stopping.interrupts import (
     RunInterruptedError,
     StopRequests,
@@ -30,29 +32,39 @@ from windup.tools.stopping.interrupts import (
 )
 from windup.tools.stopping.stop_request import stop_requests
 
+if TYPE_CHECKING:  # not needed by robots that do not fall
+    from windup.control.falling.protection import Protected
+TicksIterator = Generator[Observation, None, None]
+
 
 @dataclass(eq=False)
 class Runner(Watched):
     """A robot that controllers run on.
 
     Attributes:
-        paced: Its time is real time.
+        paced: The loop runs in real time.
         protect: A fall that cannot be prevented is softened, where the robot's file says how.
-        record: Each run keeps the arrays of its report.
-        body: The body of a `for` loop over ticks, while it has the robot.
-        left_open: The last loop over ticks, as long as somebody has its iterator.
+        record: Each run records its ticks for the arrays of its report.
+        body: The body of a `for` loop over ticks, while it is executed.
+        ticks_iterator: The iterator of the last loop over ticks, while it exists.
         runs: Number of runs so far.
-        unheard: What ended a loop over ticks in the tick in which it was left, where no exception
-            could say so; the next call raises it.
+        pending_interrupt: Source of a stop request in the tick in which a loop over ticks was left.
+            Nothing can be raised there, so the next call raises it; "" if there is none.
+        controller: The controller of the present run, or of the last one.
+        protected: Protection of that run against falls, or None.
+        break_off: Ends runs while the robot stays held, where somebody owns it beyond them.
     """
 
     paced: bool = False
     protect: bool = True
     record: bool = False
     body: Body | None = field(default=None, init=False)
-    left_open: "ref[Generator[Observation, None, None]] | None" = field(default=None, init=False)
+    ticks_iterator: "ref[TicksIterator] | None" = field(default=None, init=False)
     runs: int = field(default=0, init=False)
-    unheard: str = field(default="", init=False)
+    pending_interrupt: str = field(default="", init=False)
+    controller: Controller | None = field(default=None, init=False)
+    protected: "Protected | None" = field(default=None, init=False)
+    break_off: BreakOff | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -114,17 +126,22 @@ class Runner(Watched):
         needs_imu: bool,
         may_move: bool = True,
     ) -> Iterator[PreparedRun]:
-        """Take the robot, arm it if it `may_move`, and have it held afterwards; see `run`.
+        """Prepare a run: arm the robot if it `may_move`; hold it again afterwards; see `run`.
 
         Raises:
-            RunInterruptedError: Somebody has ended the run; the robot has stopped.
+            RunInterruptedError: A stop request has ended the run; the robot has stopped.
+            BrokenOffError: Whoever owns the robot has ended the run; it is held.
         """
-        self.check_heard()
+        self.raise_pending_interrupt()
+        self.controller = controller
+        if self.break_off is not None:
+            until = self.break_off.around(until)
         approach = None if self.start is None else self.start.before(controller, down)
-        protected = None
+        protected = self.protected = None
         if self.protect and self._protection.possible and not down:
-            protected = self._protection.around(approach or controller)
-        wishes = stop_requests(self.backend.backend, keys=self.stack.real)
+            protected = self._protection.around(approach or controller, controller)
+            self.protected = protected
+        wishes = stop_requests(self.backend.backend, keys=self.stack.real, flag=self.flag)
         with (
             counted_signals(self.stack.wired) as asked,
             self.running,
@@ -147,22 +164,24 @@ class Runner(Watched):
             )  # fmt: skip
             yield run
         if report.reason == INTERRUPTED and run.left:
-            self.unheard = asked.by
+            self.pending_interrupt = asked.by
         elif report.reason == INTERRUPTED:
             raise RunInterruptedError(report, asked.by)
+        if self.break_off is not None:
+            self.break_off.check(report)
 
-    def check_heard(self) -> None:
-        """Raise what nobody has heard of yet.
+    def raise_pending_interrupt(self) -> None:
+        """Raise a stop request that could not be raised when it was carried out.
 
         Raises:
-            RunInterruptedError: A loop over ticks was left, and stopped, in the same tick.
+            RunInterruptedError: A loop over ticks was left, and its robot stopped, in one tick.
         """
-        by, self.unheard = self.unheard, ""
+        by, self.pending_interrupt = self.pending_interrupt, ""
         if by:
             raise RunInterruptedError(self.loop, by)
 
     def given_command(self) -> GivenCommand:
-        """Return a controller that holds the last goal of the joints, until it is given another."""
+        """Return a controller that holds the last goal of the joints until it gets a command."""
         last, joints = self.backend.last, self.description.joints
         held = None if last is None else JointCommand.hold(joints, last[1].position)
         return GivenCommand(joints, held)
@@ -171,9 +190,9 @@ class Runner(Watched):
     def looping(
         self, run: PreparedRun, rollouts: Stopwatch | None = None
     ) -> Iterator[TickLoop | None]:
-        """Yield the loop of a run; stop the robot if it ends by an error or a wish.
+        """Yield the loop of a run; stop the robot if the run ends by an error or a stop request.
 
-        Yields None where the run was to end before its first tick: the robot has stopped.
+        Yields None if a stop request came before the first tick: the robot has stopped.
 
         Args:
             run: The run.
@@ -189,7 +208,7 @@ class Runner(Watched):
             with real_time_loop() if self.paced else nullcontext():
                 yield self._loop(run, rollouts, recorder)
             self.stop_if_asked(asked)
-            state = RunState.FAULTED if run.failed else self.resting()
+            state = RunState.FAULTED if run.failed else self.state_between_runs()
         except WindupError as error:
             self.fail(error, asked)
             raise
@@ -197,7 +216,7 @@ class Runner(Watched):
             asked.by = asked.by or type(ended).__name__
             self.loop.reason = INTERRUPTED
             self._stop_after_error(asked)
-            state = self.resting()
+            state = self.state_between_runs()
         except BaseException as error:
             self.loop.reason = f"the controller failed: {type(error).__name__}: {error}"
             self._stop_after_error(asked)
@@ -210,7 +229,7 @@ class Runner(Watched):
     def _loop(
         self, run: PreparedRun, rollouts: Stopwatch | None, recorder: Recorder | None
     ) -> TickLoop:
-        """Return the loop of a run, with whoever looks on and records."""
+        """Return the loop of a run, with its callbacks and recorders."""
         if isinstance(self.backend.clock, TwinClock):
             self.backend.clock.align()
         if self.record:
@@ -222,7 +241,7 @@ class Runner(Watched):
             self.backend if run.may_move else ReadOnly(self.backend),
             run.controller,
             period=self.period,
-            until=self.looked_at(run.end),
+            until=self.with_callbacks(run.end),
             estimator=run.estimator,
             rollouts=rollouts,
             report=run.report,
@@ -237,27 +256,27 @@ class Runner(Watched):
             self.backend,
             controller if self.start is None else self.start.before(controller, down=True),
             period=self.period,
-            until=self.looked_at(lambda _: None),
+            until=self.with_callbacks(lambda _: None),
             estimator=self.guarded_estimator(needs_imu=False),
             report=report,
         )
 
-    def leave_ticks(self) -> None:
-        """Leave a loop over ticks whose body has the robot: it is to be closed."""
-        run = None if self.left_open is None else self.left_open()
+    def close_ticks(self) -> None:
+        """End a loop over ticks whose body is executed, before the robot is closed."""
+        run = None if self.ticks_iterator is None else self.ticks_iterator()
         if run is not None and self.body is not None:
             run.close()
 
-    def open_body(self, body: Body, asked: StopRequests) -> None:
-        """Let the body of a `for` loop have the robot; its code may hang, and is interrupted."""
+    def enter_body(self, body: Body, asked: StopRequests) -> None:
+        """Begin the body of a `for` loop: from now on the third signal interrupts it."""
         self.body, asked.raises = body, True
 
-    def close_body(self, asked: StopRequests) -> None:
-        """Take the robot back from the body of a `for` loop."""
+    def exit_body(self, asked: StopRequests) -> None:
+        """End the body of a `for` loop: signals are only counted again."""
         self.body, asked.raises = None, False
 
     def stop_if_asked(self, asked: StopRequests) -> None:
-        """Stop the robot if that is what ended the run."""
+        """Stop the robot if a stop request has ended the run."""
         if self.loop.reason == INTERRUPTED:
             if self.stack.wired:
                 note_interruption(asked.by)
@@ -265,7 +284,7 @@ class Runner(Watched):
             self._stop_after_error(asked)
 
     def fail(self, error: WindupError, asked: StopRequests) -> None:
-        """Stop the robot because of an error, and publish what was seen in its tick, too."""
+        """Stop the robot because of an error, and publish the observation of its tick, too."""
         self.loop.reason = str(error)
         self.telemetry.record_last(self.loop)
         self._stop_after_error(asked, error)

@@ -27,7 +27,7 @@ REST_SECONDS = 1.5
 
 @dataclass(eq=False)
 class Session(Runner):
-    """A robot that is open: what `Robot` has.
+    """An open robot: the implementation behind `Robot`.
 
     Attributes:
         by_hand: Reads and writes outside of a run.
@@ -38,6 +38,11 @@ class Session(Runner):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.by_hand = ByHand()
+
+    @property
+    def lasting(self) -> bool:
+        """Does a run take real time?"""
+        return self.paced
 
     @property
     def warnings(self) -> list[Finding]:
@@ -96,7 +101,7 @@ class Session(Runner):
     ) -> None:
         if self._closed:
             return
-        self.leave_ticks()
+        self.close_ticks()
         with counted_signals(self.stack.wired) as asked:
             try:
                 self._let_go(error)
@@ -107,7 +112,7 @@ class Session(Runner):
             if error is None:
                 raise RunInterruptedError(self.loop, asked.by)
         if error is None:
-            self.check_heard()
+            self.raise_pending_interrupt()
 
     def _let_go(self, error: BaseException | None) -> None:
         """Rest after a run that went well, else stop; an error is never replaced by the stop's."""

@@ -3,13 +3,14 @@
 import atexit
 import logging
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from weakref import WeakSet
 
 from windup.hal.errors import UnhealthyError, UsageError, WindupError
 from windup.hal.guard import StopPolicy
+from windup.hal.stopping.stop_flag import Outcome, StopFlag
 from windup.tools.reports.run_report import RunReport
 from windup.tools.robot.on_stack import OnStack
 from windup.tools.robot.start import Start
@@ -22,6 +23,8 @@ from windup.tools.stopping.interrupts import (
 )
 from windup.tools.stopping.running import Running
 from windup.tools.stopping.signal_listeners import add_signal_listener, remove_signal_listener
+from windup.tools.stopping.stop_outcome import stop_outcome
+from windup.tools.stopping.stop_request import told_to_stop
 from windup.tools.terminal.say import say
 
 INTERRUPTED = "interrupted"
@@ -39,21 +42,45 @@ class Stoppable(OnStack):
         armed: Torque was switched on, and has not been read back as off since.
         custody: Who is in charge of the torque.
         start: What comes before the first command; None without servos.
+        flag: By which `windup stop` stops it from another terminal; None in mere simulations.
+        on_stop: Called when the stop policy is about to be carried out.
     """
 
     loop: RunReport = field(default_factory=RunReport, init=False)
     armed: bool = field(default=False, init=False)
+    on_stop: Callable[[], None] | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
         self.start = Start(self.description, self.stack) if self.stack.wired else None
         motion = None if self.start is None else self.start.motion
-        self.custody = Custody(self.description, self.backend, self._stop_idle, motion)
+        self.flag = self._open_flag()
+        self.custody = Custody(self.description, self.backend, self._stop_idle, motion, self.flag)
         self.running = Running()
         self._failed: WindupError | None = None
         self._closed = ""
         if self.stack.wired:
             add_signal_listener(self)
             _open.add(self)
+
+    @property
+    def lasting(self) -> bool:
+        """Does a run take real time, so that somebody may want to stop it from elsewhere?"""
+        return self.stack.real
+
+    def _open_flag(self) -> StopFlag | None:
+        """Return the stop flag of this program for this robot; it runs without one all the same."""
+        if not self.lasting:
+            return None
+        try:
+            return StopFlag.create(self.description.name, self.stack.port)
+        except UsageError as error:
+            logging.getLogger(__name__).warning("`windup stop` cannot stop this: %s", error)
+            return None
+
+    def _heed(self, asked: StopRequests) -> None:
+        """Count a request by the stop flag."""
+        if (by := told_to_stop(self.flag)) is not None:
+            asked.add(by)
 
     def on_signal(self, by: str) -> None:
         """Stop where a signal tells the main thread, which is not in a run, to end."""
@@ -127,11 +154,26 @@ class Stoppable(OnStack):
         moved = self.start is None or self.start.motion.made
         if self.fallen or (policy == "crouch" and not moved):
             policy = "limp"
-        before = self.armed
-        self.armed = not self.backend.stop(policy, lambda: asked.skip_crouch).all_off
+        before, flag = self.armed, self.flag
+        if self.on_stop is not None:
+            self.on_stop()
+        try:
+            state = self.backend.stop(
+                policy, lambda: asked.skip_crouch or (flag is not None and flag.again())
+            )
+        except WindupError as error:
+            self._report(Outcome(said=str(error), stopped=False))
+            raise
+        self.armed = not state.all_off
+        self._report(stop_outcome(state, self.description.joints))
         if not self.armed:
             self.custody.end(off=True)
             self._say_off(before)
+
+    def _report(self, outcome: Outcome) -> None:
+        """Tell who asked for a stop by the flag what became of it."""
+        if self.flag is not None:
+            self.flag.finish(outcome)
 
     def _say_off(self, was_on: bool) -> None:
         if was_on and self.stack.real:
@@ -144,6 +186,8 @@ class Stoppable(OnStack):
         note_interruption(asked.by)
         if self.armed:
             self._stop_after_error(asked)
+        elif self.flag is not None and self.flag.asked():
+            self._stop("limp", asked)  # also says what is read of the torque
 
     def _stop_after_error(self, asked: StopRequests, error: WindupError | None = None) -> None:
         """Carry out the stop policy; nobody holds a joint that is unwell, or bad news."""
@@ -162,8 +206,11 @@ class Stoppable(OnStack):
             moved = self.start is None or self.start.motion.made
             if policy == "hold" or self.fallen or not moved:
                 policy = "limp"
-            self.armed = not self.backend.stop(policy).all_off
+            state = self.backend.stop(policy)
+            self.armed = not state.all_off
+            self._report(stop_outcome(state, self.description.joints))
         except WindupError as failed:
+            self._report(Outcome(said=str(failed), stopped=False))
             logging.getLogger(__name__).warning("%s", failed)
             self._failed = error or failed
         self.custody.end(off=not self.armed)
@@ -188,12 +235,15 @@ class Stoppable(OnStack):
             self.custody.busy()
             self.stack.close()
             self.custody.end(off=not self.armed)
+        if self.flag is not None:
+            self.flag.remove()
+            self.flag = None
         remove_signal_listener(self)
 
     def disown(self) -> None:
         """Leave the robot to the process that this one was forked from."""
         self._closed = "belongs to the process that opened it"
-        self.armed = False
+        self.armed, self.flag = False, None
         self.custody.disown()
         atexit.unregister(self._end_of_program)
 

@@ -35,10 +35,10 @@ class Ticks:
         self.report = RunReport()
 
     def __iter__(self) -> Iterator[Observation]:
-        # The iterator belongs to the `for` loop alone, so that leaving the loop ends the run.
+        # Only the `for` loop refers to the iterator, so leaving the loop ends the run at once.
         self.report = RunReport()
         run = self._run(self.report)
-        self._runner.left_open = weakref.ref(run)
+        self._runner.ticks_iterator = weakref.ref(run)
         return run
 
     def _run(self, report: RunReport) -> Generator[Observation, None, None]:
@@ -54,14 +54,14 @@ class Ticks:
             while loop is not None and (observation := loop.observe()) is not None:
                 if not run.falling:
                     body = Body(loop, given, run.fail)
-                    runner.open_body(body, run.end.asked)
+                    runner.enter_body(body, run.end.asked)
                     try:
                         yield observation
                     except GeneratorExit:  # the loop was left
                         run.leave()
                         return
                     finally:
-                        runner.close_body(run.end.asked)
+                        runner.exit_body(run.end.asked)
                     if run.failed:
                         return
                 loop.finish()

@@ -145,7 +145,7 @@ class WalkReport(Results):
             ),
             "skips": gauges.skips,
             "work_j": gauges.work,
-            "cost_of_transport": gauges.cost_of_transport(self.walker.body.mass, way),
+            "cost_of_transport": gauges.cost_of_transport(self.walker.state.mass, way),
             "shake_rad_s": gauges.angular_velocity_rms,
         }
 

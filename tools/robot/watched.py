@@ -1,4 +1,4 @@
-"""A robot whose runs are looked at: by callbacks, by telemetry, and by the gate of its IMU."""
+"""A robot whose runs are observed by callbacks, by telemetry, and by the check of its IMU."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -25,14 +25,14 @@ Watch = Callable[[Observation], None]
 
 @dataclass(eq=False)
 class Watched(Armed):
-    """A robot whose runs are looked at.
+    """A robot whose runs are observed.
 
     Attributes:
         period: Period of the control loop, s.
-        watch: All are called with every observation: whoever draws, logs or looks on.
+        watch: Callbacks, each called with every observation; for drawing and logging.
         telemetry: What other processes can read of its runs.
-        imu: Judges the IMU, where the base state is estimated from it.
-        slowness: Ticks and plans that came late in all runs.
+        imu: Detects faults of the IMU, where the base state is estimated from it.
+        slowness: Number of late ticks and plans in all runs.
         seen: The last observation, with its base state.
     """
 
@@ -50,22 +50,22 @@ class Watched(Armed):
         )
         self.telemetry = RunTelemetry(self.description, self.stack, self.period, self.imu)
 
-    def looked_at(self, end: Until) -> Until:
-        """Return `end`, with a look of everybody at the observation first."""
+    def with_callbacks(self, end: Until) -> Until:
+        """Return `end`, preceded by the callbacks."""
 
         def until(observation: Observation) -> str | None:
             self.seen, self.base = observation, observation.base
-            for look in self.watch[:]:  # one may take itself off
+            for look in self.watch[:]:  # one may remove itself
                 look(observation)
             return end(observation)
 
         return until
 
     def guarded_estimator(self, needs_imu: bool) -> Estimator | None:
-        """Return what fills in the base state; who estimates it is guarded against a bad IMU.
+        """Return the estimator of the base state, behind a gate that rejects bad IMU samples.
 
         Raises:
-            ImuError: The IMU says nothing, and the controller needs it.
+            ImuError: The IMU is silent, and the controller needs it.
         """
         estimator = self.stack.estimator
         if not isinstance(estimator, BaseEstimator):
@@ -77,24 +77,24 @@ class Watched(Armed):
         return gate
 
     def conclude(self, report: RunReport, state: RunState) -> None:
-        """Note how a run has ended, for everybody."""
+        """Record in report and telemetry how a run has ended."""
         report.fallen = self.fallen
         self.slowness.ticks += report.ticks
         self.slowness.missed += report.missed
         self.telemetry.end(report.reason, state)
 
-    def resting(self) -> RunState:
-        """Return the state of the robot while nothing runs on it."""
+    def state_between_runs(self) -> RunState:
+        """Return the state of the robot outside of runs."""
         if self.fallen:
             return RunState.FALLEN
         return RunState.HOLDING if self.armed or not self.stack.wired else RunState.LIMP
 
     def _stop(self, policy: StopPolicy | None, asked: StopRequests) -> None:
         """Stop, and publish that; see `Stoppable`."""
-        with self.telemetry.stopping(self.resting):
+        with self.telemetry.stopping(self.state_between_runs):
             super()._stop(policy, asked)
 
     def _stop_idle(self, error: WindupError | None) -> None:
         """Stop, and publish that; see `Stoppable`."""
-        with self.telemetry.stopping(self.resting):
+        with self.telemetry.stopping(self.state_between_runs):
             super()._stop_idle(error)

@@ -13,6 +13,7 @@ from windup.hal.guard import GuardedBackend
 from windup.hal.guardian.handle import Guardian, guardian_for
 from windup.hal.heartbeat import no_heartbeat
 from windup.hal.servo_bus.servo_backend import ServoBackend
+from windup.hal.stopping.stop_flag import StopFlag
 from windup.robots import RobotDescription
 from windup.tools.stopping.idle import IdleKeeper
 
@@ -25,6 +26,7 @@ class Custody:
         backend: Its backend.
         give_up: Stops the robot when it has been idle for too long, or is unhealthy.
         motion: Its first motion; None for a robot without servos.
+        flag: Stop flag of this program.
 
     Attributes:
         guardian: The process that stops the robot when this one dies or hangs; None without torque,
@@ -37,8 +39,9 @@ class Custody:
         backend: GuardedBackend,
         give_up: Callable[[WindupError | None], None],
         motion: FirstMotion | None = None,
+        flag: StopFlag | None = None,
     ) -> None:
-        self._robot, self._backend = robot, backend
+        self._robot, self._backend, self._flag = robot, backend, flag
         self._give_up = WeakMethod(give_up)  # does not keep a robot that is closed alive
         self._motion = motion
         self.guardian: Guardian | None = None
@@ -63,7 +66,7 @@ class Custody:
         robot, servos = self._robot, self._backend.backend
         watch, hold = self._backend.watch, robot.safety.hold
         levels = None if watch is None else watch.levels
-        self.guardian = guardian_for(servos, robot.stop, robot.crouch, hold, levels)
+        self.guardian = guardian_for(servos, robot.stop, robot.crouch, hold, levels, self._flag)
         if self.guardian is not None:
             self._backend.heartbeat = partial(_tick, self.guardian, self._motion)
             if isinstance(servos, ServoBackend):
@@ -74,7 +77,9 @@ class Custody:
         if self._keeper is None and isinstance(self._backend.clock, WallClock):
             safety = self._robot.safety
             seconds = safety.hold if self._robot.stop == "hold" else safety.idle
-            self._keeper = IdleKeeper(self._backend, seconds, self._beat, self._stop_robot)
+            self._keeper = IdleKeeper(
+                self._backend, seconds, self._beat, self._stop_robot, self._flag
+            )
 
     def busy(self) -> None:
         """Stop holding the robot, because it is commanded from now on."""

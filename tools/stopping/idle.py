@@ -11,8 +11,9 @@ from collections.abc import Callable
 
 from windup.hal.errors import WindupError
 from windup.hal.guard import GuardedBackend
+from windup.hal.stopping.stop_flag import StopFlag
 from windup.tools.stopping.interrupts import note_interruption
-from windup.tools.stopping.stop_request import pressed_button
+from windup.tools.stopping.stop_request import pressed_button, told_to_stop
 
 GRACE_TIME = 0.2
 """Time for an interrupted program to end by itself, s."""
@@ -21,7 +22,7 @@ PERIOD = 0.04
 
 
 class IdleKeeper:
-    """Holds a robot for a while, then switches its torque off; at once if a button is pressed.
+    """Holds a robot for a while, then switches its torque off; at once on a stop request.
 
     Args:
         backend: The robot.
@@ -29,6 +30,7 @@ class IdleKeeper:
         alive: Called periodically to send a heartbeat.
         give_up: Stops the robot; called in the thread with None when the time is over or a button
             was pressed, or with an error.
+        flag: Stop flag of the program.
     """
 
     def __init__(
@@ -37,8 +39,9 @@ class IdleKeeper:
         seconds: float,
         alive: Callable[[], None],
         give_up: Callable[[WindupError | None], None],
+        flag: StopFlag | None = None,
     ) -> None:
-        self._backend, self._seconds = backend, seconds
+        self._backend, self._seconds, self._flag = backend, seconds, flag
         self._alive, self._give_up = alive, give_up
         self._until, self._by = backend.clock.now() + seconds, ""
         self._over = threading.Event()
@@ -65,9 +68,10 @@ class IdleKeeper:
                     return
                 self._backend.read()
                 self._alive()
-                if (button := pressed_button(self._backend.backend)) is not None:
-                    logging.getLogger(__name__).warning("stopped by %s", button)
-                    note_interruption(button)
+                by = told_to_stop(self._flag) or pressed_button(self._backend.backend)
+                if by is not None:
+                    logging.getLogger(__name__).warning("stopped by %s", by)
+                    note_interruption(by)
                     self._give_up(None)
                     return
         except WindupError as error:

@@ -36,11 +36,19 @@ class RunInterruptedError(KeyboardInterrupt):
 
     Attributes:
         report: Measurements of the run so far.
+        by: Name of what ended it.
     """
 
     def __init__(self, report: Any, by: str) -> None:
         super().__init__(f"stopped by {by}")
-        self.report = report
+        self.report, self.by = report, by
+
+
+class BrokenOffError(RunInterruptedError):
+    """A run was ended by whoever owns the robot, which is held."""
+
+    def __str__(self) -> str:
+        return self.by
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""Stop requests other than signals: buttons of the robot, and keys of the terminal."""
+"""Stop requests other than signals: robot buttons, terminal keys, and `windup stop`."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -6,7 +6,11 @@ from contextlib import contextmanager
 from windup.hal.backend import Backend
 from windup.hal.errors import UsageError
 from windup.hal.servo_bus.servo_backend import ServoBackend
+from windup.hal.stopping.stop_flag import StopFlag
 from windup.tools.stopping.stop_keys import keyboard, stop_keys
+
+COMMAND = "`windup stop`"
+"""Name of a request by the stop flag."""
 
 
 def pressed_button(backend: Backend) -> str | None:
@@ -16,18 +20,26 @@ def pressed_button(backend: Backend) -> str | None:
     return None
 
 
+def told_to_stop(flag: StopFlag | None) -> str | None:
+    """Return the name of a request by the stop flag, or None; the request then counts as seen."""
+    return COMMAND if flag is not None and flag.asked() else None
+
+
 @contextmanager
-def stop_requests(backend: Backend, *, keys: bool) -> Iterator[Callable[[], str | None]]:
+def stop_requests(
+    backend: Backend, *, keys: bool, flag: StopFlag | None = None
+) -> Iterator[Callable[[], str | None]]:
     """Yield a function that returns the name of a stop request, or None; call it once per tick.
 
     Args:
         backend: The robot, whose buttons, if any, are stop requests.
         keys: Whether keys of the terminal, if any, are stop requests too.
+        flag: Stop flag of the run.
     """
     with stop_keys(keyboard() if keys else None) as pressed_key:
 
         def asked() -> str | None:
-            return pressed_button(backend) or pressed_key()
+            return told_to_stop(flag) or pressed_button(backend) or pressed_key()
 
         yield asked
 

@@ -9,12 +9,11 @@ import numpy as np
 from rich.console import Console
 
 from windup.hal.errors import WindupError
-from windup.tools.terminal.result import print_result
+from windup.tools.terminal.result import SCHEMA, print_result
 from windup.tools.terminal.run_notes import NOTES
 from windup.tools.terminal.streams import StandardError
 from windup.tools.terminal.writing import STANDARD_OUTPUT, writing
 
-SCHEMA = 1
 console = Console(file=cast(IO[str], StandardError()), highlight=False)
 
 

@@ -1,9 +1,13 @@
 """Writes results to standard output."""
 
 import sys
+from typing import Final
 
 from windup.tools.terminal.streams import drop_unwritten
 from windup.tools.terminal.writing import STANDARD_OUTPUT, check_writable, writing
+
+SCHEMA: Final = 1
+"""Version of the keys of JSON results."""
 
 
 def print_result(text: str) -> None:

@@ -8,12 +8,13 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from copy import deepcopy
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from windup.hal.backend import BusHealth
 from windup.hal.errors import OutputError, UsageError
-from windup.hal.guard.finding import Finding
 from windup.tools.terminal.slowness import Slowness
+
+if TYPE_CHECKING:  # `windup stop` does without NumPy
+    from windup.hal.guard.finding import Finding
 
 Row = dict[str, Any]
 
@@ -39,8 +40,12 @@ class RunNotes:
         self._slowness: Slowness | None = None
         self._rows: list[Row] = []
 
-    def add(self, findings: Iterable[Finding], slowness: Slowness, backend: object = None) -> None:
+    def add(
+        self, findings: Iterable["Finding"], slowness: Slowness, backend: object = None
+    ) -> None:
         """Add the warnings of a session, and the clamp counts of its backend."""
+        from windup.hal.backend import BusHealth
+
         self.ran = True
         if isinstance(backend, BusHealth):
             self.driver_clamps.update(backend.clamps)

@@ -6,9 +6,8 @@ from math import atan2, cos, pi, radians, sin
 import numpy as np
 import pytest
 
-from tests.control.biped import model, observed, soles
+from tests.control.biped import observed, robot_state
 from windup.control.falling.fall import FallPredictor, unreachable
-from windup.control.kinematics.body import Body
 from windup.control.kinematics.momenta import Momenta
 from windup.hal.errors import StateMissingError
 from windup.hal.observation import BaseState, Observation
@@ -41,8 +40,7 @@ def test_reach_counts_from_the_hull_and_not_from_its_corners() -> None:
 
 
 def predictor() -> FallPredictor:
-    body = Body(model(), "base", "base", ["left_toe", "right_toe"])
-    return FallPredictor(body, soles(), REACH)
+    return FallPredictor(robot_state(), REACH)
 
 
 def tipping(time: float, toward: float, tilt: float, yaw: float = 0.0) -> Observation:

@@ -6,7 +6,7 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
-from tests.control.biped import DT, model, observed, soles
+from tests.control.biped import DT, observed, robot_state
 from windup.control.falling.fall import FallPredictor
 from windup.control.falling.protection import (
     EFFORT,
@@ -17,7 +17,6 @@ from windup.control.falling.protection import (
     ProtectiveFall,
     bounded,
 )
-from windup.control.kinematics.body import Body
 from windup.control.motions.play import PoseHolder
 from windup.hal.command import joint_torque
 from windup.hal.joints import Array, Joint, Joints
@@ -45,9 +44,8 @@ def leaning(time: float, pitch: float, rate: float = 0.0) -> Observation:
 
 
 def protected() -> Protected:
-    body = Body(model(), "base", "base", ["left_toe", "right_toe"])
     controller = PoseHolder(JOINTS, np.zeros(2), ramp=0.0)
-    return Protected(controller, FallPredictor(body, soles(), 0.05), WAYS, JOINTS)
+    return Protected(controller, FallPredictor(robot_state(), 0.05), WAYS, JOINTS)
 
 
 class Fall:
@@ -77,7 +75,7 @@ def test_the_phases_of_a_fall_are_published_after_the_controllers_own() -> None:
     fall = Fall()
     names = fall.protected.published
     block = ControllerBlock.of(names)
-    for seconds, pitch, rate, state, phase in (
+    for seconds, pitch, rate, running, phase in (
         (0.1, 0.1, 0.0, RunState.STANDING, ""),
         (0.05, 1.2, 5.0, RunState.FALLING, "falling"),
         (0.05, 1.44, 5.0, RunState.FALLING, "impact"),
@@ -85,7 +83,7 @@ def test_the_phases_of_a_fall_are_published_after_the_controllers_own() -> None:
     ):
         fall.hold(seconds, pitch, rate)
         fall.protected.publish(block)
-        assert block.run_state is state
+        assert block.run_state is running
         assert not phase or names.phases[block.phase] == phase
         assert not phase or names.reasons[block.reason] == "a fall cannot be prevented"
 

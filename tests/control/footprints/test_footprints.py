@@ -3,15 +3,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from windup.control.footprints.footprints import (
-    Footprint,
-    between,
-    ground_places,
-    onto,
-    read_footprints,
-    seen_from,
-    write_footprints,
-)
+from windup.control.footprints.footprints import Footprint, read_footprints, write_footprints
+from windup.control.kinematics.places import between, ground_places, onto, seen_from
 from windup.hal.errors import WindupError
 
 FEET = ("left_foot", "right_foot")

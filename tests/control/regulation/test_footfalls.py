@@ -11,7 +11,7 @@ from windup.hal.observation import Observation
 from windup.robots import RobotDescription
 from windup.sim_twin.backend import TwinBackend
 from windup.sim_twin.twin import Twin
-from windup.tools.assembly.build import body_of
+from windup.tools.assembly.state import state_of
 
 DOWN = radians(-4.0)
 
@@ -30,9 +30,8 @@ def standing(human: RobotDescription, pitch: float, height: float = 0.0) -> Obse
 
 
 def feel(human: RobotDescription, *observations: Observation) -> tuple[float, float, float]:
-    footfalls = Footfalls(body_of(human), human.contacts, 4)
+    footfalls = Footfalls(state_of(human), human.contacts, 4)
     for observation in observations:
-        footfalls.body.measure(observation)
         footfalls.see(observation)
         footfalls.end_step()
     return footfalls.plane()

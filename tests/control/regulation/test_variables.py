@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from windup.control.kinematics.body import heading
+from windup.control.kinematics.rotation import heading
 from windup.control.regulation.variables import StepEnd, regulation_variables
 from windup.hal.controller import Outcomes
 from windup.hal.errors import UnknownNameError

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.control.stepping.test_footing import OP3, STANCE, seen
+from tests.control.execution.test_footing import OP3, STANCE, seen
+from windup.control.execution.servo_executor import ServoExecutor
 from windup.control.stepping.comfort import ComfortStep
 from windup.control.stepping.step_decision import find_rule
 from windup.control.stepping.stepper import Stepper
@@ -76,8 +77,9 @@ def test_a_robot_with_its_own_dampings_uses_them() -> None:
 
 
 def test_feet_astray_come_back_by_a_comfort_step() -> None:
-    footing = footing_of(OP3, STANCE)
-    robot = Stepper(OP3.joints, footing, STANCE, find_rule("capture"), find_stepping(OP3))
+    stepping = find_stepping(OP3)
+    executor = ServoExecutor(OP3.joints, footing_of(OP3, STANCE), STANCE, stepping)
+    robot = Stepper(executor, find_rule("capture"), stepping)
     observation = at(0.0, 0.0)
     hips = [OP3.joints.names.index(name) for name in ("l_hip_pitch", "r_hip_pitch")]
     observation.joints.position[hips] += [-0.15, -0.15]  # left forward, right back
@@ -95,9 +97,9 @@ def test_a_turned_foot_is_turned_back() -> None:
     observation = at(0.0, 0.0)
     observation.joints.position[OP3.joints.names.index("r_hip_yaw")] += 0.4
     robot.reset(observation)
-    comfort = ComfortStep(robot.footing, 0.0, find_stepping(OP3))
+    comfort = ComfortStep(robot.executor, 0.0, find_stepping(OP3))
     assert comfort.needed
-    assert abs(robot.footing.planted().front) == pytest.approx(0.2, abs=0.02)
+    assert abs(robot.executor.feet.planted().front) == pytest.approx(0.2, abs=0.02)
 
 
 def test_a_base_that_is_turned_comes_back_to_where_the_feet_point() -> None:

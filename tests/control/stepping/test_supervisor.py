@@ -2,11 +2,10 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
-from tests.control.stepping.test_footing import OP3, seen
-from windup.control.stepping.supervisor import REST, RETURN, Supervisor
+from tests.control.execution.test_footing import OP3, STANCE, seen
+from windup.control.stepping.supervisor import REST, Supervisor
 from windup.hal.observation import Observation
 from windup.tools.assembly.build import build_walk
 from windup.tools.assembly.supervise import build_supervisor
@@ -85,7 +84,7 @@ def test_what_throws_it_back_goes_to_the_stepper_which_halts_and_hands_back(walk
     assert walked == catch.after
     walking.go(2.0)
     assert walking.holder == "walk"
-    assert catch.back == pytest.approx(catch.stood + RETURN, abs=2 * TICK)
+    assert catch.back == pytest.approx(catch.stood + supervisor.table.resume, abs=2 * TICK)
     assert supervisor.walker.steps > walked
     assert catch.record(supervisor.walker.steps)["walked_after"] == (
         supervisor.walker.steps - walked
@@ -102,6 +101,5 @@ def test_the_stepper_begins_where_the_robot_is_and_takes_time_for_its_stance() -
     assert run.holder == "step"
     assert command.position[arm] == pytest.approx(observation.joints.position[arm])
     run.go(0.6)
-    assert np.isclose(
-        run.supervisor.step(run.seen(0.0), TICK).position[arm], run.supervisor.stepper.stance[arm]
-    )
+    command = run.supervisor.step(run.seen(0.0), TICK)
+    assert command.position[arm] == pytest.approx(STANCE[arm])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from windup.control.footprints.footprints import seen_from
+from windup.control.kinematics.places import seen_from
 from windup.control.stride.pendulum import (
     PressureSegment,
     StepTiming,

@@ -5,11 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.control.stepping.test_footing import OP3, seen
+from tests.control.execution.test_footing import OP3, seen
 from windup.control.stride.pendulum import VelocityCommand
 from windup.control.stride.strider import Phase, Strider
 from windup.hal.observation import Observation
-from windup.tools.assembly.build import body_of
+from windup.hal.publishing.controller_block import ControllerBlock
+from windup.hal.publishing.run_state import RunState
+from windup.tools.assembly.state import state_of
 from windup.tools.assembly.stepping import stepping_stance
 from windup.tools.behaviours.directed import limbs_of
 from windup.tools.behaviours.striding import find_stride
@@ -19,8 +21,8 @@ HOW = find_stride(OP3)
 
 
 def strider(order: VelocityCommand) -> Strider:
-    body, stance = body_of(OP3), stepping_stance(OP3)
-    return Strider(OP3.joints, body, OP3.base, limbs_of(OP3, body), stance, lambda _: order, HOW)
+    state, stance = state_of(OP3), stepping_stance(OP3)
+    return Strider(OP3.joints, state, limbs_of(OP3), stance, lambda _: order, HOW)
 
 
 def play(robot: Strider, still: Observation, seconds: float) -> list[Phase]:
@@ -65,3 +67,15 @@ def test_a_sole_follows_the_ground_that_the_other_one_feels() -> None:
     tilt = robot.flying(foot).rotation[:, 2]
     assert 0.01 < abs(tilt[0]) < 0.06
     assert tilt[1] == pytest.approx(0.0, abs=0.01)
+
+
+def test_the_phase_is_published() -> None:
+    robot, still = strider(VelocityCommand(0.1)), seen()
+    robot.reset(still)
+    block = ControllerBlock.of(robot.published)
+    robot.publish(block)
+    assert block.run_state is RunState.STANDING
+    play(robot, still, HOW.begin + 0.5 * HOW.single)
+    robot.publish(block)
+    assert robot.published.phases[block.phase] == "swing"
+    assert block.run_state.words == "walking"

@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from windup.control.whole_body.dynamics import Dynamics
-from windup.control.whole_body.whole_body import FASTEST, Objectives, Weights, WholeBody
+from windup.control.whole_body.whole_body import FASTEST, Objectives, WholeBody
+from windup.control.whole_body.whole_body_file import Weights
 from windup.hal.geometry.gravity import GRAVITY
 from windup.hal.observation import BaseState, JointState, Observation
 from windup.robots import load_robot
+from windup.tools.assembly.state import state_of
 
 HUMAN = load_robot("human")
 STANCE = HUMAN.poses["ready"]
@@ -22,8 +24,7 @@ def seen() -> Observation:
 
 @pytest.fixture
 def dynamics() -> Dynamics:
-    feet = [foot.site for foot in HUMAN.feet]
-    dynamics = Dynamics(HUMAN.spec().compile(), HUMAN.base, feet)
+    dynamics = Dynamics(state_of(HUMAN))
     dynamics.update(seen())
     return dynamics
 

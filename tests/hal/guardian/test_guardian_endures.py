@@ -59,7 +59,7 @@ def test_a_policy_that_fails_in_any_way_ends_with_torque_off(
     switch_on(sts_bus)
     said: list[str] = []
     Takeover(order(sts_bus, policy), said.append).carry_out("the program died")
-    assert f"it cannot {policy} (AttributeError: a bug); torque goes off" in said
+    assert f"cannot {policy} (AttributeError: a bug); torque goes off" in said
     assert show(sts_bus, TORQUE) == [0, 0]
 
 

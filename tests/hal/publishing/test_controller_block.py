@@ -1,4 +1,5 @@
 from math import isnan
+from unittest.mock import MagicMock
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from windup.hal.publishing.controller_block import (
     BlockNames,
     BlockPart,
     ControllerBlock,
+    innermost,
     publisher_of,
 )
 from windup.hal.publishing.run_state import RunState
@@ -88,6 +90,20 @@ def test_a_part_that_publishes_nothing_stands() -> None:
     assert part.names == NOTHING
     assert (block.run_state, block.phase, block.reason) == (RunState.STANDING, -1, -1)
     assert isnan(block.phase_time)
+
+
+class Wrapper:
+    def __init__(self, controller: object) -> None:
+        self.controller = controller
+
+    def step(self) -> None: ...
+
+
+def test_the_innermost_controller_is_one_that_can_step() -> None:
+    inner = Wrapper("a gain, not a controller")
+    assert innermost(Wrapper(Wrapper(inner))) is inner
+    assert innermost(inner) is inner
+    assert isinstance(innermost(MagicMock()), MagicMock), "it ends"
 
 
 def test_states_have_words() -> None:

@@ -24,7 +24,7 @@ def files_of_the_package() -> Iterator[tuple[str, Path]]:
     for robot in map(load_robot, robot_names()):
         folder = robot.folder
         kind = robot.drive.kind
-        beside = {"stepping": "stepping", "stride": "stride"}
+        beside = {name: name for name in ("stepping", "stride", "whole_body")}
         beside["footprints"] = f"footprint_gains_{kind}"
         yield "robot", folder / "robot.toml"
         yield from (("gait", path) for path in robot.gaits().values())

@@ -5,9 +5,9 @@ from typing import Final
 
 import numpy as np
 
+from windup.control.execution.footing import Footing
 from windup.control.kinematics.momenta import capture_point
 from windup.control.kinematics.rotation import yaw_of
-from windup.control.stepping.footing import Footing
 from windup.control.stepping.stepper import Stepper
 from windup.hal.controller import Controller
 from windup.hal.joints import Array

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from windup.control.kinematics.body import Body, heading
+from windup.control.kinematics.rotation import heading
 from windup.control.limit_cycle.balancer import Balancer
 from windup.hal.observation import Observation
 
@@ -22,14 +22,12 @@ class Recorder:
     """Watches a walk.
 
     Attributes:
-        body: Kinematics of its own.
         walker: The walk's controller.
         traced: Keep the motion between the ends of steps too.
         lengths: Step length of each step, m.
         trace: Samples; see `NAMES`.
     """
 
-    body: Body
     walker: Balancer
     traced: bool
     lengths: list[float] = field(default_factory=list)
@@ -46,13 +44,13 @@ class Recorder:
 
     def _step_length(self, observation: Observation) -> float:
         """Return the way between the feet along the heading at the end of a step, m."""
-        at = self.body.measure(observation)
+        at = self.walker.state.update(observation).outcomes
         angle = float(heading(at.base_orientation)[0])
         apart = at.feet[0, 0] - at.feet[0, 1]
         return abs(float(np.cos(angle) * apart[0] + np.sin(angle) * apart[1]))
 
     def _sample(self, observation: Observation) -> list[float]:
-        at = self.body.measure(observation)
+        at = self.walker.state.update(observation).outcomes
         angle = float(heading(at.base_orientation)[0])
         c, s = np.cos(angle), np.sin(angle)
         x, y, z = at.base_position[0]

@@ -8,7 +8,7 @@ import numpy as np
 from windup.control.limit_cycle.balancer import Balancer
 from windup.hal.errors import DivergedError
 from windup.hal.observation import Observation
-from windup.tools.assembly.build import body_of, build_walk
+from windup.tools.assembly.build import build_walk
 from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.measures.gauges import Gauges
 from windup.tools.measures.walk_end import WalkEnd
@@ -75,7 +75,7 @@ class _Seen:
 
     def __init__(self, machine: Robot, walker: Balancer) -> None:
         robot = machine.description
-        self._recorder = Recorder(body_of(robot), walker, traced=True)
+        self._recorder = Recorder(walker, traced=True)
         self._gauges, self._bend = Gauges(robot.contacts), list[float]()
         self._bending = robot.joints.names.index(BEND) if BEND in robot.joints.names else 0
 

@@ -13,7 +13,7 @@ from windup.control.pose_graph.gait_file import Heading
 from windup.control.regulation.variables import AXES, regulation_variables
 from windup.hal.errors import DivergedError
 from windup.hal.joints import Array
-from windup.tools.assembly.build import body_of, build_walk
+from windup.tools.assembly.build import build_walk
 from windup.tools.assembly.walk_options import WalkOptions
 from windup.tools.reproduce.laszlo.laws import ConstantTurn, SpeedLaw
 from windup.tools.reproduce.laszlo.recorder import Recorder
@@ -153,7 +153,7 @@ class Probe:
 
 
 def _walk(robot: Robot, walker: Balancer, steps: int, *, traced: bool) -> Result:
-    recorder = Recorder(body_of(robot.description), walker, traced)
+    recorder = Recorder(walker, traced)
     robot.watch.append(recorder.add)
     robot.start_at(walker.gait.file.start)
     try:

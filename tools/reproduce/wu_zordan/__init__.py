@@ -29,6 +29,6 @@ WU_ZORDAN = Study(
         Path(work.__file__).parents[2] / "behaviours" / "directed.py",
     ),
     missing={
-        "2, 3": "curves of the model itself: ours are control/footprints/swing.py",
+        "2, 3": "curves of the model itself: ours are control/execution/swing.py",
     },
 )

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from windup.control.footprints.footprints import Footprint
-from windup.control.stepping.torque_stepper import TorqueStepper
+from windup.control.stepping.stepper import Stepper
 from windup.hal.controller import Controller
 from windup.hal.observation import Observation
 from windup.robots import load_robot
@@ -65,7 +65,7 @@ class Steps:
 
     def __call__(self, observation: Observation, controller: Controller) -> None:
         """Look at a tick."""
-        if isinstance(controller, TorqueStepper) and controller.steps > self._count:
+        if isinstance(controller, Stepper) and controller.steps > self._count:
             self._count = controller.steps
             self.begun.append(observation.time)
 

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import windup.hal.port.open_port
+import windup.hal.stopping.folder
 import windup.sim_twin.wire.serve.emulate
 import windup.sim_twin.wire.world.worlds
 from windup.hal.errors import PortError
@@ -39,6 +40,7 @@ def nothing_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(windup.sim_twin.wire.world.worlds, "build_world", refuse)
     monkeypatch.setattr(windup.sim_twin.wire.serve.emulate, "build_world", refuse)
     monkeypatch.setattr(Twin, "__init__", refuse)
+    monkeypatch.setattr(windup.hal.stopping.folder, "BASE", tmp_path)  # `stop --all` finds none
     for name in LONG:
         monkeypatch.setattr(COMMANDS[name].load(), "run", lambda self: 0)
     monkeypatch.chdir(tmp_path)

@@ -1,0 +1,1 @@
+"""Stopping a robot from another process, with the standard library alone."""

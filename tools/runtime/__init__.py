@@ -1,0 +1,1 @@
+"""One process owns a robot: the runtime, its socket, and its clients."""

@@ -1,0 +1,1 @@
+"""The commands about a runtime: `windup up`, `down` and `status`."""
