@@ -74,3 +74,14 @@ def test_what_was_clipped_is_in_the_last_line(
     assert ticks >= 25
     line = ran.err.splitlines()[-1]
     assert line.endswith(f"done; position of head_pan was clipped in {ticks} ticks")
+
+
+def test_a_first_pose_beyond_the_limits_counts_as_clipped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, shell: Windup
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = LATE.replace("WRONG", "pass").replace("self.stance)", "self.stance + 30.0)")
+    Path("x.py").write_text(text)
+    ran = shell("run", "op3", "x.py", "--seconds", "0.2", *PORTS["wire"], "--json", "-")
+    assert ran.json["clamps"]["position"] >= 1
+    assert "(and of 19 other joints) was clipped in" in ran.err

@@ -39,9 +39,9 @@ def test_what_is_no_controller_is_refused_before_anything_moves(wrong: Any, said
 def test_a_time_below_zero_is_refused() -> None:
     with Robot.open("op3") as robot:
         holder = PoseHolder(robot.joints, robot.description.stance)
-        with pytest.raises(UsageError, match="^seconds -1: give 0 .. "):
+        with pytest.raises(UsageError, match=r"^seconds -1: give 0 .. "):
             robot.run(holder, seconds=-1)
-        with pytest.raises(UsageError, match="^seconds -1: give 0 .. "):
+        with pytest.raises(UsageError, match=r"^seconds -1: give 0 .. "):
             robot.ticks(-1)
 
 
