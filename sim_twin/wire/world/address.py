@@ -101,6 +101,10 @@ def parse_address(url: str) -> Address:
         if name not in OPTIONS:
             raise UsageError(f"{url!r}: unknown option {name!r}{suggest(name, OPTIONS)}")
         values[name] = _value(url, name, text)
+    if "servos" in values and values["robot"] != BENCH:
+        raise UsageError(
+            f"{url!r}: servos are for {SCHEME}://{BENCH}; a robot has its own: give one of them"
+        )
     address = replace(DEFAULTS, **values)
     check_numbers(address, f"{url!r}: ")
     parse_servos(address.servos)
