@@ -65,6 +65,7 @@ def test_each_call_raises_what_it_raises_on_a_terminal(call: str) -> None:
             assert again.in_waiting == 0
 
 
+DISCONNECTED = r"was disconnected \([^(]*\); check cable"
 DRIVER_CALLS: dict[str, Callable[[Port], object]] = {
     "read": lambda port: port.read(1, port.clock.now() + 0.01),
     "write": lambda port: port.write(b"x"),
@@ -78,7 +79,7 @@ DRIVER_CALLS: dict[str, Callable[[Port], object]] = {
 def test_our_driver_makes_one_error_of_all_of_them(call: str) -> None:
     with ServoBus(servos="STS3215:1") as bus, bus.port() as port:
         bus.faults.unplug(seconds=0.5)
-        with pytest.raises(PortError):
+        with pytest.raises(PortError, match=DISCONNECTED if call != "baud" else "unplugged"):
             DRIVER_CALLS[call](port)
 
 
