@@ -165,6 +165,7 @@ def suggest(name: str, known: Iterable[str]) -> str:
     "; did you mean 'op3'? known: human, op3"
     """
     names = sorted(known)
-    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-    hint = f"; did you mean {close[0]!r}?" if close else ";"
+    folded = {each.casefold(): each for each in names}
+    close = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=0.5)
+    hint = f"; did you mean {folded[close[0]]!r}?" if close else ";"
     return f"{hint} known: {', '.join(names) or 'none'}"
