@@ -7,6 +7,9 @@ be right, what to run next.
 import difflib
 from collections.abc import Iterable
 
+MOST_SUGGESTED = 3
+"""More names than these that begin with an unknown one say little: the most similar does."""
+
 
 class WindupError(Exception):
     """Base class of all errors raised by Windup.
@@ -163,8 +166,19 @@ def suggest(name: str, known: Iterable[str]) -> str:
 
     >>> suggest("opp3", ["human", "op3"])
     "; did you mean 'op3'? known: human, op3"
+
+    Names that begin with `name` come first:
+
+    >>> suggest("A12", ["A13", "A12-7V", "A12-12V"])
+    "; did you mean 'A12-12V' or 'A12-7V'? known: A12-12V, A12-7V, A13"
     """
     names = sorted(known)
-    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
-    hint = f"; did you mean {close[0]!r}?" if close else ";"
+    close = _begun_by(name, names) or difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    hint = f"; did you mean {' or '.join(map(repr, close))}?" if close else ";"
     return f"{hint} known: {', '.join(names) or 'none'}"
+
+
+def _begun_by(name: str, names: list[str]) -> list[str]:
+    """Return the few of `names` that are `name` and something more."""
+    longer = [other for other in names if name and other.lower().startswith(name.lower())]
+    return longer if len(longer) <= MOST_SUGGESTED else []
