@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
+from windup.control.returned import returned_command
 from windup.hal.backend import Clock
 from windup.hal.command import JointCommand
 from windup.hal.controller import Controller, Stopwatch
@@ -172,6 +173,7 @@ class TickLoop:
         self.applied: JointCommand | None = None
         # Bound methods, looked up once: they are called on every tick.
         self._read, self._write, self._step = backend.read, backend.write, controller.step
+        self._controller = controller
         self._reset: Callable[[Observation], None] | None = controller.reset
         self._period, self._until, self._estimator = period, until, estimator
         self._rollouts, self.recorder = rollouts or Stopwatch(), recorder
@@ -201,10 +203,12 @@ class TickLoop:
         """Ask the controller for the command of this tick, send it, and return what was applied.
 
         Raises:
+            ControllerError: The controller returned no command.
             WindupError: Whatever the controller, the guard or the backend raise.
         """
         assert self.observation is not None, "a tick begins with an observation"
-        self._asked = self._step(self.observation, self._period)
+        asked = self._step(self.observation, self._period)
+        self._asked = returned_command(asked, self._controller)
         self.applied = self._write(self._asked)
         return self.applied
 

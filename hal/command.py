@@ -1,9 +1,11 @@
 """Joint commands, and the torque law that defines them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from windup.hal.errors import UnsafeCommandError
 from windup.hal.joints import Array, Joints
 
 FIELDS = ("position", "velocity", "torque", "stiffness", "damping")
@@ -75,15 +77,22 @@ class JointCommand:
             torque: (n,) N m, by default 0.
             stiffness: (n,) N m/rad, by default the joints' own.
             damping: (n,) N m s/rad, by default the joints' own.
+
+        Raises:
+            UnsafeCommandError: An array has another shape.
         """
         block = np.zeros((len(FIELDS), len(joints)))
-        block[0] = position
-        if velocity is not None:
-            block[1] = velocity
-        if torque is not None:
-            block[2] = torque
-        block[3] = joints.stiffness if stiffness is None else stiffness
-        block[4] = joints.damping if damping is None else damping
+        try:
+            block[0] = position
+            if velocity is not None:
+                block[1] = velocity
+            if torque is not None:
+                block[2] = torque
+            block[3] = joints.stiffness if stiffness is None else stiffness
+            block[4] = joints.damping if damping is None else damping
+        except ValueError:
+            _check_rows((position, velocity, torque, stiffness, damping), len(joints))
+            raise
         block.setflags(write=False)
         return cls(block)
 
@@ -97,6 +106,34 @@ class JointCommand:
         block = self.block.copy()
         block[0] = position
         return JointCommand(block)
+
+
+def check_shape(block: Array, joints: int) -> None:
+    """Raise unless the block of a command has the shape (5, n) for n `joints`.
+
+    Raises:
+        UnsafeCommandError: It has another one.
+    """
+    shape = (len(FIELDS), joints)
+    if block.shape != shape:
+        raise UnsafeCommandError(
+            f"a command of shape {block.shape} for {joints} joints; its shape has to be {shape}"
+        )
+
+
+def _check_rows(rows: Sequence[Array | float | None], joints: int) -> None:
+    """Raise if an array of `FIELDS` has not one value for each of n `joints`.
+
+    Raises:
+        UnsafeCommandError: It has not; the message names it.
+    """
+    for name, row in zip(FIELDS, rows, strict=True):
+        shape = np.shape(0.0 if row is None else row)
+        if shape not in ((), (joints,)):
+            raise UnsafeCommandError(
+                f"{name}: a command of shape {shape} for {joints} joints; its shape has to be "
+                f"{(joints,)}"
+            )
 
 
 def joint_torque(command: JointCommand, q: Array, dq: Array, limit: Array) -> Array:

@@ -173,12 +173,19 @@ def suggest(name: str, known: Iterable[str]) -> str:
     "; did you mean 'A12-12V' or 'A12-7V'? known: A12-12V, A12-7V, A13"
     """
     names = sorted(known)
-    close = _begun_by(name, names) or difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    close = _begun_by(name, names) or _similar(name, names)
     hint = f"; did you mean {' or '.join(map(repr, close))}?" if close else ";"
     return f"{hint} known: {', '.join(names) or 'none'}"
 
 
 def _begun_by(name: str, names: list[str]) -> list[str]:
     """Return the few of `names` that are `name` and something more."""
-    longer = [other for other in names if name and other.lower().startswith(name.lower())]
+    longer = [each for each in names if name and each.casefold().startswith(name.casefold())]
     return longer if len(longer) <= MOST_SUGGESTED else []
+
+
+def _similar(name: str, names: list[str]) -> list[str]:
+    """Return the most similar of `names` in a list, whatever the case; none if none is near."""
+    folded = {each.casefold(): each for each in names}
+    close = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=0.5)
+    return [folded[each] for each in close]

@@ -13,6 +13,7 @@ from math import cos, nan
 import numpy as np
 
 from windup.control.falling.fall import FallPredictor
+from windup.control.returned import returned_command
 from windup.hal.command import JointCommand
 from windup.hal.controller import Controller
 from windup.hal.errors import StateMissingError
@@ -164,7 +165,7 @@ class Protected:
             StateMissingError: The observation has no base.
         """
         if not self.active and not self.predictor.update(observation):
-            return self.controller.step(observation, dt)
+            return returned_command(self.controller.step(observation, dt), self.controller)
         if self.way is None or self.began is None:
             self.way, self.began = self._choose(), observation.time
             self.phase = Phase.FALLING

@@ -5,17 +5,19 @@ robot moves from its present pose to the first pose of its controller at a limit
 stiffness that ramps up, and the motion is aborted as soon as a joint does not follow.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
 from windup.control.motions.following import Following
 from windup.control.motions.planted import Planted
+from windup.control.returned import returned_command
 from windup.hal.command import JointCommand
 from windup.hal.controller import Controller, HasFirstPose, first_pose_of
 from windup.hal.errors import FirstMotionError
 from windup.hal.geometry.smooth_step import PEAK, smooth_step
-from windup.hal.joints import Array, Joints
+from windup.hal.joints import Array, Joints, Mask
 from windup.hal.observation import Observation
 from windup.hal.publishing.controller_block import UNKNOWN, BlockNames, BlockPart, ControllerBlock
 
@@ -42,6 +44,7 @@ class FirstMotion:
         speed: Maximum speed of a goal, rad/s.
         lag: Maximum position error of a joint, rad.
         planted: Check of the soles against the floor, or None if the soles are not flat.
+        clipped: Called with the joints (n,) bool whose first goal was beyond their limits.
 
     Attributes:
         due: The first motion is not complete yet.
@@ -59,7 +62,9 @@ class FirstMotion:
         speed: float,
         lag: float,
         planted: Planted | None = None,
+        clipped: Callable[[Mask], None] = lambda beyond: None,
     ) -> None:
+        self.clipped = clipped
         self.joints, self.speed, self.lag, self.planted = joints, speed, lag, planted
         self._begins_with = stiffness
         self.begin()
@@ -146,6 +151,8 @@ class Approach:
 
         Raises:
             FirstMotionError: A joint does not follow.
+            ControllerError: The controller returned no command.
+            UnsafeCommandError: It returned one for another number of joints.
         """
         command = self._command(observation, dt)
         self.motion.goal = command.position
@@ -155,7 +162,7 @@ class Approach:
         if not self.active:
             return self._left_alone(observation, dt)
         if self._following is None:
-            command = self.controller.step(observation, dt)
+            command = self._asked(observation, dt)
             if self._is_there(command, observation):
                 self.active, self.motion.made = False, True
                 return command
@@ -164,7 +171,7 @@ class Approach:
 
     def _left_alone(self, observation: Observation, dt: float) -> JointCommand:
         """Return the controller's command; check the joints as long as it holds still."""
-        command = self.controller.step(observation, dt)
+        command = self._asked(observation, dt)
         if self._following is not None:
             moves = np.abs(command.position - self._goal).max() > CLOSE
             if moves or observation.time > self._began + self._seconds + SETTLING + WATCH:
@@ -172,6 +179,11 @@ class Approach:
             else:
                 self._following.update(observation, self._goal)
         return command
+
+    def _asked(self, observation: Observation, dt: float) -> JointCommand:
+        """Return the command of the controller, whose shape the motion relies on."""
+        returned = self.controller.step(observation, dt)
+        return returned_command(returned, self.controller, len(self.joints))
 
     def _is_there(self, command: JointCommand, observation: Observation) -> bool:
         """Return whether the robot is at the first pose already, with full stiffness."""
@@ -187,7 +199,10 @@ class Approach:
             start = before
         self._from = np.clip(start, joints.lower, joints.upper)
         first = first_pose_of(self.controller, command)
-        self._way = np.clip(first, joints.lower, joints.upper) - self._from
+        goal = np.clip(first, joints.lower, joints.upper)
+        if (beyond := goal != first).any():
+            self.motion.clipped(beyond)
+        self._way = goal - self._from
         self._began, self._share = observation.time, self.motion.share
         longest = float(np.abs(self._way).max())
         weak = STIFFENING if (self._share < 1.0).any() else SETTLING
@@ -219,4 +234,4 @@ class Approach:
         if np.abs(self._way).max() >= CLOSE:
             self.motion.due = False
         self._begin(observation, goal)
-        return self.controller.step(observation, dt)
+        return self._asked(observation, dt)

@@ -9,7 +9,7 @@ from threading import RLock
 import numpy as np
 
 from windup.hal.backend import Backend, Clock, Rearmable
-from windup.hal.command import FIELDS, JointCommand
+from windup.hal.command import FIELDS, JointCommand, check_shape
 from windup.hal.errors import GuardianError, PortError, UnsafeCommandError
 from windup.hal.geometry.smooth_step import smooth_step
 from windup.hal.guard.arming import check_health, read_fresh
@@ -18,7 +18,7 @@ from windup.hal.guard.presence_check import PresenceCheck
 from windup.hal.guard.torque_off_check import check_torque_off
 from windup.hal.guard.watch import HealthWatch
 from windup.hal.heartbeat import no_heartbeat
-from windup.hal.joints import Array, Flags, Joints
+from windup.hal.joints import Array, Flags, Joints, Mask
 from windup.hal.observation import Observation
 from windup.hal.torque_state import TorqueState
 
@@ -41,6 +41,7 @@ class GuardedBackend:
         crouch: (n,) pose of the crouch, rad.
         watch: Judges the health of every joint; None for joints without servos.
         clamps: Maps each row of a command to the number of commands clamped in it.
+        clamp_counts: (5, n) number of commands in which each row was clamped at each joint.
         clamped_joints: (n,) number of commands in which each joint was clamped.
         clamp_bits: (n,) bits of the rows of the last command in which each joint was clamped; None
             if it was not clamped.
@@ -54,6 +55,7 @@ class GuardedBackend:
     crouch: Array | None = None
     watch: HealthWatch | None = None
     clamps: dict[str, int] = field(default_factory=lambda: dict.fromkeys(FIELDS, 0))
+    clamp_counts: Array = field(init=False, repr=False)
     clamped_joints: Array = field(init=False)
     clamp_bits: Flags | None = field(default=None, init=False, repr=False)
     heartbeat: Callable[[], None] = field(init=False, repr=False)
@@ -63,6 +65,7 @@ class GuardedBackend:
     _driven: bool = field(default=False, init=False, repr=False)
 
     def __post_init__(self) -> None:
+        self.clamp_counts = np.zeros((len(FIELDS), len(self.backend.joints)))
         self.clamped_joints = np.zeros(len(self.backend.joints))
         self.heartbeat = no_heartbeat
         self._buffer = np.empty_like(self.limits.lower)
@@ -188,10 +191,7 @@ class GuardedBackend:
         self.heartbeat()
         block = command.block
         if block.shape != self._buffer.shape:
-            raise UnsafeCommandError(
-                f"a command of shape {block.shape} for {len(self.joints)} joints; "
-                f"its shape has to be {self._buffer.shape}"
-            )
+            check_shape(block, len(self.joints))
         if self._unlimited and not isfinite(block.sum()):
             self._check_finite(block)
         np.maximum(block, self.limits.lower, out=self._buffer)
@@ -277,7 +277,12 @@ class GuardedBackend:
         """Count the clamps of `block`; raise if a value is not finite."""
         self._check_finite(block)
         changed = self._buffer != block
+        self.note_clamps(changed)
+        self.clamp_bits = POWERS @ changed
+
+    def note_clamps(self, changed: Mask) -> None:
+        """Count one command that was clamped where `changed` (5, n) is true, here or before."""
         for row in np.flatnonzero(changed.any(axis=1)):
             self.clamps[FIELDS[row]] += 1
+        self.clamp_counts += changed
         self.clamped_joints += changed.any(axis=0)
-        self.clamp_bits = POWERS @ changed

@@ -165,8 +165,9 @@ class Port:
         self.close()
 
     def _gone(self, error: Exception) -> PortError:
+        why = error.args[-1] if isinstance(error, termios.error) else error  # not "(5, '...')"
         return PortError(
-            f"port {self.url} was disconnected ({error}); check cable and power, then open it again"
+            f"port {self.url} was disconnected ({why}); check cable and power, then open it again"
         )
 
 

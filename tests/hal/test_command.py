@@ -3,6 +3,7 @@ import pytest
 
 from tests.small_world import JOINTS, N
 from windup.hal.command import FIELDS, JointCommand, joint_torque, shifted_goal
+from windup.hal.errors import UnsafeCommandError
 
 
 def command(**rows: float) -> JointCommand:
@@ -75,3 +76,11 @@ def test_a_shifted_goal_counts_on_the_stiffness_that_is_there() -> None:
 def test_a_joint_without_stiffness_keeps_its_goal() -> None:
     asked = command(position=0.1, velocity=1.0, torque=0.6, damping=0.2)
     np.testing.assert_array_equal(shifted_goal(asked), np.full(N, 0.1))
+
+
+def test_a_row_of_another_shape_is_named() -> None:
+    with pytest.raises(UnsafeCommandError) as error:
+        JointCommand.of(JOINTS, position=0.0, torque=np.zeros(N + 1))
+    assert str(error.value) == (
+        f"torque: a command of shape {(N + 1,)} for {N} joints; its shape has to be {(N,)}"
+    )

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
+from windup.hal.guard.clamp_text import clamp_text
 from windup.tools.robot.robot import Robot
 from windup.tools.robot.stopping import INTERRUPTED
 
@@ -92,4 +93,6 @@ def usual_report(name: str, robot: Robot, options: dict[str, Any]) -> Report:
     }
     seconds = loop.sim_time - loop.first_motion
     line = f"{robot.description.name} ran {name} for {seconds:.2f} s: {loop.reason}"
+    if clipped := clamp_text(robot.backend):
+        line += f"; {clipped}"
     return Report(loop.reason == "done" and not fell, loop.reason, result, (line,))

@@ -7,7 +7,7 @@ from inspect import getsourcelines
 from pathlib import Path
 from typing import Any
 
-from windup.hal.errors import ControllerError, UsageError, WindupError
+from windup.hal.errors import ControllerError, UnsafeCommandError, UsageError, WindupError
 from windup.tools.terminal.say import say
 
 
@@ -33,6 +33,8 @@ def named(error: BaseException) -> str:
     text = " ".join(str(error.msg if isinstance(error, SyntaxError) else error).split())
     if isinstance(error, WindupError):
         return text
+    if isinstance(error, SystemExit):
+        return f"it ends the program (SystemExit: {text}); raise an error instead"
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 
@@ -56,9 +58,9 @@ def refusing(path: Path) -> Iterator[None]:
     """
     try:
         yield
-    except Exception as error:  # whatever a user's code raises
+    except (Exception, SystemExit) as error:  # whatever a user's code raises
         place = place_of_error(error, path)
-        if isinstance(error, WindupError) and place == str(path):
+        if isinstance(error, WindupError | SystemExit) and place == str(path):
             raise  # it did not come from there
         raise UsageError(f"{place}: {named(error)}") from error
 
@@ -69,14 +71,22 @@ def failing(path: Path) -> Iterator[None]:
 
     Raises:
         ControllerError: The code raised something that is no error of the stack.
+        UnsafeCommandError: It made a command of another shape; the message has the line.
     """
     try:
         yield
     except ControllerError as error:
-        raise _failure(error.__cause__ or error, path) from error.__cause__
+        if error.__cause__ is None:  # a message about what the code returned
+            raise
+        raise _failure(error.__cause__, path) from error.__cause__
+    except UnsafeCommandError as error:
+        place = place_of_error(error, path)
+        if place == str(path):  # the guard refused it
+            raise
+        raise UnsafeCommandError(f"{error} ({place})") from error
     except WindupError:
         raise
-    except Exception as error:  # whatever a user's code raises
+    except (Exception, SystemExit) as error:  # whatever a user's code raises
         raise _failure(error, path) from error
 
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from windup.control.returned import no_command
 from windup.hal.command import FIELDS, JointCommand
 from windup.hal.controller import Controller
 from windup.robots import RobotDescription
@@ -28,8 +29,7 @@ class Returned:
         """Return what is wrong with it as a command, after "step"; "" if nothing is."""
         joints = self.robot.joints
         if not isinstance(self.value, JointCommand):
-            kind = "nothing" if self.value is None else f"a {type(self.value).__name__}"
-            return f"returned {kind}; it should return JointCommand.of(joints, position=...)"
+            return no_command(self.value)
         block, shape = self.value.block, (len(FIELDS), len(joints))
         if block.shape != shape:
             return (
@@ -39,7 +39,10 @@ class Returned:
         bad = np.argwhere(~np.isfinite(block))
         if bad.size:
             row, joint = bad[0]
-            return f"asked joint {joints.names[joint]!r} for {FIELDS[row]} {block[row, joint]}"
+            return (
+                f"commanded {FIELDS[row]} {block[row, joint]} for joint {joints.names[joint]!r}; "
+                "give finite values"
+            )
         return ""
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -12,6 +13,10 @@ from windup.hal.errors import UsageError, WindupError
 from windup.hal.guard import GuardedBackend
 from windup.hal.joints import Joints
 from windup.hal.observation import Observation
+from windup.hal.ranges import Range
+
+LASTING: Final = Range(0.0, 1e9, "s")
+"""Valid durations of a run."""
 
 
 class GivenCommand:
@@ -102,3 +107,20 @@ def check_command(command: object) -> None:
             f"robot.write() takes a JointCommand, not {type(command).__name__}: "
             "type JointCommand.of(robot.joints, position=...)"
         )
+
+
+def check_controller(controller: object) -> None:
+    """Raise unless this is a controller.
+
+    Raises:
+        UsageError: It is a class, or lacks a method; nothing has moved.
+    """
+    if isinstance(controller, type):
+        name = controller.__name__
+        raise UsageError(f"robot.run() takes a controller, not the class {name}: give {name}(...)")
+    for method in ("reset(observation)", "step(observation, dt)"):
+        if not callable(getattr(controller, method.partition("(")[0], None)):
+            raise UsageError(
+                f"robot.run() takes a controller, not {type(controller).__name__}: it has no "
+                f"{method}"
+            )

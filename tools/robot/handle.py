@@ -168,6 +168,7 @@ class Handle:
                 the robot. Without, that is a warning.
 
         Raises:
+            UsageError: It is no controller, or `seconds` is negative; nothing has moved.
             PostureError: It was to be armed, and a joint is outside of its limits, or it needs its
                 feet (not `down`) and sits or lies.
             FirstMotionError: A joint did not follow in the first motion; the robot is limp.

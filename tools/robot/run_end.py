@@ -68,6 +68,11 @@ class RunEnd:
             return reason
         return "done" if observation.time >= self._end else None
 
+    def open_at(self, time: float) -> None:
+        """Begin the run at `time` of the backend's clock, s: its loop begins now."""
+        self.opened = time
+        self._begin_at(time)
+
     def interrupted(self) -> bool:
         """Return whether there has been a stop request."""
         for wish in self.wishes:

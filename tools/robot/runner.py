@@ -4,7 +4,7 @@ import logging
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 from weakref import ref
 
 from windup.control.loop import Recorder, TickLoop, Until
@@ -19,7 +19,7 @@ from windup.sim_twin.backend import TwinClock
 from windup.tools.assembly.protect import Protection
 from windup.tools.reports.recording import Recording
 from windup.tools.reports.run_report import RunReport
-from windup.tools.robot.given import Body, GivenCommand, ReadOnly
+from windup.tools.robot.given import LASTING, Body, GivenCommand, ReadOnly, check_controller
 from windup.tools.robot.run_end import PreparedRun, RunEnd
 from windup.tools.robot.stopping import INTERRUPTED
 from windup.tools.robot.watched import Watched
@@ -74,7 +74,7 @@ class Runner(Watched):
     def run(
         self,
         controller: Controller,
-        seconds: float | None = None,
+        seconds: Annotated[float | None, LASTING] = None,
         *,
         until: Until | None = None,
         rollouts: Stopwatch | None = None,
@@ -98,11 +98,13 @@ class Runner(Watched):
             report: Filled in as the run goes; a new one by default.
 
         Raises:
+            UsageError: It is no controller, or `seconds` is negative; nothing has moved.
             PostureError: It was to be armed, and a joint is outside of its limits, or it needs its
                 feet (not `down`) and sits or lies.
             FirstMotionError: A joint did not follow in the first motion; the robot is limp.
             WindupError: From the guard, the backend or the controller; the stop policy has run.
         """
+        check_controller(controller)
         report = RunReport() if report is None else report
         with (
             self.prepared(
@@ -212,7 +214,7 @@ class Runner(Watched):
         except WindupError as error:
             self.fail(error, asked)
             raise
-        except (KeyboardInterrupt, SystemExit) as ended:  # raised by a controller of one's own
+        except KeyboardInterrupt as ended:  # raised by a controller of one's own
             asked.by = asked.by or type(ended).__name__
             self.loop.reason = INTERRUPTED
             self._stop_after_error(asked)
@@ -220,7 +222,7 @@ class Runner(Watched):
         except BaseException as error:
             self.loop.reason = f"the controller failed: {type(error).__name__}: {error}"
             self._stop_after_error(asked)
-            if not isinstance(error, Exception):  # a task that is cancelled, a test that fails
+            if not isinstance(error, Exception | SystemExit):  # a cancelled task, a failed test
                 raise
             raise ControllerError(self.loop.reason) from error
         finally:
@@ -237,6 +239,7 @@ class Runner(Watched):
             recorder = run.report.recording = Recording(
                 robot.name, robot.joints.names, robot.contacts.names, recorder
             )
+        run.end.open_at(self.backend.clock.now())
         return TickLoop(
             self.backend if run.may_move else ReadOnly(self.backend),
             run.controller,

@@ -3,7 +3,7 @@
 import logging
 from dataclasses import dataclass, field
 from types import TracebackType
-from typing import Self
+from typing import Annotated, Self
 
 from windup.control.motions.play import PoseHolder
 from windup.hal.command import JointCommand
@@ -12,7 +12,7 @@ from windup.hal.guard.finding import Finding
 from windup.hal.observation import Observation
 from windup.hal.ranges import numbers_checked
 from windup.tools.robot.by_hand import ByHand
-from windup.tools.robot.given import check_command
+from windup.tools.robot.given import LASTING, check_command
 from windup.tools.robot.runner import Runner
 from windup.tools.robot.ticks import Ticks
 from windup.tools.stopping.interrupts import (
@@ -52,7 +52,11 @@ class Session(Runner):
 
     @numbers_checked
     def ticks(
-        self, seconds: float | None = None, *, down: bool = False, needs_imu: bool = False
+        self,
+        seconds: Annotated[float | None, LASTING] = None,
+        *,
+        down: bool = False,
+        needs_imu: bool = False,
     ) -> Ticks:
         """Return the ticks of a run, for a `for` loop whose body is the controller.
 

@@ -9,8 +9,10 @@ from windup.control.estimation.posture import Posture, PostureSense
 from windup.control.kinematics.legs import legs_of
 from windup.control.motions.first_motion import Approach, FirstMotion
 from windup.control.motions.planted import Planted
+from windup.hal.command import FIELDS
 from windup.hal.controller import Controller
 from windup.hal.errors import PostureError
+from windup.hal.joints import Mask
 from windup.hal.observation import Observation
 from windup.hal.servo_bus.servo_backend import ServoBackend
 from windup.robots import RobotDescription
@@ -55,7 +57,7 @@ class Start:
             legs = legs_of(model, robot.base, feet, robot.joints, robot.stance)
         planted = None if legs is None else Planted(robot.joints, legs)
         self.motion = FirstMotion(
-            robot.joints, share, safety.first_speed, safety.first_lag, planted
+            robot.joints, share, safety.first_speed, safety.first_lag, planted, self._note_clipped
         )
         self._sense, self._clear = None, CLEAR
         if robot.imu is not None and robot.feet and known:
@@ -65,6 +67,12 @@ class Start:
         self.unseen = True
         if isinstance(self.backend.backend, ServoBackend):
             self.backend.backend.arming_stiffness = share * robot.joints.stiffness
+
+    def _note_clipped(self, beyond: Mask) -> None:
+        """Count the joints (n,) bool of a first pose that was clipped, as the guard does."""
+        changed = np.zeros((len(FIELDS), len(beyond)), dtype=bool)
+        changed[FIELDS.index("position")] = beyond
+        self.backend.note_clamps(changed)
 
     def begin(self) -> None:
         """Torque has come on."""

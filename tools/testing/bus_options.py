@@ -6,7 +6,7 @@ from typing import Literal, TypedDict
 from urllib.parse import urlencode
 
 from windup.hal.errors import UsageError
-from windup.sim_twin.wire.world.address import SCHEME, parse_address
+from windup.sim_twin.wire.world.address import BENCH, SCHEME, parse_address
 
 RESERVED = ("clock", "world", "bus")
 """Options of a twin:// URL that `ServoBus` and `ServoPty` set themselves."""
@@ -68,7 +68,20 @@ def bus_url(robot: str | Path, options: Mapping[str, object]) -> str:
     """
     if taken := set(options) & set(RESERVED):
         raise UsageError(f"a test's bus sets these options itself: {' and '.join(sorted(taken))}")
+    _check_robot(str(robot), options)
     query = urlencode({key: value for key, value in options.items() if value != ""}, safe=":,;")
     url = f"{SCHEME}://{robot}?{query}"
     parse_address(url)
     return url
+
+
+def _check_robot(robot: str, options: Mapping[str, object]) -> None:
+    """Raise UsageError if servos are given as a robot, or with one."""
+    if ":" in robot and "/" not in robot:
+        raise UsageError(
+            f'unknown robot {robot!r}; servos without a robot are given as servos="{robot}"'
+        )
+    if options.get("servos") and robot != BENCH:
+        raise UsageError(
+            f"servos are for a bench, and robot {robot!r} has its own: give one of the two"
+        )

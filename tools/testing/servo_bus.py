@@ -15,7 +15,7 @@ from functools import partial
 from itertools import count
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Self, Unpack
+from typing import TYPE_CHECKING, Any, Final, Self, Unpack
 
 import serial
 
@@ -23,6 +23,7 @@ from windup.hal.backend import Clock
 from windup.hal.errors import UsageError
 from windup.hal.port.open_port import open_port
 from windup.hal.port.port import Port
+from windup.hal.ranges import Range, check_number
 from windup.sim_twin.wire import build_world, parse_address, register_world, unregister_world
 from windup.sim_twin.wire.device import Device
 from windup.sim_twin.wire.faults.faults import Faults
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from windup.tools.robot.robot import Robot
 
 _numbers = count(1)
+WAIT: Final = Range(0.0, 1e9, "s")
 
 
 class ServoBus:
@@ -166,7 +168,12 @@ class ServoBus:
         self.world.hand(HandMotion(joint, math.radians(degrees), seconds))
 
     def wait(self, seconds: float) -> None:
-        """Let `seconds` s of virtual time pass."""
+        """Let `seconds` s of virtual time pass.
+
+        Raises:
+            UsageError: It is less than 0, or not finite.
+        """
+        check_number("wait", seconds, WAIT)
         self.clock.wait_until(self.clock.now() + seconds)
 
     def record(self, path: str | Path) -> None:

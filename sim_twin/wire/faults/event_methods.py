@@ -12,7 +12,7 @@ class EventMethods(ABC):
 
     Each method adds one event and returns the object, so that calls can be chained. All take the
     keywords of `TargetKeywords`. Without ``rate`` and ``at`` an event happens once, at the
-    present time: the next read or wait executes it.
+    present time: the next wait or use of a port executes it.
     """
 
     @property

@@ -26,7 +26,7 @@ class TargetKeywords(TimeKeywords, total=False):
     """Rate or times of a fault, and its targets.
 
     Attributes:
-        ids: Ids of the devices that can be hit; all by default.
+        ids: Ids of the devices that can be hit, or the id of one; all by default.
     """
 
-    ids: Iterable[int]
+    ids: Iterable[int] | int

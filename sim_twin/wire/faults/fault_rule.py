@@ -110,7 +110,7 @@ class FaultRule:
             )
         there = {id for name, ids in buses.items() if self.bus in (None, name) for id in ids}
         if self.ids is not None and not self.ids & there:
-            given, known = (", ".join(map(str, sorted(ids))) for ids in (self.ids, there))
+            given, known = (", ".join(map(str, sorted(ids))) or "none" for ids in (self.ids, there))
             raise UsageError(f"faults: {self.kind}: no servo has id {given}; ids here: {known}")
 
     def hits(self, rng: random.Random, bus: str, identifier: int, now: float) -> bool:
@@ -130,7 +130,7 @@ def make_rule(
     rate: float | None = None,
     *,
     at: Times | None = None,
-    ids: Iterable[int] | None = None,
+    ids: Iterable[int] | int | None = None,
     bus: str | None = None,
     seconds: float | None = None,
     **extra: float | None,
@@ -141,7 +141,7 @@ def make_rule(
         kind: One of `KINDS`.
         rate: Share of the answers that it hits.
         at: One or several times instead of a rate, s.
-        ids: Ids that it can hit.
+        ids: Ids, or the id, that it can hit.
         bus: Name of the bus that it is limited to.
         seconds: Delay or duration, s; infinity: for ever.
         **extra: The keys of `EXTRA`.
@@ -170,7 +170,7 @@ def make_rule(
         raise UsageError(
             f"faults: {kind}: takes no ids; it applies to all bytes that the host sends"
         )
-    who = None if ids is None else frozenset(ids)
+    who = None if ids is None else frozenset([ids] if isinstance(ids, int) else ids)
     return FaultRule(kind, rate or 0.0, times, who, bus, lasts, **_extra(kind, extra))
 
 

@@ -70,7 +70,12 @@ class Faults(FaultMethods):
         return faults
 
     def add(self, rule: FaultRule) -> Self:
-        """Add a fault."""
+        """Add a fault.
+
+        Raises:
+            UsageError: It refers to a bus, servos or an IMU that the world does not have.
+        """
+        self.check([rule])
         self._rules.append(rule)
         self.active = True
         self._script(rule)
@@ -109,12 +114,14 @@ class Faults(FaultMethods):
         return None if self._of is None else self._of()
 
     def check(self, rules: Sequence[FaultRule]) -> None:
-        """Check that faults can happen in the world.
+        """Check that faults can happen in the world; before `attach` all can.
 
         Raises:
             UsageError: A fault refers to a bus, servos or an IMU that the world does not have.
         """
-        buses = self._world.buses.values() if self._world is not None else ()
+        if self._world is None:
+            return
+        buses = self._world.buses.values()
         there = {bus.name: [device.identifier for device in bus.devices] for bus in buses}
         for rule in rules:
             rule.check_target(there)

@@ -35,6 +35,7 @@ SPIN = 0.00008  # time before the ends of an answer that is polled, not slept, s
 HOP = 0.000025  # latency of a pseudo-terminal each way, which the wire does not have, s
 SLIP = 0.1  # lag behind the wall clock above which simulated time is delayed instead, s
 IDLE = 0.002  # longest sleep, s
+WARM_UP = 0.02  # time for which it serves before it says so: the first passes are slow, s
 PR_SET_TIMERSLACK = 29
 PRIORITY = 10  # real-time priority, so that other programs do not delay the servos
 
@@ -204,7 +205,8 @@ def emulate(
         address: Address of the world.
         pty: Path of the pseudo-terminal; with several buses, the bus name is appended to it.
         tcp: TCP port of the first bus; the next bus has the next port. 0: any free port.
-        on_ready: Called before serving; `Emulator.outlets` have the names of the links.
+        on_ready: Called once it serves, `WARM_UP` after the start; `Emulator.outlets` have the
+            names of the links.
         journal: See `Emulator`.
         events: See `Emulator`.
     """
@@ -220,7 +222,8 @@ def emulate(
             elif tcp is not None:
                 emulator.connect(bus, partial(Tcp, tcp + k if tcp else free_port()))
         if on_ready is not None:
-            on_ready(emulator)
+            schedule = emulator.world.schedule
+            schedule.add(schedule.now + WARM_UP, partial(on_ready, emulator))
         emulator.run()
 
 

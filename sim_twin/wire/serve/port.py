@@ -1,6 +1,9 @@
 """A pyserial port that is connected to a world."""
 
+import errno
 import math
+import os
+import termios
 from typing import cast
 
 import serial
@@ -13,6 +16,7 @@ from windup.sim_twin.wire.world.bus_world import BusWorld
 from windup.sim_twin.wire.world.clocks import RealClock
 from windup.sim_twin.wire.world.worlds import OpenWorld, open_world, release_world
 
+GONE = (errno.EIO, os.strerror(errno.EIO))  # what the kernel says of a terminal that hung up
 PATIENCE = 60.0  # longest wait of a read without a time-out and answer, virtual s
 
 
@@ -21,6 +25,11 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
 
     On a virtual clock, `write` only schedules; time advances in a blocking `read` and in
     `clock.wait_until`. A read without a time-out that can never end raises an error.
+
+    A port whose adapter is unplugged raises what pyserial's raises on a Linux terminal that hung up
+    (`serialposix.py`, tried on a pseudo-terminal): SerialException from read, write and settings,
+    OSError from `in_waiting` and the modem lines, and `termios.error`, which is no OSError, from
+    `flush` and from the resets of the buffers.
     """
 
     is_open: bool
@@ -37,6 +46,7 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
         except WindupError as error:
             raise serial.SerialException(str(error)) from error
         self._bus: Bus = self._running.world.bus(address.bus)
+        self._running.clock.settle()
         if not self._bus.plugged:
             release_world(self._running, address)
             raise serial.SerialException(f"the adapter of {self._port} is unplugged")
@@ -74,7 +84,7 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
     @property
     def in_waiting(self) -> int:
         """Number of bytes that can be read now."""
-        self._check()
+        self._check_ioctl()
         return self._bus.available()
 
     def read(self, size: int = 1) -> bytes:
@@ -108,22 +118,42 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
         return len(sent)
 
     def flush(self) -> None:
-        """Do nothing: written bytes are in transit already."""
+        """Do nothing but check the port: written bytes are in transit already."""
+        self._check_termios()
 
     def reset_input_buffer(self) -> None:
         """Discard the bytes that have arrived."""
-        self._check()
+        self._check_termios()
         self._bus.discard()
 
     def reset_output_buffer(self) -> None:
-        """Do nothing: written bytes are in transit already."""
+        """Do nothing but check the port: written bytes are in transit already."""
+        self._check_termios()
 
     def _check(self) -> None:
-        """Raise if the port is closed or unplugged; let a real clock catch up."""
+        """Raise SerialException if the port is closed or unplugged, once the world is up to date.
+
+        Settings, `read` and `write` do so.
+        """
+        self._is_gone()
+        self._check_plug()
+
+    def _check_ioctl(self) -> None:
+        """Raise OSError if the port is unplugged: pyserial calls `ioctl`, and converts nothing."""
+        if self._is_gone():
+            raise OSError(*GONE)
+
+    def _check_termios(self) -> None:
+        """Raise `termios.error` if the port is unplugged: pyserial calls tcdrain or tcflush."""
+        if self._is_gone():
+            raise termios.error(*GONE)
+
+    def _is_gone(self) -> bool:
+        """Return whether the adapter was unplugged since the port was opened."""
         if not self.is_open:
             raise serial.PortNotOpenError()
-        self._check_plug()
         self._running.clock.settle()
+        return self._plugs != self._bus.plugs
 
     def _check_plug(self) -> None:
         """Raise if the adapter was unplugged since the port was opened."""
@@ -131,6 +161,7 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
             raise serial.SerialException("the adapter has been unplugged")
 
     def _reconfigure_port(self) -> None:
+        self._check()
         self._bus.baud = cast(int, self._baudrate)
 
     # Control lines that a servo adapter has but does not use.
@@ -143,20 +174,24 @@ class TwinSerial(serial.SerialBase):  # type: ignore[misc]
 
     @property
     def cts(self) -> bool:
-        """Always True."""
+        """True while the adapter is plugged in."""
+        self._check_ioctl()
         return True
 
     @property
     def dsr(self) -> bool:
-        """Always True."""
+        """True while the adapter is plugged in."""
+        self._check_ioctl()
         return True
 
     @property
     def ri(self) -> bool:
-        """Always False."""
+        """Always False while the adapter is plugged in."""
+        self._check_ioctl()
         return False
 
     @property
     def cd(self) -> bool:
-        """Always True."""
+        """True while the adapter is plugged in."""
+        self._check_ioctl()
         return True

@@ -88,7 +88,8 @@ def parse_address(url: str) -> Address:
     11.1
 
     Raises:
-        UsageError: It is not a twin:// URL, or an option is unknown or out of range.
+        UsageError: It is not a twin:// URL, an option is unknown or out of range, or a robot is
+            given servos.
     """
     try:
         parts = urlsplit(url)
@@ -104,6 +105,10 @@ def parse_address(url: str) -> Address:
     address = replace(DEFAULTS, **values)
     check_numbers(address, f"{url!r}: ")
     parse_servos(address.servos)
+    if "servos" in values and values["robot"] != BENCH:
+        raise UsageError(
+            f"{url!r}: servos are for {SCHEME}://{BENCH}; a robot has its own: give one of them"
+        )
     parse_rules(address.faults)
     parse_hands(address.hand)
     return address

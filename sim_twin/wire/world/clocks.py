@@ -22,7 +22,10 @@ class VirtualClock:
         self.world.advance(time)
 
     def settle(self) -> None:
-        """Do nothing: a virtual world never lags behind its clock."""
+        """Execute what is due at this instant, such as a fault that has been added just now."""
+        schedule = self.world.schedule
+        if schedule.next <= schedule.now:
+            self.world.advance(schedule.now)
 
 
 class RealClock:

@@ -17,7 +17,9 @@ from windup.sim_twin.wire.world.own_emulations import EMULATIONS, PROTOCOLS
 def full_name(name: str) -> str:
     """Return the name of a model; a family's short name ("XL430") means its first model.
 
-    >>> full_name("STS3215")
+    Upper and lower case are the same.
+
+    >>> full_name("sts3215")
     'STS3215-7.4V'
 
     Raises:
@@ -28,7 +30,10 @@ def full_name(name: str) -> str:
     added = [model.name for family in ADDED_FAMILIES.all().values() for model in family.models]
     if (known := _full_name(name, added)) is not None:
         return known
-    raise UnknownNameError("servo model", name, (*PROTOCOLS, *added))
+    known_names = (*PROTOCOLS, *added)
+    short = {each.split("-")[0] for each in known_names}
+    series = {each for each in short if any(letter.isdigit() for letter in each)}
+    raise UnknownNameError("servo model", name, series.union(known_names))
 
 
 def make_protocol(name: str) -> WireProtocol:
@@ -83,7 +88,9 @@ def make_servo(
 
 def _full_name(name: str, known: Iterable[str]) -> str | None:
     """Return the first of the names in `known` that is `name`, or begins with it and a dash."""
-    return next((full for full in known if name in (full, full.split("-")[0])), None)
+    low = name.casefold()
+    forms = ((full, full.casefold()) for full in known)
+    return next((full for full, form in forms if low in (form, form.split("-")[0])), None)
 
 
 def _emulation_of(family: Family) -> Emulation:

@@ -97,8 +97,22 @@ WRONG = {
     ),
     "raises at once": (SINE.replace("self.begin)", "self.begun)"), "x.py", "x.py:21: Attribute"),
     "no command": (HEAD + "    def step(self, o, dt): ...\n", "x.py", "Sine.step returned noth"),
-    "wrong shape": (SINE.replace("self.stance +", "[0.0] * 3 +"), "x.py", "x.py:22: ValueError"),
-    "nan": (SINE.replace("math.sin", "math.nan * "), "x.py", "asked joint 'head_pan' for position"),
+    "wrong shape": (
+        SINE.replace("self.stance +", "[0.0] * 3 +"),
+        "x.py",
+        "x.py:22: ValueError",
+    ),
+    "nan": (SINE.replace("math.sin", "math.nan * "), "x.py", "commanded position nan for joint"),
+    "exits at once": (
+        SINE.replace("self.begin = observation.time", "raise SystemExit(2)"),
+        "x.py",
+        "x.py:18: it ends the program (SystemExit: 2)",
+    ),
+    "too few": (
+        SINE.replace("self.stance + angle * self.way", "self.stance[:3]"),
+        "x.py",
+        "x.py:22: position: a command of shape (3,) for 20 joints; its shape has to be (20,)",
+    ),
     "not an option": (
         SINE.replace("gain: float = 10.0", "gain"),
         "x.py",

@@ -48,7 +48,7 @@ def test_several_seeds_are_rows_and_counted(shell: Windup) -> None:
 def test_several_seeds_run_in_processes_where_the_behaviour_wants_so(
     shell: Windup, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(Nod, "side_by_side", True)
+    monkeypatch.setattr(Nod, "run_parallel", True)
     ran = shell("run", "op3", "nod", "--times", "1", "--seeds", "2", "--json", "-")
     assert [row["seed"] for row in ran.json["rows"]] == [0, 1], ran.err
     assert ran.json["rows"][1]["options"]["times"] == 1

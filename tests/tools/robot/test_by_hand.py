@@ -108,7 +108,7 @@ def test_the_torque_of_a_twin_comes_back_after_a_stop(call: str) -> None:
         robot.stand(0.1)
         robot.stop()
         assert not robot.twin.powered
-        with pytest.raises(UsageError, match="the torque of op3 is off: call robot.stand"):
+        with pytest.raises(UsageError, match="the torque of op3 is off: call"):
             robot.write(turned(robot, 0.1))
         if call != "run":
             getattr(robot, call)()

@@ -49,9 +49,11 @@ def test_a_port_that_comes_back_a_little_later_is_waited_for() -> None:
 
 def test_a_port_that_stays_away_is_said() -> None:
     duck = unplugged(60.0)
-    with pytest.raises(PortError, match=r"cannot arm again: .*unplugged"):
+    with pytest.raises(PortError, match=r"cannot arm again: .*was disconnected"):
         duck.rearm()
-    with pytest.raises(StaleStateError, match="unplugged"):  # nobody knows whether torque is off
+    with pytest.raises(
+        StaleStateError, match="was disconnected"
+    ):  # nobody knows whether torque is off
         duck.close()
 
 

@@ -42,6 +42,14 @@ def test_its_time_counts_from_the_end_of_the_first_motion() -> None:
     assert end(observation(15.0)) == "done"
 
 
+def test_the_first_motion_counts_from_the_beginning_of_the_loop_on() -> None:
+    loop = LoopReport()
+    end = ending(seconds=2.0, approach=Way(), loop=loop)
+    end.open_at(12.0)
+    assert end(observation(13.0)) is None
+    assert loop.first_motion == 1.0
+
+
 def test_whoever_asks_for_the_end_comes_before_everything_else() -> None:
     asked, said = StopRequests(), [""]
     end = ending(fallen=True, asked=asked, wishes=[lambda: None, lambda: said[0]], down=True)
