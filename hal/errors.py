@@ -7,6 +7,9 @@ be right, what to run next.
 import difflib
 from collections.abc import Iterable
 
+MOST_SUGGESTED = 3
+"""More names than these that begin with an unknown one say little: the most similar does."""
+
 
 class WindupError(Exception):
     """Base class of all errors raised by Windup.
@@ -163,9 +166,26 @@ def suggest(name: str, known: Iterable[str]) -> str:
 
     >>> suggest("opp3", ["human", "op3"])
     "; did you mean 'op3'? known: human, op3"
+
+    Names that begin with `name` come first:
+
+    >>> suggest("A12", ["A13", "A12-7V", "A12-12V"])
+    "; did you mean 'A12-12V' or 'A12-7V'? known: A12-12V, A12-7V, A13"
     """
     names = sorted(known)
+    close = _begun_by(name, names) or _similar(name, names)
+    hint = f"; did you mean {' or '.join(map(repr, close))}?" if close else ";"
+    return f"{hint} known: {', '.join(names) or 'none'}"
+
+
+def _begun_by(name: str, names: list[str]) -> list[str]:
+    """Return the few of `names` that are `name` and something more."""
+    longer = [each for each in names if name and each.casefold().startswith(name.casefold())]
+    return longer if len(longer) <= MOST_SUGGESTED else []
+
+
+def _similar(name: str, names: list[str]) -> list[str]:
+    """Return the most similar of `names` in a list, whatever the case; none if none is near."""
     folded = {each.casefold(): each for each in names}
     close = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=0.5)
-    hint = f"; did you mean {folded[close[0]]!r}?" if close else ";"
-    return f"{hint} known: {', '.join(names) or 'none'}"
+    return [folded[each] for each in close]

@@ -5,11 +5,13 @@ from math import isnan
 
 import mujoco
 
-from windup.hal.families import FAMILIES, families, family_of, is_servo, servo_names
+from windup.hal.families import FAMILIES, families, family_of, is_servo, servo_model, servo_names
 from windup.robots import mjcf
 from windup.robots.limits import travel_mistakes
 from windup.robots.mistake import SLACK, Mistake, check_known, check_unique
 from windup.robots.records import JointEntry, RobotFile
+
+GAINS = ("stiffness", "damping")
 
 
 def name_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]:
@@ -35,9 +37,11 @@ def joint_mistakes(robot: RobotFile, model: mujoco.MjModel) -> Iterator[Mistake]
     """Yield mistakes in limits, gains and servos; defaults must be filled in."""
     hinges = mjcf.hinge_names(model)
     yield from _without_limits(robot, hinges)
+    yield from _without_gains(robot)
     for joint in robot.joint:
         yield from _limit_mistakes(joint, model, joint.name in hinges)
         yield from _servo_mistakes(robot, joint)
+    yield from _unknown_servos(robot)
     yield from _protocol_mistakes(robot)
     yield from _id_mistakes(robot)
 
@@ -55,16 +59,37 @@ def _without_limits(robot: RobotFile, hinges: tuple[str, ...]) -> Iterator[Mista
         )
 
 
+def _without_gains(robot: RobotFile) -> Iterator[Mistake]:
+    """Yield one mistake that names all joints without stiffness or damping, and what would do."""
+    lost = [joint for joint in robot.joint if None in (joint.stiffness, joint.damping)]
+    if not lost:
+        return
+    gains = [gain for gain in GAINS if any(getattr(joint, gain) is None for joint in lost)]
+    names = ", ".join(repr(joint.name) for joint in lost)
+    at = "" if len(lost) == len(robot.joint) else f", or at joint {names}"
+    yield "drive", f"give {' and '.join(gains)} in [drive]{at}{_own_gains(robot, lost[0])}"
+
+
+def _own_gains(robot: RobotFile, joint: JointEntry) -> str:
+    """Return the gains of a joint's servo as it is delivered, in brackets; "" without a servo."""
+    if joint.servo is None or not is_servo(joint.servo):
+        return ""
+    servo, supply = servo_model(joint.servo), robot.drive.supply
+    stiffness = servo.stiffness(servo.p_default, supply) * joint.ratio**2
+    damping = servo.damping(supply) * joint.ratio**2
+    return (
+        f" (those of a {joint.servo} with its default P at {supply:g} V: "
+        f"stiffness = {stiffness:.3g}, damping = {damping:.3g})"
+    )
+
+
 def _unlimited(joint: JointEntry) -> bool:
     return isnan(joint.upper - joint.lower)
 
 
 def _limit_mistakes(joint: JointEntry, model: mujoco.MjModel, known: bool) -> Iterator[Mistake]:
-    """Yield missing gains, and limits that are reversed or wider than the MJCF's."""
+    """Yield limits that are reversed or wider than the MJCF's."""
     key = f"joint {joint.name!r}"
-    for gain in ("stiffness", "damping"):
-        if getattr(joint, gain) is None:
-            yield key, f"needs {gain}, here or in [drive]"
     if joint.lower >= joint.upper:
         yield key, f"lower {joint.lower:g} is not below upper {joint.upper:g}"
     if not known or not model.jnt_limited[model.joint(joint.name).id]:
@@ -85,14 +110,24 @@ def _servo_mistakes(robot: RobotFile, joint: JointEntry) -> Iterator[Mistake]:
     if joint.servo is None or joint.bus is None or joint.id is None:
         yield key, 'needs servo, bus and id: drive.kind is "servo"'
     exists = joint.servo is not None and is_servo(joint.servo)
-    if joint.servo is not None and not exists:
-        yield from check_known(f"{key}: servo", "servo", joint.servo, servo_names())
     if joint.bus is not None:
         yield from check_known(f"{key}: bus", "bus", joint.bus, [bus.name for bus in robot.bus])
     if exists:
         yield from _bus_mistakes(robot, joint, key)
         if not _unlimited(joint):
             yield from ((key, mistake) for mistake in travel_mistakes(joint))
+
+
+def _unknown_servos(robot: RobotFile) -> Iterator[Mistake]:
+    """Yield one mistake for each unknown servo, however many joints have it."""
+    if robot.drive.kind == "torque":
+        return
+    for name in dict.fromkeys(joint.servo for joint in robot.joint if joint.servo is not None):
+        if is_servo(name):
+            continue
+        joints = ", ".join(repr(joint.name) for joint in robot.joint if joint.servo == name)
+        key = "drive.servo" if name == robot.drive.servo else f"joint {joints}: servo"
+        yield from check_known(key, "servo", name, servo_names())
 
 
 def _bus_mistakes(robot: RobotFile, joint: JointEntry, key: str) -> Iterator[Mistake]:

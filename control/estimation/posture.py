@@ -7,7 +7,7 @@ that stands.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import acos
+from math import acos, inf
 from typing import Literal
 
 import mujoco
@@ -29,8 +29,10 @@ class Posture:
     Attributes:
         tilt: Tilt of the base from upright, rad.
         side: The side of the base that faces down the most.
-        height: Height of the base above the lowest point of the feet, m.
-        clearance: Height of the lowest point of all other bodies above the same point, m.
+        height: Height of the base above the lowest point of the feet, m; infinite where the feet
+            do not collide.
+        clearance: Height of the lowest point of all other bodies above the same point, m; infinite
+            where nothing but the feet collides.
     """
 
     tilt: float
@@ -73,6 +75,9 @@ class PostureSense:
     def lowest(self, position: Array, up: Array) -> tuple[float, float]:
         """Return the heights above the base's origin of the lowest points of feet and others, m.
 
+        Only geoms that collide count. Without any, the feet are at minus infinity, and all others
+        at plus infinity: then no height tells how the robot is, but its tilt does.
+
         Args:
             position: (n,) joint positions, rad.
             up: (3,) vertical in the base frame.
@@ -84,7 +89,8 @@ class PostureSense:
         vertical = up @ data.geom_xmat[self._geoms].reshape(-1, 3, 3)
         heights = data.geom_xpos[self._geoms] @ up + (vertical * self._centre).sum(axis=1)
         heights -= (np.abs(vertical) * self._size).sum(axis=1)
-        return float(heights[self._of_feet].min()), float(heights[~self._of_feet].min())
+        feet, others = heights[self._of_feet], heights[~self._of_feet]
+        return float(feet.min()) if len(feet) else -inf, float(others.min(initial=inf))
 
 
 def _side(up: Array) -> Side:

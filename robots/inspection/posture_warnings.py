@@ -50,6 +50,20 @@ def corners_of(model: mujoco.MjModel, data: mujoco.MjData, geom: int) -> Array:
     return data.geom_xpos[geom] + local @ data.geom_xmat[geom].reshape(3, 3).T
 
 
+def tilt_of_sole(model: mujoco.MjModel, data: mujoco.MjData, foot: Foot) -> float | None:
+    """Return the tilt of the lowest face that the site of a foot lies on, rad; None without."""
+    solid = (model.geom_contype > 0) | (model.geom_conaffinity > 0)
+    site = data.site(foot.site).xpos
+    for geom in np.flatnonzero(solid & (model.geom_bodyid == model.body(foot.body).id)):
+        axes = data.geom_xmat[geom].reshape(3, 3)
+        down = int(np.abs(axes[2]).argmax())
+        sign = np.sign(axes[2, down])
+        local = axes.T @ (site - data.geom_xpos[geom]) - model.geom_aabb[geom, :3]
+        if abs(sign * local[down] + model.geom_aabb[geom, 3 + down]) < LEVEL:
+            return float(np.arccos(min(abs(axes[2, down]), 1.0)))
+    return None
+
+
 def balance_margin(points: Array, com: Array) -> float:
     """Return the distance of `com` (2,) from the edge of the hull of `points` (k, 2), m.
 
@@ -87,7 +101,12 @@ def _soles(robot: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData) 
     for foot in robot.feet:
         points = sole_points(model, data, foot)
         above = float(data.site(foot.site).xpos[2] - points[:, 2].min()) if len(points) else 0.0
-        if abs(above) > LEVEL:
+        if abs(above) > LEVEL and (tilt := tilt_of_sole(model, data, foot)) is not None:
+            yield (
+                f"in the stance the sole of foot {foot.name!r} is tilted by "
+                f"{np.degrees(tilt):.0f} degrees: correct the angles of its leg, or their signs"
+            )
+        elif abs(above) > LEVEL:
             where = "above" if above > 0.0 else "below"
             yield (
                 f"site {foot.site!r} is {1e3 * abs(above):.0f} mm {where} the lowest point of "

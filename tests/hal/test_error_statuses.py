@@ -35,6 +35,14 @@ def test_a_likely_word_is_offered_only_where_there_is_one() -> None:
     assert suggest("knee", ["l_knee", "neck"]) == "; did you mean 'l_knee'? known: l_knee, neck"
     assert suggest("zzz", ["b", "a"]) == "; known: a, b"
     assert suggest("zzz", []) == "; known: none"
+
+
+def test_names_that_begin_with_the_unknown_one_come_before_similar_ones() -> None:
+    servos = ["STS3250", "STS3215-12V", "STS3215-7.4V"]
+    hint = suggest("STS3215", servos)
+    assert hint.startswith("; did you mean 'STS3215-12V' or 'STS3215-7.4V'? known: ")
+    assert suggest("kne", ["knee", "kneel", "knob"]).startswith("; did you mean 'knee' or 'kneel'")
+    assert suggest("a", ["abba", "acme", "adam", "aero"]).startswith("; known")
     assert str(UnknownNameError("pose", "stnd", ["stand"])) == (
         "unknown pose 'stnd'; did you mean 'stand'? known: stand"
     )

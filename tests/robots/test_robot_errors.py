@@ -128,7 +128,7 @@ BROKEN = {
     "servo": ('"XL430-W250"', '"XL430"', "'knee': servo: unknown servo 'XL430'; did you mean"),
     "bus": ('bus = "leg"', 'bus = "legs"', "bus: unknown bus 'legs'; did you mean 'leg'?"),
     "no id": ("id = 2, ", "", "joint 'knee': needs servo, bus and id"),
-    "no gain": ("stiffness = 10.0", "", "joint 'knee': needs stiffness, here or in [drive]"),
+    "no gain": ("stiffness = 10.0", "", "drive: give stiffness in [drive] (those of a XL430-W250"),
     "torque joints with servos": ('"servo"', '"torque"', 'has a servo, but drive.kind is "torque"'),
     "base": ('base = "base"', 'base = "bass"', "base: unknown body 'bass'; did you mean 'base'?"),
     "base without free joint": (
@@ -159,6 +159,24 @@ def test_a_broken_robot_toml_is_one_line_with_file_and_key(
     assert text.startswith(str(tmp_path))
     assert message in text
     assert "\n" not in text
+
+
+def test_gains_that_no_joint_has_are_one_mistake_with_those_of_the_servo(tmp_path: Path) -> None:
+    toml = TOML.replace("stiffness = 10.0\ndamping = 0.5\n", "")
+    with pytest.raises(ConfigError) as error:
+        load_robot(folder(tmp_path, toml))
+    assert str(error.value).endswith(
+        "robot.toml: drive: give stiffness and damping in [drive] (those of a XL430-W250 with its "
+        "default P at 12 V: stiffness = 5.52, damping = 0.235)"
+    )
+
+
+def test_an_unknown_servo_of_the_drive_is_one_mistake(tmp_path: Path) -> None:
+    toml = TOML.replace(', servo = "XL430-W250"', "").replace('"XM430-W350"', '"STS3215"')
+    with pytest.raises(ConfigError) as error:
+        load_robot(folder(tmp_path, toml))
+    hint = "unknown servo 'STS3215'; did you mean 'STS3215-12V' or 'STS3215-7.4V'?"
+    assert str(error.value).count(hint) == 1 and f"drive.servo: {hint}" in str(error.value)
 
 
 def test_a_hinge_without_an_entry_is_named(tmp_path: Path) -> None:

@@ -37,7 +37,7 @@ def gait_path(robot: RobotDescription, name: str) -> Path:
     if name.endswith(".toml") and os.path.isfile(name):
         return Path(name)
     if name.endswith(".toml"):
-        raise UsageError(
-            f"no file {name}; the gaits of {robot.name} are {', '.join(sorted(gaits))}"
-        )
+        own = f"the gaits of {robot.name} are {', '.join(sorted(gaits))}"
+        none = f"{robot.name} has no gaits of its own"
+        raise UsageError(f"no file {name}; {own if gaits else none}")
     raise UnknownNameError(f"gait of {robot.name}", name, gaits)

@@ -55,6 +55,8 @@ class Armed(Stoppable):
         with counted_signals(self.stack.wired) as asked, self.held_afterwards():
             if self.stack.wired:
                 self._arm(self.backend.rearm, asked)
+            else:
+                self._power_twin()
         self._raise_if(asked)
 
     def _get_ready(self, down: bool, asked: StopRequests) -> None:
@@ -95,8 +97,15 @@ class Armed(Stoppable):
             raise
 
     def _arm_once(self, asked: StopRequests) -> None:
-        if not self.armed and self.stack.wired:
+        if not self.stack.wired:
+            self._power_twin()
+        elif not self.armed:
             self._arm(lambda: self.backend.set_torque(True), asked)
+
+    def _power_twin(self) -> None:
+        """Switch a twin without servos on again after a stop."""
+        if self.stack.twin is not None and not self.stack.twin.powered:
+            self.backend.set_torque(True)
 
     def _arm(self, switch_on: Callable[[], TorqueState], asked: StopRequests) -> None:
         """Switch torque on, unless or until somebody asks for the end."""

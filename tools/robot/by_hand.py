@@ -45,9 +45,12 @@ class ByHand:
         Raises:
             UsageError: Their torque is off, or they have not made their first motion.
         """
+        name, twin = runner.description.name, runner.stack.twin
+        off = f"the torque of {name} is off: call robot.stand() first, or {LOOP}"
         if not runner.stack.wired:
+            if runner.body is None and twin is not None and not twin.powered:
+                raise UsageError(off)
             return
-        name = runner.description.name
         if not runner.stack.may_arm:
             raise UsageError(
                 f"the torque of {name} is off: open it with Robot.open(..., arm=True), and hold on "
@@ -56,7 +59,7 @@ class ByHand:
         if runner.body is not None:
             return
         if not runner.armed:
-            raise UsageError(f"the torque of {name} is off: call robot.stand() first, or {LOOP}")
+            raise UsageError(off)
         if runner.start is not None and not runner.start.motion.made:
             raise UsageError(
                 f"{name} has not made its first motion: call robot.stand() first, or {LOOP}"

@@ -1,6 +1,6 @@
 """How a robot is that has no torque: what its accelerometer and its encoders say."""
 
-from math import radians
+from math import inf, radians
 
 import numpy as np
 import pytest
@@ -82,3 +82,28 @@ def test_one_that_falls_or_has_no_imu_is_not_told(op3: RobotDescription) -> None
     blind = seen(op3.stance, leaning(0.0))
     object.__setattr__(blind, "imu", None)
     assert posture(op3, blind) is None
+
+
+def test_one_of_which_only_the_soles_collide_is_told_by_its_feet_and_its_tilt(
+    op3: RobotDescription,
+) -> None:
+    spec, feet = op3.spec(), {foot.body for foot in op3.feet}
+    for geom in spec.geoms:
+        if geom.parent.name not in feet:
+            geom.contype = geom.conaffinity = 0
+    sense = PostureSense(spec.compile(), sorted(feet))
+    stands = sense.posture([seen(op3.stance, leaning(0.0))])
+    lies = sense.posture([seen(op3.stance, leaning(90.0))])
+    assert stands is not None and lies is not None
+    assert stands.clearance == inf and stands.height == pytest.approx(0.28, abs=0.02)
+    assert lies.tilt > op3.fall.tilt
+
+
+def test_one_without_collisions_is_told_by_its_tilt(op3: RobotDescription) -> None:
+    spec = op3.spec()
+    for geom in spec.geoms:
+        geom.contype = geom.conaffinity = 0
+    sense = PostureSense(spec.compile(), [foot.body for foot in op3.feet])
+    lies = sense.posture([seen(op3.stance, leaning(90.0))])
+    assert lies is not None and lies.height == inf and lies.clearance == inf
+    assert lies.tilt == pytest.approx(radians(90.0))

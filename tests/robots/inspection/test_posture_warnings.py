@@ -1,5 +1,6 @@
 """What is doubtful about how a robot stands is said, with what would be right."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -57,6 +58,17 @@ def test_a_site_that_is_not_on_the_sole_is_doubted(tmp_path: Path) -> None:
     said = doubted(tmp_path, "model.xml", site)
     assert "site 'left_sole' is 40 mm above the lowest point of foot 'left'" in said
     assert "in the stance foot 'left' is 40 mm higher than 'right'" in said
+
+
+def test_a_sole_that_is_tilted_in_the_stance_is_doubted(tmp_path: Path) -> None:
+    folder = write_shape(tmp_path / "r", THIRTY)
+    robot = load_robot(folder)
+    pose = robot.stance.copy()
+    ankle = next(i for i in reversed(range(6)) if robot.model.joint(f"left_{i}").axis[1])
+    pose[robot.joints.names.index(f"left_{ankle}")] += np.radians(25.0)
+    said = "\n".join(robot_warnings(replace(robot, stance=pose)))
+    assert "in the stance the sole of foot 'left' is tilted by 25 degrees: correct" in said
+    assert "put it in the middle of the sole" not in said
 
 
 def test_a_centre_of_mass_outside_of_the_soles_is_doubted(tmp_path: Path) -> None:

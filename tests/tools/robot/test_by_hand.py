@@ -100,3 +100,24 @@ def test_a_closed_robot_says_so(robot: Robot, call: str) -> None:
         list(getattr(robot, call)())
     with pytest.raises(UsageError, match="op3 is closed"):
         robot.write(turned(robot, 0.1))
+
+
+@pytest.mark.parametrize("call", ["run", "arm", "rearm"])
+def test_the_torque_of_a_twin_comes_back_after_a_stop(call: str) -> None:
+    with on_the_twin() as robot:
+        robot.stand(0.1)
+        robot.stop()
+        assert not robot.twin.powered
+        with pytest.raises(UsageError, match="the torque of op3 is off: call"):
+            robot.write(turned(robot, 0.1))
+        if call != "run":
+            getattr(robot, call)()
+            assert robot.twin.powered
+        assert robot.stand(1.0).reason == "done"
+
+
+def test_a_refused_command_leaves_a_twin_that_stands_again() -> None:
+    with on_the_twin() as robot:
+        with pytest.raises(UnsafeCommandError):
+            robot.write(turned(robot, float("nan")))
+        assert robot.stand(1.0).reason == "done"
