@@ -8,6 +8,7 @@ has its own `tools/`, `control/`, `hal/`, `robots/` and `sim_twin/`; in the othe
 used. In both `python -m pytest` and `windup walk` have to work.
 """
 
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -98,11 +99,12 @@ def try_projects(programs: Path, folder: Path) -> None:
 
 def main(interpreters: list[str]) -> None:
     """Check the package with each interpreter."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
         wheel, sdist = build(folder)
         check_wheel(wheel)
-        for number, interpreter in enumerate(interpreters or [sys.executable]):
+        for number, name in enumerate(interpreters or [sys.executable]):
+            interpreter = str(Path(shutil.which(name) or name).absolute())
             place = folder / str(number)
             place.mkdir()
             try_projects(install(interpreter, sdist, place), place)

@@ -1,5 +1,6 @@
 """Parsing and compiling of an MJCF, with one-line errors, and look-up of its names."""
 
+import re
 from codecs import BOM_UTF8
 from collections.abc import Callable
 from pathlib import Path
@@ -18,6 +19,9 @@ OBJECTS = {
     "site": mujoco.mjtObj.mjOBJ_SITE,
     "sensor": mujoco.mjtObj.mjOBJ_SENSOR,
 }
+COMMENT = re.compile(rb"<!--.*?-->", re.DOTALL)
+FORMAT = re.compile(rb"%[-+ #0-9.*hlLqjzt]*[diouxXeEfFgGaAcspn]")
+"""A conversion of printf, for which the parser of MuJoCo 4.0 takes names in its messages."""
 HINGE = int(mujoco.mjtJoint.mjJNT_HINGE)
 FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 
@@ -33,6 +37,11 @@ def parse_mjcf(path: Path) -> mujoco.MjSpec:
     if path.stat().st_size > MOST:
         raise ConfigError(f"{path}: cannot be read: longer than {MOST >> 20} MB")
     try:
+        if found := FORMAT.search(COMMENT.sub(b"", path.read_bytes())):
+            raise ConfigError(
+                f"{path}: {found[0].decode()!r} in a name or a value: MuJoCo can end the program "
+                "at it; leave the % out"
+            )
         if path.suffix == ".xml" and not path.read_bytes().startswith(BOM_UTF8):
             return mujoco.MjSpec.from_file(str(path))
         # MuJoCo selects the parser by the suffix, and fails at a byte-order mark.

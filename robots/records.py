@@ -14,6 +14,7 @@ from windup.robots.levels import JointLevels
 GYRO, ACCELEROMETER = "gyro", "accelerometer"
 """Default names of the sensors of an IMU."""
 
+LoopRate = Annotated[float, Meta(ge=1.0, le=10_000.0)]
 Wait = Annotated[float, Meta(gt=0.0, le=86_400.0)]
 Share = Annotated[float, Meta(ge=0.05, le=1.0)]
 
@@ -268,14 +269,14 @@ class RobotFile(TomlRecord, frozen=True):
 
     name: Annotated[str, Meta(min_length=1, max_length=64)]
     title: str
-    rate_hz: Positive
+    rate_hz: LoopRate
     base: str
     torso: str
     stance: str
     drive: Drive
     joint: tuple[JointEntry, ...]
     poses: dict[str, dict[str, float]]
-    wire_rate_hz: Positive | None = None
+    wire_rate_hz: LoopRate | None = None
     stop: StopPolicy = "limp"
     model: str = "model.xml"
     crouch: str | None = None

@@ -41,3 +41,13 @@ def test_what_mujoco_lets_through_is_named(tmp_path: Path, old: str, new: str, s
     with pytest.raises(ConfigError) as error:
         load(tmp_path, old, new)
     assert str(error.value).startswith(f"{tmp_path / 'model.xml'}: {said}")
+
+
+@pytest.mark.parametrize("name", ["%s%n", "hip-%5.1f"])
+def test_a_format_in_a_name_is_refused_before_mujoco_sees_it(tmp_path: Path, name: str) -> None:
+    with pytest.raises(ConfigError, match="in a name or a value: MuJoCo can end the program"):
+        load(tmp_path, '<joint name="hip"', f'<joint class="{name}" name="hip"')
+
+
+def test_a_format_in_a_comment_is_none_of_our_business(tmp_path: Path) -> None:
+    load(tmp_path, "<worldbody>", "<!-- 5%d of\nit --><worldbody>")

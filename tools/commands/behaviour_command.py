@@ -15,6 +15,7 @@ from windup.tools.options.common import Common
 from windup.tools.options.twin_options import WorldOptions
 from windup.tools.remote.plain_options import check_alone, options_as_data
 from windup.tools.remote.remote_run import run_remotely
+from windup.tools.robot.port_urls import NOT_ARMED, TWIN
 from windup.tools.robot.robot import Robot
 from windup.tools.robot.stopping import INTERRUPTED
 from windup.tools.terminal.output import console, write_json
@@ -69,6 +70,8 @@ class BehaviourCommand(WorldOptions, Common):
         super().check()
         if self.up:
             check_alone(self, self.behaviour.Options)
+        elif self.port is not None and not (self.arm or self.port.startswith(TWIN)):
+            raise UsageError(NOT_ARMED)  # before anything is written, settings too
         check_picture(self.picture)
         if self.picture is not None and self.seeds is not None:
             one = self.behaviour.name

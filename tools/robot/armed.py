@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from windup.hal.errors import HardwareError, PostureError, UsageError, WindupError
 from windup.hal.torque_state import TorqueState
+from windup.tools.robot.port_urls import NOT_ARMED
 from windup.tools.robot.stopping import Stoppable
 from windup.tools.stopping.interrupts import (
     StopRequests,
@@ -109,7 +110,7 @@ class Armed(Stoppable):
     def _arm(self, switch_on: Callable[[], TorqueState], asked: StopRequests) -> None:
         """Switch torque on, unless or until somebody asks for the end."""
         if not self.stack.may_arm:
-            raise UsageError("this moves a robot: give --arm (arm=True), and hold on to it")
+            raise UsageError(NOT_ARMED)
         check_released(self.backend.backend)
         if self.stack.real:
             say(f"arming {self.description.name}: {how_to_stop(self.backend.backend)}")

@@ -18,6 +18,10 @@ IMU = "imu"
 """Name of the port of an IMU that is on no servo bus."""
 
 
+NOT_ARMED = "this moves a robot: give --arm (arm=True), and hold on to it"
+"""What is said where torque is needed on a port that is no twin, and was not allowed."""
+
+
 def check_port(robot: RobotDescription, port: str) -> None:
     """Raise what is wrong with a port of `robot`, before it is opened.
 

@@ -76,7 +76,7 @@ OPTIONS = {
         "a rate of 300 Hz is not a whole number of physics steps of 2 ms; 250 Hz is",
     ),
     "rate too high": ("walk op3 --rate 1000", "a rate of 1000 Hz is not a whole number of physics"),
-    "no rate": ("walk op3 --rate 0", "--rate 0: give more than 0, up to 10000 Hz"),
+    "no rate": ("walk op3 --rate 0", "--rate 0: give 1 .. 10000 Hz"),
     "rate that is no number": ("walk op3 --rate nan", "--rate nan: give a finite number of Hz"),
     "no seeds": ("walk op3 --seeds 0", "--seeds 0: give 1 .. 100000"),
     "negative seed": ("walk op3 --seed -1 --noise 0.2", "--seed -1"),

@@ -9,6 +9,7 @@ import pytest
 
 from tests.tools.conftest import Windup, refusal
 from windup import Robot
+from windup.tools import cli
 from windup.tools.behaviours.run_record import RunRecord
 from windup.tools.behaviours.stand import Stand as StandBehaviour
 from windup.tools.behaviours.stand import StandOptions
@@ -79,3 +80,10 @@ def test_walks_of_several_seeds_are_rows_in_their_order(shell: Windup) -> None:
 )
 def test_what_cannot_be_is_refused_in_one_line(line: str, said: str) -> None:
     assert said in refusal(line.split())
+
+
+def test_a_motion_without_arm_is_refused_before_the_port_is_opened(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert cli.run(["stand", "op3", "--port", "/dev/no_such_port"]) == 2
+    assert "this moves a robot: give --arm" in capsys.readouterr().err

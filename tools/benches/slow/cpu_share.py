@@ -14,8 +14,8 @@ from typing import Final
 
 from windup.hal.errors import UsageError
 
-PERIOD: Final = 2_000
-"""Period of the limit, us; a long one would stop a loop for longer than its ticks last."""
+PERIOD: Final = 4_000
+"""Period of the limit, us: short beside a tick; the kernel takes no limit below 1000 us."""
 VERSION_1 = Path("/sys/fs/cgroup/cpu")
 VERSION_2 = Path("/sys/fs/cgroup")
 PATIENCE = 5.0

@@ -20,7 +20,7 @@ def test_the_group_is_removed(groups: Path) -> None:
     with cpu_share(0.35) as processes:
         group = processes.parent
         assert group.parent == groups
-        assert (group / "cpu.max").read_text() == "700 2000"
+        assert (group / "cpu.max").read_text() == "1400 4000"
         (group / "cpu.max").unlink()  # the kernel's files go with their folder
     assert not group.exists()
 
@@ -34,8 +34,8 @@ def test_version_1_has_files_of_its_own(groups: Path, monkeypatch: pytest.Monkey
     monkeypatch.setattr(Path, "mkdir", with_files)
     monkeypatch.setattr(module, "PATIENCE", 0.0)
     with cpu_share(0.5) as processes:
-        assert (processes.parent / "cpu.cfs_period_us").read_text() == "2000"
-        assert (processes.parent / "cpu.cfs_quota_us").read_text() == "1000"
+        assert (processes.parent / "cpu.cfs_period_us").read_text() == "4000"
+        assert (processes.parent / "cpu.cfs_quota_us").read_text() == "2000"
 
 
 def test_who_may_not_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
