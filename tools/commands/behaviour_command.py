@@ -70,13 +70,13 @@ class BehaviourCommand(WorldOptions, Common):
         super().check()
         if self.up:
             check_alone(self, self.behaviour.Options)
-        elif self.port is not None and not (self.arm or self.port.startswith(TWIN)):
-            raise UsageError(NOT_ARMED)  # before anything is written, settings too
         check_picture(self.picture)
         if self.picture is not None and self.seeds is not None:
             one = self.behaviour.name
             raise UsageError(f"--plot draws one {one}: leave it or --seeds away")
         self.behaviour.check(load_robot(self.robot), self.options)
+        if self.port is not None and not (self.up or self.arm or self.port.startswith(TWIN)):
+            raise UsageError(NOT_ARMED)  # before anything is written, settings too
 
     def run(self) -> int:
         """Run every seed; returns the exit status."""

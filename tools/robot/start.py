@@ -1,6 +1,7 @@
 """What comes before the first command to an armed robot: how it is, and its first motion."""
 
 from collections.abc import Sequence
+from functools import partial
 from math import degrees
 
 import numpy as np
@@ -12,6 +13,7 @@ from windup.control.motions.planted import Planted
 from windup.hal.command import FIELDS
 from windup.hal.controller import Controller
 from windup.hal.errors import PostureError
+from windup.hal.guard.guarded import GuardedBackend
 from windup.hal.joints import Mask
 from windup.hal.observation import Observation
 from windup.hal.servo_bus.servo_backend import ServoBackend
@@ -56,8 +58,9 @@ class Start:
         if known:
             legs = legs_of(model, robot.base, feet, robot.joints, robot.stance)
         planted = None if legs is None else Planted(robot.joints, legs)
+        clipped = partial(_note_clipped, self.backend)  # not a method: no cycle of references
         self.motion = FirstMotion(
-            robot.joints, share, safety.first_speed, safety.first_lag, planted, self._note_clipped
+            robot.joints, share, safety.first_speed, safety.first_lag, planted, clipped
         )
         self._sense, self._clear = None, CLEAR
         if robot.imu is not None and robot.feet and known:
@@ -67,12 +70,6 @@ class Start:
         self.unseen = True
         if isinstance(self.backend.backend, ServoBackend):
             self.backend.backend.arming_stiffness = share * robot.joints.stiffness
-
-    def _note_clipped(self, beyond: Mask) -> None:
-        """Count the joints (n,) bool of a first pose that was clipped, as the guard does."""
-        changed = np.zeros((len(FIELDS), len(beyond)), dtype=bool)
-        changed[FIELDS.index("position")] = beyond
-        self.backend.note_clamps(changed)
 
     def begin(self) -> None:
         """Torque has come on."""
@@ -164,3 +161,10 @@ def _fastest(seen: Sequence[Observation]) -> float:
     """Return the fastest turn that an IMU felt, rad/s; 0 without any."""
     turns = [item.imu.angular_velocity for item in seen if item.imu is not None]
     return float(np.linalg.norm(turns, axis=1).max()) if turns else 0.0
+
+
+def _note_clipped(backend: GuardedBackend, beyond: Mask) -> None:
+    """Count the joints (n,) bool of a first pose that was clipped, as the guard does."""
+    changed = np.zeros((len(FIELDS), len(beyond)), dtype=bool)
+    changed[FIELDS.index("position")] = beyond
+    backend.note_clamps(changed)
