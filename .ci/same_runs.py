@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Do robots still do, digit by digit, what they did? For moving walls without moving a robot.
 
-    .venv/bin/python .ci/same_runs.py --store FOLDER    # before
-    .venv/bin/python .ci/same_runs.py FOLDER            # after each step
+    .venv/bin/python .ci/same_runs.py .ci/runs            # after each step
+    .venv/bin/python .ci/same_runs.py --store .ci/runs    # where a change is meant, and said
 
 Each command's JSON is kept, without times. They are compared on one machine: another processor
-may round the last digit differently.
+may round the last digit differently, so store them anew on yours before you begin.
 """
 
 import json
